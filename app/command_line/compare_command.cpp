@@ -41,7 +41,8 @@ std::string line_of(const tunnels::TunnelKey& key, const postop::AchievedTunnel&
 }
 
 void compare(Context& context, const CompareArguments& arguments) {
-  refuse_before_the_work({.read = {arguments.source}, .written = {arguments.output}});
+  refuse_before_the_work(
+      {.read = {arguments.source}, .written = {arguments.output}, .makes = "achieved.json"});
   Progress progress("Comparing", 100);
   open_case::PostopQuestion question{arguments.case_folder,
                                      arguments.source,

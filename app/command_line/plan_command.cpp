@@ -332,6 +332,8 @@ void add_plan_command(CLI::App& app, Context& context) {
     if (writes || arguments->keeps) lock = cases::lock_or_refuse(arguments->case_folder);
     if (!lock.notice().empty() && !arguments->as_json) context.say(lock.notice() + ".");
     auto knee = cases::load_case(arguments->case_folder);
+    // Before anything is written: a file that cannot be read leaves the plan as it was.
+    cases::BoneDoubts doubts = cases::load_bone_doubts(arguments->case_folder);
     PlanVerdict verdict;
     if (!arguments->markups.empty()) {
       take_markups(*arguments, context, knee);
@@ -359,7 +361,6 @@ void add_plan_command(CLI::App& app, Context& context) {
     }
     if (arguments->lists_versions) return list_versions(*arguments, context, knee);
     const plan_review::CaseReview review(knee);
-    cases::BoneDoubts doubts = cases::load_bone_doubts(arguments->case_folder);
     if (arguments->by_default) {
       for (std::string& wrong : tunnels::wrong_in_words(review.checks(key_of(*arguments))))
         verdict.reasons.push_back(std::move(wrong));

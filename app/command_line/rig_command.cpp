@@ -247,9 +247,10 @@ nlohmann::ordered_json doubtful_document(const RigArguments& arguments, const to
   return json;
 }
 
-// Tools that stand there already are not lost for it: then beside them, as NAME.doubtful.json.
+// Tools that stand there already are not lost for it: then beside them, as NAME.doubtful.json. A device or a
+// pipe holds nothing.
 std::filesystem::path doubtful_file(const std::filesystem::path& output) {
-  if (output == "-" || !std::filesystem::exists(output) ||
+  if (output == "-" || !std::filesystem::exists(output) || std::filesystem::is_other(output) ||
       files::read_text(output).find(kDoubtfulFormat) != std::string::npos)
     return output;
   return output.parent_path() / (output.stem().string() + ".doubtful.json");

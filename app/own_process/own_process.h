@@ -10,8 +10,9 @@
 namespace arthronaut::own_process {
 
 struct CommandOutcome {
-  // Unreliable: done, with doubts. Else than Done and Unreliable the command has left nothing that it was to
-  // write as one file; of a folder the caller knows.
+  // Unreliable: done, with doubts. Failed: nothing is left of what it was to write as one file. Stopped:
+  // something unfinished may lie beside it, under a name that begins with a dot; of a folder the caller
+  // knows.
   enum class End { Done, Unreliable, Failed, Stopped } end = End::Failed;
   std::string words;  // its doubts, or why it failed; may be empty
 };

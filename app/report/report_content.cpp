@@ -15,6 +15,14 @@ namespace arthronaut::report {
 
 namespace {
 
+// Why a file of the case cannot be read, without where the case lies: a folder may bear the patient's name.
+std::string reason_in_case(const Content& content, std::string reason) {
+  const std::string folder = content.folder.string();
+  for (auto at = reason.find(folder); at != std::string::npos; at = reason.find(folder, at))
+    reason.erase(at, folder.size() + (reason.substr(at + folder.size()).starts_with("/") ? 1 : 0));
+  return reason;
+}
+
 // A broken session takes nothing else away: it is named, and another one is told of.
 template <typename Read>
 void unless_unreadable(const std::filesystem::path& session, Content& content, const Read& read) {
@@ -24,9 +32,9 @@ void unless_unreadable(const std::filesystem::path& session, Content& content, c
   try {
     read();
   } catch (const InvalidInput& error) {
-    content.unreadable.emplace_back(name, error.what());
+    content.unreadable.emplace_back(name, reason_in_case(content, error.what()));
   } catch (const IoError& error) {
-    content.unreadable.emplace_back(name, error.what());
+    content.unreadable.emplace_back(name, reason_in_case(content, error.what()));
   }
 }
 
@@ -96,9 +104,9 @@ void add_looked_at(Content& content) {
   try {
     content.marks = recording::read_marks(folder);
   } catch (const InvalidInput& error) {
-    content.marks_problem = error.what();
+    content.marks_problem = reason_in_case(content, error.what());
   } catch (const IoError& error) {
-    content.marks_problem = error.what();
+    content.marks_problem = reason_in_case(content, error.what());
   }
 }
 
@@ -124,9 +132,9 @@ void add_postoperative(Content& content) {
   try {
     content.postoperative = postop::read_achieved_file(file);
   } catch (const InvalidInput& error) {
-    content.postoperative_problem = error.what();
+    content.postoperative_problem = reason_in_case(content, error.what());
   } catch (const IoError& error) {
-    content.postoperative_problem = error.what();
+    content.postoperative_problem = reason_in_case(content, error.what());
   }
 }
 

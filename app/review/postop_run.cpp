@@ -26,6 +26,7 @@ PostopRun::PostopRun(const std::filesystem::path& case_folder, const std::filesy
             if (series.empty()) {
               auto which = postop::comparable_series(
                   source, [&](double share) { question.on_progress("Looking for CTs", share); });
+              if (inbox.stops()) return;
               if (which.size() == 1) question.series = which.front().uid;
               if (which.size() > 1) {
                 progress.which = std::move(which);

@@ -119,7 +119,7 @@ void ReviewView::add_playing_actions(widgets::Actions& actions) {
 }
 
 void ReviewView::add_mark_actions(widgets::Actions& actions) {
-  const auto may_mark = [this] { return has_frames() && open_->marks.problem().empty(); };
+  const auto may_mark = [this] { return has_frames() && !browses() && open_->marks.problem().empty(); };
   actions.add(
       {"review.mark", "Mark", "Marks this moment, with a note", GLFW_KEY_M, 0, false, may_mark, {}, [this] {
          begin_mark();

@@ -210,7 +210,7 @@ void PacsPane::write_results() {
   work_.start({.kind = Kind::WriteResults,
                .peer = *peer(),
                .case_folder = view_.sendable.folder,
-               .results_folder = data_folder_ / "outgoing",
+               .results_folder = data_folder_ / "outgoing" / "results",
                .is_deidentified = view_.is_deidentified});
 }
 

@@ -11,10 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 15> kFiles{
-    "case.json",           "plan.json",         "identity.json",       "study.json",  "case.lock",
-    "note.json",           "measurements.json", "bone_doubts.json",    "fluid.json",  "femur.ply",
-    "femur_cartilage.ply", "tibia.ply",         "tibia_cartilage.ply", "camera.json", "tools.json"};
+constexpr std::array<std::string_view, 16> kFiles{
+    "case.json",           "plan.json",   "identity.json",       "study.json",
+    "case.lock",           "note.json",   "measurements.json",   "bone_doubts.json",
+    "fluid.json",          "femur.ply",   "femur_cartilage.ply", "tibia.ply",
+    "tibia_cartilage.ply", "camera.json", "tools.json",          "achieved.json"};
 constexpr std::array<std::string_view, 6> kFolders{"sessions", "painting", "images",
                                                    "cache",    "screens",  "plan_versions"};
 

@@ -6,8 +6,7 @@
 namespace arthronaut::cases {
 
 // By its place alone, whether it is there or not: what this program keeps in a case and reads back, and
-// whatever lies in the case's own folders (sessions, painting, ...). Reports and comparisons beside these are
-// not.
+// whatever lies in the case's own folders (sessions, painting, ...). Reports beside these are not.
 [[nodiscard]] bool is_own_file(const std::filesystem::path& file);
 
 }  // namespace arthronaut::cases

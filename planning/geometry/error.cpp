@@ -1,6 +1,5 @@
 #include "planning/geometry/error.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 
@@ -10,11 +9,21 @@ namespace {
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
+// U+0080 to U+009F in UTF-8, some of which a terminal obeys.
+bool is_high_control(const std::string& text, std::size_t at) {
+  return text[at] == '\xc2' && at + 1 < text.size() && static_cast<unsigned char>(text[at + 1]) >= 0x80 &&
+         static_cast<unsigned char>(text[at + 1]) < 0xa0;
+}
+
 std::string one_line(const std::string& message) {
-  if (std::none_of(message.begin(), message.end(), is_control)) return message;
   std::string line;
-  for (const char c : message) {
-    if (!is_control(c)) {
+  for (std::size_t i = 0; i < message.size(); ++i) {
+    const char c = message[i];
+    if (is_high_control(message, i)) {
+      std::array<char, 7> code{};
+      (void)std::snprintf(code.data(), code.size(), "\\u%04x", static_cast<unsigned char>(message[++i]));
+      line += code.data();
+    } else if (!is_control(c)) {
       line += c;
     } else if (c == '\n') {
       line += "\\n";

@@ -117,8 +117,7 @@ std::optional<cases::CaseImage> store_new_image(const fs::path& folder, const ca
 }
 
 // Of the bones that were added, and of no other: one that is now a mesh is no longer of the images.
-void save_studies_of(const fs::path& folder, const BoneImport& import) {
-  cases::Studies studies = cases::load_studies(folder);
+void save_studies_of(const fs::path& folder, const BoneImport& import, cases::Studies studies) {
   for (const ImportedBone& imported : import.bones) {
     studies.erase(imported.bone.kind);
     if (!import.origin.is_empty()) studies[imported.bone.kind] = import.origin;
@@ -131,8 +130,7 @@ void save_studies_of(const fs::path& folder, const BoneImport& import) {
 }
 
 // Those of the bones that were added take the place of what was said of the bones before them.
-void save_doubts_of(const fs::path& folder, const BoneImport& import) {
-  cases::BoneDoubts doubts = cases::load_bone_doubts(folder);
+void save_doubts_of(const fs::path& folder, const BoneImport& import, cases::BoneDoubts doubts) {
   for (const ImportedBone& imported : import.bones) doubts[imported.bone.kind] = imported.doubts;
   cases::save_bone_doubts(folder, doubts);
 }
@@ -150,19 +148,22 @@ void save_new(const fs::path& folder, cases::Case& contents, const BoneImport& i
   files::make_whole_folder(folder, [&](const fs::path& unfinished) {
     if (const auto image = store_new_image(unfinished, contents, import)) contents.images.push_back(*image);
     cases::save_case(unfinished, contents);
-    save_doubts_of(unfinished, import);
+    save_doubts_of(unfinished, import, {});
     if (!import.identity.is_empty()) cases::save_identity(unfinished, import.identity);
-    save_studies_of(unfinished, import);
+    save_studies_of(unfinished, import, {});
   });
 }
 
 // The image, the largest, first: a disk that it fills is as it was before.
 void save_into(const fs::path& folder, cases::Case& target, const BoneImport& import) {
+  // What cannot be read is found out before anything is forgotten or written.
+  cases::BoneDoubts doubts = cases::load_bone_doubts(folder);
+  cases::Studies studies = cases::load_studies(folder);
   const auto image = store_new_image(folder, target, import);
   try {
     forget_replaced(folder, target, import);
     // Before its bone: of a doubt too many, after a crash, nobody drills wrongly.
-    save_doubts_of(folder, import);
+    save_doubts_of(folder, import, std::move(doubts));
     put_bones(target, import);
     if (image) target.images.push_back(*image);
     cases::save_case(folder, target);
@@ -172,7 +173,7 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
     throw;
   }
   if (!import.identity.is_empty()) cases::save_identity(folder, import.identity);
-  save_studies_of(folder, import);
+  save_studies_of(folder, import, std::move(studies));
 }
 
 }  // namespace

@@ -170,7 +170,6 @@ TEST_F(PlanCommand, VersionsAreKeptComparedAndTaken) {
   EXPECT_LT((taken.entry_mm - knee_.plan.tunnels.at(bones::BoneKind::Tibia).entry_mm).norm(), 1e-6);
 }
 
-// One bundle after the other gives two tunnels; none of them is ever shown or changed for the other.
 // Where no tunnel is planned the list is empty: never null.
 TEST_F(PlanCommand, JsonSaysWhatItIs) {
   EXPECT_EQ(run({"plan", "--bone", "femur", "--remove"}).exit_code, 0);
@@ -183,6 +182,7 @@ TEST_F(PlanCommand, JsonSaysWhatItIs) {
   }
 }
 
+// One bundle after the other gives two tunnels; none of them is ever shown or changed for the other.
 TEST_F(PlanCommand, TwoBundlesArePlannedShownExportedAndRemoved) {
   const auto am = run({"plan", "--bone", "femur", "--default", "--type", "am", "--json"});
   ASSERT_EQ(am.exit_code, 0) << am.output << am.errors;

@@ -110,7 +110,6 @@ TEST_F(SegmentCommand, DoubtsBonesWithoutSurroundings) {
   EXPECT_THAT(segment().output, HasSubstr("No voxel is 0: --label says which of the labels are bones."));
 }
 
-// What cannot be is said before anything is grown, and nothing is written.
 // Neither the patient's images nor the strokes are written over, and what no reader would take for a volume
 // is not written at all.
 TEST_F(SegmentCommand, RefusesAnOutputThatWouldLoseSomething) {
@@ -136,6 +135,7 @@ TEST_F(SegmentCommand, RefusesAnOutputThatWouldLoseSomething) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "labels.nrrd"));
 }
 
+// What cannot be is said before anything is grown, and nothing is written.
 TEST_F(SegmentCommand, RefusesWhatItCannotJudge) {
   const auto unnamed = segment({"--report", folder_ / "quality.pdf"});
   EXPECT_EQ(unnamed.exit_code, 2);

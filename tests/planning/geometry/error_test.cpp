@@ -14,8 +14,10 @@ TEST(Error, NamesTheFileThePlaceAndTheReason) {
 
 // What a message quotes is whatever stood in a file: a log takes a line, a terminal takes no commands.
 TEST(Error, IsOneLineWhateverItQuotes) {
-  const std::string quoted = "a\nb\r\tc\x1b[2J\x7f";
-  const std::string shown = "a\\nb\\r\\tc\\x1b[2J\\x7f";
+  const std::string quoted =
+      "a\nb\r\tc\x1b[2J\x7f\xc2\x9b"
+      "2J";
+  const std::string shown = "a\\nb\\r\\tc\\x1b[2J\\x7f\\u009b2J";
   EXPECT_EQ(InvalidInput("is \"" + quoted + "\"").what(), "is \"" + shown + "\"");
   EXPECT_EQ(InvalidInput("file", quoted, quoted).what(), "file: " + shown + ": " + shown);
   EXPECT_EQ(IoError(quoted).what(), shown);
