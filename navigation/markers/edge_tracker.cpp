@@ -7,6 +7,7 @@
 #include "navigation/markers/declaration.h"
 #include "navigation/markers/linear_image.h"
 #include "navigation/markers/marker_track.h"
+#include "navigation/markers/seen_code.h"
 #include "navigation/markers/square_search.h"
 #include "planning/geometry/error.h"
 
@@ -159,7 +160,7 @@ class EdgeTracker final : public MarkerTracker {
       auto code = read_code(frame.image, frame.camera, square.tangent, codes_);
       // Nothing that is tracked is doubted for what was read in part, and what is read in part where another
       // marker stands is a part of that one.
-      if (!code && pass == Pass::Covered) {
+      if (!code && (pass == Pass::Covered || search_.has_highlight(square))) {
         code = read_covered_code(frame.image, frame.camera, square.tangent, codes_);
         if (code && (observations_[code->index].is_tracked() || is_of_another(square))) continue;
       }

@@ -1,8 +1,8 @@
 // What a track takes from frame to frame, and how it comes back after a loss.
 #include <algorithm>
 
-#include "navigation/markers/code_reader.h"
 #include "navigation/markers/marker_track.h"
+#include "navigation/markers/seen_code.h"
 
 namespace arthronaut::markers {
 

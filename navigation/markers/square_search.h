@@ -58,6 +58,8 @@ class SquareSearch {
   }
   // A pixel of it from here on tells nothing: at least half of what it shows is saturated.
   static constexpr int kWhite = 235;
+  // Something in the box about the square, or hardly beside it, is saturated in that frame.
+  [[nodiscard]] bool has_highlight(const FoundSquare& square) const;
 
  private:
   struct Region {

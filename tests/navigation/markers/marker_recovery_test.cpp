@@ -2,8 +2,8 @@
 // and never taken for another one.
 #include <gtest/gtest.h>
 
-#include "navigation/markers/code_reader.h"
 #include "navigation/markers/marker_tracker.h"
+#include "navigation/markers/seen_code.h"
 #include "tests/navigation/markers/rendered_marker.h"
 
 namespace arthronaut::markers {
@@ -130,6 +130,36 @@ TEST_F(MarkerRecovery, KnowsACoveredCodeFromEveryOther) {
   const Eigen::Quaterniond quarter(Eigen::AngleAxisd(geometry::kPi / 2, Eigen::Vector3d::UnitZ()));
   const RigidTransform turned{pose_.rotation * quarter, pose_.translation_mm};
   EXPECT_FALSE(see_code(image, camera_, turned, 4, standard, 0).is_confirmed());
+}
+
+// A highlight takes a quarter of the inside, wherever it lies: the cells that it takes a part of say by what
+// is left of them which marker it is, and which way up. No other code or turn is ever confirmed: what glows
+// at its rim is not bright. The outline is whole, so that the marker is found in the first picture.
+TEST_F(MarkerRecovery, KnowsACodeByThePartsOfCellsThatAHighlightLeaves) {
+  const auto without = picture(pose_);
+  const LinearTable table(1.6);
+  const auto standard = std::span(codes_).first(5);
+  for (const double x_mm : {-1.2, -0.6, 0.0, 0.6, 1.2}) {
+    for (const double y_mm : {-1.2, -0.6, 0.0, 0.6, 1.2}) {
+      SCOPED_TRACE(::testing::Message() << "highlight at " << x_mm << ", " << y_mm << " mm");
+      auto shown = without;
+      const Eigen::Vector2d place = seen_at(pose_, x_mm, y_mm);
+      shown.shine(place.x(), place.y(), 13, kHighlight);
+      const LinearImage image(shown.view(), table);
+      for (int turn = 0; turn < 4; ++turn) {
+        const Eigen::Quaterniond turned(
+            Eigen::AngleAxisd(turn * geometry::kPi / 2, Eigen::Vector3d::UnitZ()));
+        const RigidTransform pose{pose_.rotation * turned, pose_.translation_mm};
+        for (std::size_t i = 0; i < standard.size(); ++i)
+          EXPECT_EQ(see_code(image, camera_, pose, 4, standard, i).is_confirmed(), i == 0 && turn == 0)
+              << "marker " << i << " turned by " << turn;
+      }
+      tracker_->reset();
+      const auto seen = tracker_->track(shown.view(), camera_, 0);
+      expect_near(seen[0], pose_);
+      EXPECT_FALSE(seen[1].is_tracked());
+    }
+  }
 }
 
 // Where nothing is but tissue, nothing is read.

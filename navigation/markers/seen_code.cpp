@@ -1,0 +1,260 @@
+#include "navigation/markers/seen_code.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "navigation/markers/cell_light.h"
+
+namespace arthronaut::markers {
+namespace {
+
+constexpr double kSpread = 0.2;  // of the samples within a cell
+constexpr int kMinSamples = 3;   // of five that are not saturated
+constexpr double kMinRange = 4;  // in light
+// How far a cell may be from its level, as a share of the range; what has to agree.
+constexpr double kAgrees = 0.3;
+constexpr double kMinAgreeing = 0.45;
+constexpr int kMinAgreeingInside = 7, kMaxOppositeInside = 3, kClearLead = 4, kLead = 5;
+constexpr int kMinCoveredScore = 6;
+constexpr int kSeePasses = 4;
+// Of a cell that a highlight may hide a part of: its parts, how far from its middle they reach, so that its
+// neighbours' smear does not, how many of them have to be dark, and how many how bright. Where a highlight
+// fades over a dark cell there is a band of any brightness, but it is narrow.
+constexpr int kPartsAcross = 6, kMinDarkParts = 4, kMinBrightParts = 15;
+constexpr double kPartsReach = 0.3, kPartAgrees = 0.2;
+
+// A cell, or one of the margin, as the picture shows it.
+struct SeenCell {
+  double value = 0, x = 0, y = 0;
+  int row = 0, column = 0;
+  bool is_margin = false, is_inside = false;
+  bool is_white = false;  // saturated or out of the view: the value says nothing
+  int parts = -1;         // of an inner cell that is white or beside a white one: index of its parts
+};
+struct CellParts {
+  std::array<float, kPartsAcross * kPartsAcross> light;
+  int count;  // that are not saturated
+};
+struct SeenSquare {
+  std::array<SeenCell, (kMaxCells + 2) * (kMaxCells + 2)> all;
+  std::array<CellParts, (kMaxCells - 2) * (kMaxCells - 2)> parts;
+  int count = 0;
+
+  [[nodiscard]] std::span<const SeenCell> cells() const {
+    return std::span(all).first(static_cast<std::size_t>(count));
+  }
+};
+enum class Shade : std::uint8_t { Dark, Bright, Neither, Unseen };
+using Shades = std::array<Shade, (kMaxCells + 2) * (kMaxCells + 2)>;
+
+// `at` takes a place on the marker (in sides, y up) to the camera frame.
+template <typename Place>
+float light_at(const LinearImage& image, const camera::CameraModel& camera, const Place& at, double x,
+               double y) {
+  constexpr float kNone = -1;
+  const auto pixel = camera.project(at(x, -y));
+  if (!pixel || !camera.is_inside_view(*pixel) || !image.contains(pixel->x(), pixel->y())) return kNone;
+  return image.sample(static_cast<float>(pixel->x()), static_cast<float>(pixel->y()));
+}
+
+template <typename Place>
+void see_cells(const LinearImage& image, const camera::CameraModel& camera, int cells, const Place& at,
+               SeenSquare& seen) {
+  const int wide = cells + 2;
+  seen.count = wide * wide;
+  for (int i = 0; i < seen.count; ++i) {
+    SeenCell& cell = seen.all[i];
+    cell.row = i / wide - 1;
+    cell.column = i % wide - 1;
+    cell.is_margin = cell.row < 0 || cell.column < 0 || cell.row >= cells || cell.column >= cells;
+    cell.is_inside = cell.row > 0 && cell.column > 0 && cell.row + 1 < cells && cell.column + 1 < cells;
+    // The margin is no wider than a cell: its half next to the square.
+    const auto middle = [cells](int k) { return k < 0 ? -0.4 : k >= cells ? cells + 0.4 : k + 0.5; };
+    cell.x = middle(cell.column) / cells - 0.5;
+    cell.y = middle(cell.row) / cells - 0.5;
+    double sum = 0;
+    int samples = 0;
+    for (int k = 0; k < 5; ++k) {
+      const double spread = (cell.is_margin ? 0.5 : 1) * kSpread / cells;
+      const double dx = k == 0 ? 0 : (k % 2 ? spread : -spread), dy = k == 0 ? 0 : (k < 3 ? spread : -spread);
+      const float value = light_at(image, camera, at, cell.x + dx, cell.y + dy);
+      if (value < 0) continue;
+      sum += value;
+      ++samples;
+    }
+    cell.is_white = samples < kMinSamples;
+    cell.value = sum / std::max(1, samples);
+  }
+}
+
+template <typename Place>
+void see_parts(const LinearImage& image, const camera::CameraModel& camera, int cells, const Place& at,
+               SeenSquare& seen) {
+  int count = 0;
+  const auto is_near_white = [&](int i) {
+    for (int row = -1; row <= 1; ++row) {
+      for (int column = -1; column <= 1; ++column) {
+        if (seen.all[i + row * (cells + 2) + column].is_white) return true;
+      }
+    }
+    return false;
+  };
+  for (int i = 0; i < seen.count; ++i) {
+    SeenCell& cell = seen.all[i];
+    if (!cell.is_inside || !is_near_white(i)) continue;
+    cell.parts = count++;
+    CellParts& parts = seen.parts[cell.parts];
+    parts.count = 0;
+    const auto off = [cells](int k) { return kPartsReach / cells * (2.0 * k / (kPartsAcross - 1) - 1); };
+    for (int k = 0; k < kPartsAcross * kPartsAcross; ++k) {
+      const float value =
+          light_at(image, camera, at, cell.x + off(k % kPartsAcross), cell.y + off(k / kPartsAcross));
+      if (value >= 0) parts.light[parts.count++] = value;
+    }
+  }
+}
+
+Shade shade_of(const SeenCell& cell, const SeenSquare& seen, const LightFit& fit) {
+  const double bias = fit.bias(cell.x, cell.y), gain = std::max(fit.gain(cell.x, cell.y), 1e-3);
+  if (cell.parts < 0) {
+    const double level = (cell.value - bias) / gain;
+    if (cell.is_white) return Shade::Unseen;
+    return std::abs(level) < kAgrees       ? Shade::Dark
+           : std::abs(level - 1) < kAgrees ? Shade::Bright
+                                           : Shade::Neither;
+  }
+  const CellParts& parts = seen.parts[cell.parts];
+  int dark = 0, bright = 0;
+  for (int k = 0; k < parts.count; ++k) {
+    const double level = (parts.light[k] - bias) / gain;
+    dark += level < kAgrees;
+    bright += std::abs(level - 1) < kPartAgrees;
+  }
+  if (dark >= kMinDarkParts) return Shade::Dark;
+  return dark == 0 && bright >= kMinBrightParts ? Shade::Bright : Shade::Unseen;
+}
+
+// What the cells say of one code whose top-left is corner `turn` of what they were seen on. What covers is
+// left out step by step, beginning with the light that most of the cells agree on.
+SeenCode judge_cells(const SeenSquare& seen, std::span<const MarkerCode> codes, std::size_t index, int turn) {
+  const MarkerCode& code = codes[index];
+  const int cells = code.cells;
+  // The marker's cell that is seen here.
+  const auto expected = [cells](const MarkerCode& of, const SeenCell& cell, int turned) {
+    if (cell.is_margin) return Shade::Bright;
+    const int there = turned_cell(cell.row, cell.column, (4 - turned) % 4, cells);
+    return of.is_bright(there / cells, there % cells) ? Shade::Bright : Shade::Dark;
+  };
+  LightFit fit;
+  for (int pass = 0; pass < kSeePasses; ++pass) {
+    const LightFit last = fit;
+    const double range = last.gain(0, 0);
+    fit = LightFit();
+    for (const SeenCell& cell : seen.cells()) {
+      if (cell.is_white) continue;
+      const bool is_bright = expected(code, cell, turn) == Shade::Bright;
+      double weight = 1;
+      if (pass > 0) {
+        const double error = (cell.value - last.light(cell.x, cell.y, is_bright)) / (kAgrees * range);
+        weight = 1 / ((1 + error * error) * (1 + error * error));
+      }
+      fit.add(weight, cell.x, cell.y, cell.value, is_bright);
+    }
+    // A slope of the light is not expected to be larger than the light.
+    fit.solve(0.3);
+    if (!(fit.gain(0, 0) > kMinRange)) return {};
+  }
+  SeenCode result;
+  Shades shades;
+  for (int i = 0; i < seen.count; ++i) {
+    const SeenCell& cell = seen.all[i];
+    shades[i] = shade_of(cell, seen, fit);
+    if (shades[i] == Shade::Unseen) continue;
+    const Shade should = expected(code, cell, turn);
+    ++result.seen;
+    result.agreeing += shades[i] == should;
+    if (!cell.is_inside) continue;
+    ++result.seen_inside;
+    result.agreeing_inside += shades[i] == should;
+    result.opposite_inside += shades[i] != should && shades[i] != Shade::Neither;
+  }
+  if (!result.agrees()) return result;  // most of what is looked at is no marker
+  int other_score = -seen.count;
+  for (std::size_t other = 0; other < codes.size(); ++other) {
+    for (int other_turn = 0; other_turn < 4; ++other_turn) {
+      if (other == index && other_turn == turn) continue;
+      int score = 0;
+      for (int i = 0; i < seen.count; ++i) {
+        if (!seen.all[i].is_inside || shades[i] == Shade::Unseen || shades[i] == Shade::Neither) continue;
+        score += shades[i] == expected(codes[other], seen.all[i], other_turn) ? 1 : -1;
+      }
+      other_score = std::max(other_score, score);
+    }
+  }
+  result.lead = result.agreeing_inside - result.opposite_inside - other_score;
+  return result;
+}
+
+// How much brighter the margin is than the border, both as far as they are seen.
+double margin_contrast(const SeenSquare& seen) {
+  std::array<double, 2> sum{}, n{};
+  for (const SeenCell& cell : seen.cells()) {
+    if (cell.is_inside || cell.is_white) continue;
+    sum[cell.is_margin] += cell.value;
+    n[cell.is_margin] += 1;
+  }
+  return n[0] < 8 || n[1] < 10 ? 0 : sum[1] / n[1] - sum[0] / n[0];
+}
+
+}  // namespace
+
+bool SeenCode::agrees() const {
+  return agreeing > kMinAgreeing * seen && agreeing_inside >= kMinAgreeingInside &&
+         opposite_inside <= kMaxOppositeInside;
+}
+
+bool SeenCode::is_confirmed() const {
+  return agrees() && lead >= (opposite_inside == 0 ? kClearLead : kLead);
+}
+
+SeenCode see_code(const LinearImage& image, const camera::CameraModel& camera,
+                  const geometry::RigidTransform& camera_from_marker, double size_mm,
+                  std::span<const MarkerCode> codes, std::size_t index) {
+  SeenSquare seen;
+  const int cells = codes[index].cells;
+  const auto at = [&](double x, double y) {
+    return camera_from_marker * Eigen::Vector3d(x * size_mm, y * size_mm, 0);
+  };
+  see_cells(image, camera, cells, at, seen);
+  see_parts(image, camera, cells, at, seen);
+  return judge_cells(seen, codes, index, 0);
+}
+
+std::optional<ReadCode> read_covered_code(const LinearImage& image, const camera::CameraModel& camera,
+                                          const Corners& square, std::span<const MarkerCode> codes) {
+  const auto homography = square_homography(square, 1.0);
+  if (codes.empty() || !homography) return std::nullopt;
+  SeenSquare seen;
+  const int cells = codes.front().cells;
+  const auto at = [&](double x, double y) -> Eigen::Vector3d {
+    return *homography * Eigen::Vector3d(x, y, 1);
+  };
+  see_cells(image, camera, cells, at, seen);
+  if (margin_contrast(seen) < kMinRange) return std::nullopt;
+  see_parts(image, camera, cells, at, seen);
+  std::optional<ReadCode> best;
+  int most = 0;
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    for (int turn = 0; turn < 4; ++turn) {
+      const SeenCode code = judge_cells(seen, codes, i, turn);
+      const int score = code.agreeing_inside - 2 * code.opposite_inside;
+      if (!code.is_confirmed() || score < kMinCoveredScore || score <= most) continue;
+      most = score;
+      best = ReadCode{static_cast<int>(i), turn, code.opposite_inside};
+    }
+  }
+  return best;
+}
+
+}  // namespace arthronaut::markers
