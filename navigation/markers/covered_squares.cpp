@@ -117,6 +117,76 @@ int find_sides(const std::vector<Eigen::Vector2d>& outline, double size, const E
 
 }  // namespace
 
+bool SquareSearch::has_highlight(const FoundSquare& square) const {
+  Eigen::Vector2d low = square.corners_px[0], high = low;
+  for (const Eigen::Vector2d& corner : square.corners_px) {
+    low = low.cwiseMin(corner);
+    high = high.cwiseMax(corner);
+  }
+  const auto small = [this](double at, int from) {
+    return static_cast<int>(std::floor((at - from) / shrink_));
+  };
+  const int left = std::max(0, small(low.x(), left_)), right = std::min(width_ - 1, small(high.x(), left_));
+  const int top = std::max(0, small(low.y(), top_)), bottom = std::min(height_ - 1, small(high.y(), top_));
+  for (int y = top; y <= bottom; ++y) {
+    const std::uint8_t* row = &small_[static_cast<std::size_t>(y) * width_];
+    for (int x = left; x <= right; ++x) {
+      if (row[x] >= kWhite) return true;
+    }
+  }
+  return false;
+}
+
+std::span<const FoundSquare> SquareSearch::find_across_highlights(const camera::CameraModel& camera) {
+  squares_.clear();
+  if (white_pixels_ < kMinWhitePixels) return squares_;
+  sum_rows(true);
+  find_regions(Contrast::Usual, true);
+  if (regions_.empty()) return squares_;
+  // White has joined what it lies on, and is no part of its outline.
+  for (std::size_t i = 0; i < labels_.size(); ++i) {
+    if (labels_[i] < 0 || was_dark_[i]) continue;
+    regions_[labels_[i]].has_white = true;
+    labels_[i] = -1;
+  }
+  covered_.outlines = 0;
+  const std::size_t first = std::exchange(covered_.next_across, 0);
+  for (std::size_t k = 0; k < regions_.size(); ++k) {
+    const std::size_t label = (first + k) % regions_.size();
+    const Region& region = regions_[label];
+    if (!region.has_white || !may_be_square(region, kLeastFilled)) continue;
+    if (is_done_or_takes_outline()) {
+      covered_.next_across = label;
+      break;
+    }
+    add_squares_of(label, camera);
+  }
+  return squares_;
+}
+
+// Where the picture is white, and one pixel about it: a highlight glows.
+void SquareSearch::mark_white_pixels() {
+  was_dark_ = dark_;
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      if (small_[static_cast<std::size_t>(y) * width_ + x] < kWhite) continue;
+      const int left = std::max(0, x - 1), right = std::min(width_ - 1, x + 1);
+      for (int row = std::max(0, y - 1); row <= std::min(height_ - 1, y + 1); ++row)
+        std::fill_n(&dark_[static_cast<std::size_t>(row) * width_ + left], right - left + 1, 1);
+    }
+  }
+}
+
+void SquareSearch::add_squares_of(std::size_t label, const camera::CameraModel& camera) {
+  outline_.clear();
+  trace_outline(static_cast<int>(label), regions_[label], camera);
+  combine_sides(camera);
+  FoundSquare square;
+  if (outline_square(static_cast<int>(label), regions_[label], camera, square) &&
+      squares_.size() < kMaxSquares)
+    squares_.push_back(square);
+}
+
 std::span<const FoundSquare> SquareSearch::find_covered(const camera::CameraModel& camera) {
   const bool has_highlights = white_pixels_ >= kMinWhitePixels;
   sum_rows(has_highlights);
@@ -131,12 +201,7 @@ std::span<const FoundSquare> SquareSearch::find_covered(const camera::CameraMode
         covered_.next = label;
         return squares_;
       }
-      outline_.clear();
-      trace_outline(static_cast<int>(label), region, camera);
-      combine_sides(camera);
-      FoundSquare square;
-      if (outline_square(static_cast<int>(label), region, camera, square) && squares_.size() < kMaxSquares)
-        squares_.push_back(square);
+      add_squares_of(label, camera);
     }
   }
   covered_.is_at_pieces = has_highlights;

@@ -20,7 +20,7 @@ constexpr std::size_t kLikelyCandidates = 256;  // memory set aside
 // Direct fits in one frame, counted in small ones; three of these make a whole one.
 constexpr int kFitsAFrame = 200;
 // Squares with its code in which a marker is looked for, in one frame.
-constexpr int kMostSquares = 8;
+constexpr int kMostSquares = 3;
 constexpr std::size_t kSearchesForCovered = 3;
 constexpr std::int64_t kUsualIntervalNs = 33'333'333;
 // A marker that was sought in every frame for so long, and is not there, is sought in every few frames.
@@ -130,6 +130,7 @@ class EdgeTracker final : public MarkerTracker {
         take_squares(search_.find(frame.camera, other), frame, Pass::OtherContrast);
       }
     }
+    if (is_missing()) take_squares(search_.find_across_highlights(frame.camera), frame, Pass::Covered);
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
       const std::size_t i = (frames_ + k) % tracks_.size();
       if (!observations_[i].is_tracked()) recover(i, frame);

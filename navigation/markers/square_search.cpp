@@ -88,32 +88,13 @@ std::span<const FoundSquare> SquareSearch::find(const camera::CameraModel& camer
   return squares_;
 }
 
-bool SquareSearch::has_highlight(const FoundSquare& square) const {
-  Eigen::Vector2d low = square.corners_px[0], high = low;
-  for (const Eigen::Vector2d& corner : square.corners_px) {
-    low = low.cwiseMin(corner);
-    high = high.cwiseMax(corner);
-  }
-  const auto small = [this](double at, int from) {
-    return static_cast<int>(std::floor((at - from) / shrink_));
-  };
-  const int left = std::max(0, small(low.x(), left_)), right = std::min(width_ - 1, small(high.x(), left_));
-  const int top = std::max(0, small(low.y(), top_)), bottom = std::min(height_ - 1, small(high.y(), top_));
-  for (int y = top; y <= bottom; ++y) {
-    const std::uint8_t* row = &small_[static_cast<std::size_t>(y) * width_];
-    for (int x = left; x <= right; ++x) {
-      if (row[x] >= kWhite) return true;
-    }
-  }
-  return false;
-}
-
-void SquareSearch::find_regions(Contrast contrast) {
+void SquareSearch::find_regions(Contrast contrast, bool across_white) {
   squares_.clear();
   squares_.reserve(kMaxSquares);
   regions_.clear();
   if (width_ < 2 * kMinSide || height_ < 2 * kMinSide) return;
   mark_dark_pixels(kRadius, dark_percent(contrast));
+  if (across_white) mark_white_pixels();
   label_regions();
 }
 

@@ -45,6 +45,9 @@ class SquareSearch {
   // So many of them at a time (kSquaresAtATime): what is left is found by the next calls, from where this one
   // stopped.
   [[nodiscard]] std::span<const FoundSquare> find_covered(const camera::CameraModel& camera);
+  // Squares on which highlights lie: dark regions count as one where something white, with the pixel about
+  // it, joins them, and their sides are sought as find_covered() does. As many at a time; few, and cheap.
+  [[nodiscard]] std::span<const FoundSquare> find_across_highlights(const camera::CameraModel& camera);
   void start_over() { covered_ = {}; }  // another source: from the top again
 
   // The frame that was looked at last, made smaller: pixel (x, y) shows frame pixels from left + times * x
@@ -64,10 +67,12 @@ class SquareSearch {
  private:
   struct Region {
     int left, right, top, bottom, area;
+    bool has_white = false;
   };
   void shrink(const camera::GrayView& frame, const camera::CameraModel& camera);
   // Dark regions that may be of a square.
-  void find_regions(Contrast contrast);
+  void find_regions(Contrast contrast, bool across_white = false);
+  void mark_white_pixels();
   [[nodiscard]] bool may_be_square(const Region& region, int least_filled) const;
   void sum_rows(bool without_white);
   void mark_dark_pixels(int radius, int percent);
@@ -76,6 +81,8 @@ class SquareSearch {
                       FoundSquare& square);
   // Adds the region's to the outline.
   void trace_outline(int label, const Region& region, const camera::CameraModel& camera);
+  // Those of a region's straight parts, and the one that its hull makes.
+  void add_squares_of(std::size_t label, const camera::CameraModel& camera);
   // The likeliest squares out of the straight parts of the outline: of four sides, or of three of which the
   // ends show where the last one is.
   void combine_sides(const camera::CameraModel& camera);
@@ -92,8 +99,8 @@ class SquareSearch {
   int left_ = 0, top_ = 0;      // of the shrunk picture's first pixel, in frame pixels
   int width_ = 0, height_ = 0;  // of the shrunk picture
   std::vector<std::uint8_t> small_;
-  std::vector<std::uint32_t> sums_;  // integral image of small_, one row and column larger
-  std::vector<std::uint8_t> dark_;
+  std::vector<std::uint32_t> sums_;            // integral image of small_, one row and column larger
+  std::vector<std::uint8_t> dark_, was_dark_;  // was_dark_: before white was marked, too
   int white_pixels_ = 0;
   std::vector<int> labels_, parents_;
   std::vector<Region> regions_;
@@ -105,7 +112,8 @@ class SquareSearch {
   struct {
     std::size_t next = 0;
     bool is_at_pieces = false;
-    int outlines = 0;  // that this call has looked at
+    std::size_t next_across = 0;  // and the one across highlights, at this region
+    int outlines = 0;             // that this call has looked at
   } covered_;
 };
 

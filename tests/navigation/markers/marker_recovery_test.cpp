@@ -80,6 +80,17 @@ TEST_F(MarkerRecovery, FindsAMarkerThatHighlightsCutInTwo) {
   expect_found(shown);
 }
 
+// From nothing, though a highlight on each side cuts its outline into more pieces than two.
+TEST_F(MarkerRecovery, FindsAMarkerThatHighlightsCutOnEverySide) {
+  auto shown = picture(pose_);
+  for (const Eigen::Vector2d& place_mm : {Eigen::Vector2d(-1.67, 0), Eigen::Vector2d(1.67, 0),
+                                          Eigen::Vector2d(0, -1.67), Eigen::Vector2d(0, 1.67)}) {
+    const Eigen::Vector2d place = seen_at(pose_, place_mm.x(), place_mm.y());
+    shown.shine(place.x(), place.y(), 7, kHighlight);
+  }
+  expect_found(shown);
+}
+
 // From nothing, though something as dark as blood, ragged, lies across its margin and joins its square to
 // what is dark beside it.
 TEST_F(MarkerRecovery, FindsAMarkerWhoseMarginIsStained) {
