@@ -18,14 +18,12 @@ using Eigen::Vector3d;
 constexpr int kSectors = 8;
 constexpr double kStretch_mm = 4;
 constexpr double kBin_mm = 2;  // of the levels
-// From the wall inwards and outwards. A bored bone heals with a dense rim, thin as a cortex: further out the
-// grey is the marrow's again.
+// From the wall inwards, and from it or from the rim about it outwards.
 constexpr double kInward_mm = 1.8, kOutward_mm = 1.2, kBesideWallFrom_mm = 0.6;
-constexpr double kBesideMetal_mm = 1.5;
-// Near the bone's own surface its own edge is in the picture.
-constexpr double kLeastDepth_mm = 0.9;
-// The scanner's blur, voxel included.
-constexpr double kFirstBlur_mm = 1.0, kBlur_mm = 0.5;
+// Of the profile that tells whether there is a rim.
+constexpr double kProfileTo_mm = 3, kPoint_mm = 0.2;
+// Seen with so much blur at first, the wall is found from further off.
+constexpr double kFirstBlur_mm = 1.0;
 // A station with more metal than this inside the bore or beside its wall is passed over as a whole: what is
 // left of its wall is seen one-sidedly, and through the metal's blur.
 constexpr double kMetalOfBin = 0.02, kBesideWall_mm = 1.5;
@@ -73,9 +71,6 @@ struct Level {
   }
 };
 
-double cumulated(double z) { return 0.5 * std::erfc(-z * M_SQRT1_2); }
-double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI); }
-
 class Fit {
  public:
   Fit(const std::vector<WallVoxel>& voxels, const Bore& bore, double from_mm, double to_mm, Wall wall)
@@ -88,22 +83,39 @@ class Fit {
     radius_.assign(stretches_, bore.radius_mm);
   }
 
-  TunnelFit run() {
-    constexpr int kSteps = 24;
-    bool is_settled = false;
-    for (int step = 0; step < kSteps; ++step) {
-      const double blur = std::max(kBlur_mm, kFirstBlur_mm * std::pow(0.8, step));
-      take_levels(blur);
-      const double moved = improve(blur);
-      if (!(moved < 1e3)) return {};
-      is_settled = blur == kBlur_mm && moved < 0.004;
-      if (is_settled) break;
+  // `known`: not to be sought.
+  TunnelFit run(const std::optional<WallProfile>& known) {
+    if (known) profile_ = *known;
+    if (!settle(kFirstBlur_mm)) return {};
+    // The axis that is found with a rim tells better what the rim is.
+    constexpr int kRounds = 3;
+    for (int round = 0; round < kRounds && !known && wall_ == Wall::Clear; ++round) {
+      const bool had_rim = profile_.has_rim();
+      const WallProfile seen = explain_wall(mean_profile(), noise_hu_);
+      profile_.wall_sigma_mm = seen.wall_sigma_mm;
+      if (!seen.has_rim() && !had_rim) break;
+      profile_ = seen.has_rim() ? seen : WallProfile{.wall_sigma_mm = seen.wall_sigma_mm};
+      for (double& radius : radius_) radius += seen.wall_mm;
+      if (!settle(profile_.blur_mm)) return {};
     }
-    take_levels(kBlur_mm);
     return result();
   }
 
  private:
+  // From a blur that sees far to the scanner's own. False where nothing is to be found.
+  bool settle(double first_blur_mm) {
+    constexpr int kSteps = 24;
+    for (int step = 0; step < kSteps; ++step) {
+      const double blur = std::max(profile_.blur_mm, first_blur_mm * std::pow(0.8, step));
+      take_levels(blur);
+      const double moved = improve(blur);
+      if (!(moved < 1e3)) return false;
+      if (blur == profile_.blur_mm && moved < 0.004) break;
+    }
+    take_levels(profile_.blur_mm);
+    return true;
+  }
+
   [[nodiscard]] bool counts(const WallVoxel& voxel, const Placed& placed) const {
     if (wall_ == Wall::Screw) return true;
     return !voxel.is_metal && !voxel.is_by_metal && metal_of_bin_[placed.bin].mean() < kMetalOfBin;
@@ -137,6 +149,7 @@ class Fit {
         metal_of_bin_[placed->bin].add(voxel.is_metal ? 1 : 0);
     }
     outside_.assign(bins_ * kSectors, {});
+    rim_.assign(bins_ * kSectors, {});
     metal_.assign(stretches_, {});
     placed_.clear();
     for (std::size_t i = 0; i < voxels_.size(); ++i) {
@@ -144,9 +157,12 @@ class Fit {
       if (!placed) continue;
       const double off = placed->off - radius_[placed->stretch];
       if (off < -0.4) metal_[placed->stretch].add(voxels_[i].is_metal ? 1 : 0);
-      if (!counts(voxels_[i], *placed) || off > kOutward_mm || off < -kInward_mm - 1) continue;
+      const double beyond = off - profile_.rim_mm;
+      const std::size_t cell = placed->bin * kSectors + placed->sector;
+      if (!counts(voxels_[i], *placed) || beyond > kOutward_mm || off < -kInward_mm - 1) continue;
       if (off < -kBesideWallFrom_mm) inside_[placed->bin].add(voxels_[i].hu);
-      if (off > kBesideWallFrom_mm) outside_[placed->bin * kSectors + placed->sector].add(voxels_[i].hu);
+      if (beyond > kBesideWallFrom_mm) outside_[cell].add(voxels_[i].hu);
+      if (off > 0 && beyond < 0) rim_[cell].add(voxels_[i].hu);
       if (off > -kInward_mm) placed_.emplace_back(*placed, voxels_[i].hu);
     }
     std::vector<double> off_model;
@@ -163,15 +179,55 @@ class Fit {
   [[nodiscard]] std::optional<Model> model_at(const Placed& placed, double blur) const {
     const Level &in = inside_[placed.bin], &out = outside_[placed.bin * kSectors + placed.sector];
     if (in.count < 8 || out.count < 4) return std::nullopt;
-    const double z = (placed.off - radius_[placed.stretch]) / blur, a = in.mean(), b = out.mean();
-    return Model{a + (b - a) * cumulated(z), (b - a) * density(z) / blur,
+    const WallGrey grey = wall_grey(placed.off - radius_[placed.stretch], profile_.rim_mm, blur);
+    const double a = in.mean(), b = out.mean(), rim = rim_hu(b);
+    return Model{a * grey.inside + rim * grey.rim + b * grey.beyond,
+                 a * grey.inside_slope + rim * grey.rim_slope + b * grey.beyond_slope,
                  std::max(in.variance(), out.variance())};
   }
 
-  void assemble(double blur, Eigen::MatrixXd& normal, Eigen::VectorXd& right) const {
+  // Of the rim where `beyond_hu` is beyond it: in bone that is denser there is none.
+  [[nodiscard]] double rim_hu(double beyond_hu) const {
+    return profile_.has_rim() ? std::max(profile_.rim_hu, beyond_hu) : beyond_hu;
+  }
+
+  // The mean grey by the distance from the wall, of the cells with marrow beyond it. Each of them puts about
+  // as much into every point, so the levels are means of theirs, and wall and rim are theirs.
+  [[nodiscard]] std::vector<WallPoint> mean_profile() const {
+    std::vector<double> sizes, greys, off_greys;
+    for (const Level& out : outside_) {
+      if (out.count < 4) continue;
+      sizes.push_back(out.count);
+      greys.push_back(out.mean());
+    }
+    const double full = 0.5 * geometry::median(std::move(sizes), 0), grey = geometry::median(greys, 0);
+    for (const double one : greys) off_greys.push_back(std::abs(one - grey));
+    const double far_off = std::max(50.0, 3 * geometry::median(std::move(off_greys), 0));
+    std::vector<Level> means(static_cast<std::size_t>(std::lround((kInward_mm + kProfileTo_mm) / kPoint_mm)));
+    for (const WallVoxel& voxel : voxels_) {
+      const auto placed = place(voxel.p_mm);
+      if (!placed || !counts(voxel, *placed)) continue;
+      const Level &in = inside_[placed->bin], &out = outside_[placed->bin * kSectors + placed->sector];
+      if (in.count < 8 || out.count < full || std::abs(out.mean() - grey) > far_off) continue;
+      const double at = (placed->off - radius_[placed->stretch] + kInward_mm) / kPoint_mm;
+      if (at < 0 || at >= static_cast<double>(means.size())) continue;
+      means[static_cast<std::size_t>(at)].add(voxel.hu);
+    }
+    std::vector<WallPoint> points;
+    for (std::size_t i = 0; i < means.size(); ++i)
+      if (means[i].count > 0)
+        points.push_back({kPoint_mm * (static_cast<double>(i) + 0.5) - kInward_mm, means[i].mean(),
+                          static_cast<double>(means[i].count)});
+    return points;
+  }
+
+  // `by_eighth`: what each eighth of each stretch alone puts into `right`, as columns.
+  void assemble(double blur, Eigen::MatrixXd& normal, Eigen::VectorXd& right,
+                Eigen::MatrixXd* by_eighth = nullptr) const {
     const auto n = static_cast<Eigen::Index>(4 + stretches_);
     normal = Eigen::MatrixXd::Zero(n, n);
     right = Eigen::VectorXd::Zero(n);
+    if (by_eighth) *by_eighth = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(stretches_ * kSectors));
     for (const auto& [placed, hu] : placed_) {
       const auto model = model_at(placed, blur);
       if (!model) continue;
@@ -190,6 +246,11 @@ class Fit {
       normal(r, r) += weight * row[4] * row[4];
       right.head<4>() += weight * residual * row.head<4>();
       right[r] += weight * residual * row[4];
+      if (by_eighth) {
+        const auto eighth = static_cast<Eigen::Index>(placed.stretch * kSectors + placed.sector);
+        by_eighth->col(eighth).head<4>() += weight * residual * row.head<4>();
+        (*by_eighth)(r, eighth) += weight * residual * row[4];
+      }
     }
     normal.bottomLeftCorner(n - 4, 4) = normal.topRightCorner(4, n - 4).transpose();
     const double stiff = 1 / (kRadiusChange_mm * kRadiusChange_mm);
@@ -227,12 +288,16 @@ class Fit {
     std::vector<Stretch> result(stretches_);
     std::vector<double> seen(stretches_, 0), darker(stretches_, 0), all(stretches_, 0), in(stretches_, 0),
         out(stretches_, 0);
-    std::vector<Level> within(stretches_), beside(stretches_ * kSectors);
+    std::vector<Level> within(stretches_), beside(stretches_ * kSectors), beyond(stretches_ * kSectors);
     for (std::size_t bin = 0; bin < bins_; ++bin) {
       const std::size_t s = std::min(stretches_ - 1, (2 * bin + 1) * stretches_ / (2 * bins_));
       within[s].add(inside_[bin]);
-      for (std::size_t sector = 0; sector < kSectors; ++sector)
-        beside[s * kSectors + sector].add(outside_[bin * kSectors + sector]);
+      for (std::size_t sector = 0; sector < kSectors; ++sector) {
+        // A wall with a rim is seen where the rim is.
+        const std::size_t from = bin * kSectors + sector, to = s * kSectors + sector;
+        beside[to].add(profile_.has_rim() ? rim_[from] : outside_[from]);
+        beyond[to].add(outside_[from]);
+      }
     }
     for (std::size_t s = 0; s < stretches_; ++s) {
       const Level& a = within[s];
@@ -248,7 +313,7 @@ class Fit {
         seen[s] += weight;
         darker[s] += b.mean() > a.mean() ? weight : -weight;
         in[s] += weight * a.mean();
-        out[s] += weight * b.mean();
+        out[s] += weight * beyond[s * kSectors + sector].mean();
       }
     }
     for (std::size_t s = 0; s < stretches_; ++s) {
@@ -270,23 +335,45 @@ class Fit {
     TunnelFit fit;
     Eigen::MatrixXd normal;
     Eigen::VectorXd right;
-    assemble(kBlur_mm, normal, right);
-    const Eigen::MatrixXd covariance = kCorrelated * normal.inverse();
-    if (!covariance.allFinite()) return fit;
+    Eigen::MatrixXd by_eighth;
+    assemble(profile_.blur_mm, normal, right, &by_eighth);
+    // By the noise; and by how far eighths of the wall agree, which share neither grain nor faults of the
+    // model.
+    const Eigen::MatrixXd inverse = normal.inverse(), by_noise = kCorrelated * inverse,
+                          by_agreement = inverse * by_eighth * by_eighth.transpose() * inverse;
+    if (!by_noise.allFinite() || !by_agreement.allFinite()) return fit;
     fit.is_fitted = true;
     fit.point_mm = axis_.middle;
     fit.direction = axis_.direction;
     Eigen::Matrix<double, 2, 4> at_entry = Eigen::Matrix<double, 2, 4>::Zero();
     at_entry(0, 0) = at_entry(1, 1) = 1;
     at_entry(0, 2) = at_entry(1, 3) = -from_entry_mm_ / half_mm_;
-    const Eigen::Matrix4d of_axis = covariance.topLeftCorner<4, 4>();
-    fit.entry_sigma_mm = std::sqrt((at_entry * of_axis * at_entry.transpose()).trace());
-    fit.direction_sigma_rad = std::sqrt(of_axis(2, 2) + of_axis(3, 3)) / half_mm_;
-    fit.stretches = described(covariance);
+    const auto the_larger = [&](const auto& sigma_of) {
+      return std::max(sigma_of(by_noise), sigma_of(by_agreement));
+    };
+    fit.entry_sigma_mm = the_larger([&](const Eigen::MatrixXd& covariance) {
+      return std::sqrt((at_entry * covariance.topLeftCorner<4, 4>() * at_entry.transpose()).trace());
+    });
+    fit.direction_sigma_rad = the_larger([&](const Eigen::MatrixXd& covariance) {
+      return std::sqrt(covariance(2, 2) + covariance(3, 3)) / half_mm_;
+    });
+    fit.stretches = described(by_noise);
     std::vector<double> radii;
-    for (const Stretch& stretch : fit.stretches)
-      if (stretch.sigma_mm < 0.5 && stretch.seen_share > 0.3) radii.push_back(0.5 * stretch.diameter_mm);
+    Eigen::VectorXd share = Eigen::VectorXd::Zero(normal.rows());
+    for (std::size_t s = 0; s < stretches_; ++s) {
+      const Stretch& stretch = fit.stretches[s];
+      if (stretch.sigma_mm >= 0.5 || stretch.seen_share <= 0.3) continue;
+      radii.push_back(0.5 * stretch.diameter_mm);
+      share[static_cast<Eigen::Index>(4 + s)] = 1;
+    }
     fit.radius_mm = geometry::median(radii, radius_[stretches_ / 2]);
+    fit.profile = profile_;
+    if (radii.empty()) return fit;
+    share /= share.sum();
+    fit.diameter_sigma_mm =
+        2 * std::hypot(profile_.wall_sigma_mm, the_larger([&](const Eigen::MatrixXd& covariance) {
+                         return std::sqrt(share.dot(covariance * share));
+                       }));
     return fit;
   }
 
@@ -296,67 +383,17 @@ class Fit {
   Axis axis_{};
   std::size_t stretches_ = 1, bins_ = 1;
   std::vector<double> radius_;
-  std::vector<Level> inside_, outside_, metal_, metal_of_bin_;
+  std::vector<Level> inside_, rim_, outside_, metal_, metal_of_bin_;
   std::vector<std::pair<Placed, float>> placed_;
   double noise_hu_ = 25;
+  WallProfile profile_;
 };
 
 }  // namespace
 
-std::vector<WallVoxel> wall_voxels(const images::Volume& postop,
-                                   const geometry::RigidTransform& plan_from_postop, const BoneGrid& grid,
-                                   const Bore& bore, double length_mm, double reach_mm) {
-  const geometry::RigidTransform postop_from_plan = plan_from_postop.inverse();
-  const Eigen::Affine3d index_from_lps = postop.lps_from_index.inverse();
-  Vector3d low = Vector3d::Constant(1e9), high = -low;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vector3d u = bore.direction.unitOrthogonal(), v = bore.direction.cross(u);
-    const Vector3d p = bore.entry_mm + (corner & 1 ? length_mm + 2 : -2) * bore.direction +
-                       (corner & 2 ? reach_mm : -reach_mm) * u + (corner & 4 ? reach_mm : -reach_mm) * v;
-    const Vector3d index = index_from_lps * (postop_from_plan * p);
-    low = low.cwiseMin(index);
-    high = high.cwiseMax(index);
-  }
-  const Eigen::Vector3i first = low.array().floor().cast<int>().max(0),
-                        last = high.array().ceil().cast<int>().min(postop.size.array() - 1);
-  const Eigen::Vector3i beside = (kBesideMetal_mm / postop.spacing_mm().array()).ceil().cast<int>();
-  const auto is_by_metal = [&](int i, int j, int k) {
-    for (int dk = -beside.z(); dk <= beside.z(); ++dk) {
-      for (int dj = -beside.y(); dj <= beside.y(); ++dj) {
-        for (int di = -beside.x(); di <= beside.x(); ++di) {
-          const Eigen::Vector3i at(i + di, j + dj, k + dk);
-          if ((at.array() < 0).any() || (at.array() >= postop.size.array()).any()) continue;
-          if (postop.at(at.x(), at.y(), at.z()) > kMetal_hu) return true;
-        }
-      }
-    }
-    return false;
-  };
-  bool has_metal = false;
-  for (int k = first.z(); k <= last.z() && !has_metal; ++k)
-    for (int j = first.y(); j <= last.y() && !has_metal; ++j)
-      for (int i = first.x(); i <= last.x() && !has_metal; ++i) has_metal = postop.at(i, j, k) > kMetal_hu;
-  std::vector<WallVoxel> voxels;
-  for (int k = first.z(); k <= last.z(); ++k) {
-    for (int j = first.y(); j <= last.y(); ++j) {
-      for (int i = first.x(); i <= last.x(); ++i) {
-        const Vector3d p = plan_from_postop * (postop.lps_from_index * Vector3d(i, j, k));
-        const double along = (p - bore.entry_mm).dot(bore.direction);
-        if (along < -2 || along > length_mm + 2 ||
-            (p - bore.entry_mm - along * bore.direction).norm() > reach_mm ||
-            grid.depth_at(p) < kLeastDepth_mm)
-          continue;
-        const float hu = postop.at(i, j, k);
-        voxels.push_back({p, hu, hu > kMetal_hu, has_metal && is_by_metal(i, j, k)});
-      }
-    }
-  }
-  return voxels;
-}
-
 TunnelFit fit_tunnel(const std::vector<WallVoxel>& voxels, const Bore& bore, double from_mm, double to_mm,
-                     Wall wall) {
-  return Fit(voxels, bore, from_mm, to_mm, wall).run();
+                     Wall wall, const std::optional<WallProfile>& known) {
+  return Fit(voxels, bore, from_mm, to_mm, wall).run(known);
 }
 
 }  // namespace arthronaut::postop

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
-#include "planning/postop/bone_grid.h"
 #include "planning/postop/tunnel_search.h"
+#include "planning/postop/wall_profile.h"
+#include "planning/postop/wall_voxels.h"
 
 namespace arthronaut::postop {
 
@@ -20,7 +22,7 @@ struct Stretch {
   // is taken off.
   double seen_share = 0;
   double metal_share = 0;  // of the voxels inside it
-  // Of its seen wall outside the bore, HU, and inside it.
+  // Of its seen wall outside the bore and its rim, HU, and inside it.
   double outside_hu = 0, inside_hu = 0;
 };
 
@@ -29,31 +31,23 @@ struct TunnelFit {
   Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();  // on the axis, in the plan's frame
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
   double radius_mm = 0;  // median over what is seen
-  // One sigma, by the scatter of the grey: of the axis at the entry, across it, and of its direction.
+  // One sigma, by the noise of the grey or by how far eighths of the wall agree, whichever is more: of the
+  // axis at the entry, across it, and of its direction.
   double entry_sigma_mm = std::numeric_limits<double>::infinity();
   double direction_sigma_rad = std::numeric_limits<double>::infinity();
+  // Of the mean diameter; by whether there is a rim, too.
+  double diameter_sigma_mm = std::numeric_limits<double>::infinity();
+  WallProfile profile;
   std::vector<Stretch> stretches;  // from the entry on
 };
 
-// A voxel of the images within the bone and near the bore.
-struct WallVoxel {
-  Eigen::Vector3d p_mm;  // in the plan's frame
-  float hu;
-  bool is_metal, is_by_metal;  // denser than bone; or within 1 mm of what is
-};
-
-// The voxels within the bone within `reach_mm` of the bore's axis.
-[[nodiscard]] std::vector<WallVoxel> wall_voxels(const images::Volume& postop,
-                                                 const geometry::RigidTransform& plan_from_postop,
-                                                 const BoneGrid& grid, const Bore& bore, double length_mm,
-                                                 double reach_mm);
-
 // From a bore that is right to a millimetre or so. The voxels are explained as the blurred picture of two
 // levels, parted where the wall is: one inside a stretch of the bore, one outside for each eighth of the
-// turn; axis and radii by robust least squares on the grey (Gauss-Newton), so that what differs much tells
-// much, what does not differ tells nothing, and the bore may be brighter than the marrow or darker. Only
-// stations `from_mm` to `to_mm` along the axis from the bore's entry count.
+// turn, and where that explains them clearly better a rim between the two, the same all along; axis and radii
+// by robust least squares on the grey (Gauss-Newton), so that what differs much tells much, what does not
+// differ tells nothing, and the bore may be brighter than the marrow or darker. Only stations `from_mm` to
+// `to_mm` along the axis from the bore's entry count. `known`: rim and blur, not to be sought.
 [[nodiscard]] TunnelFit fit_tunnel(const std::vector<WallVoxel>& voxels, const Bore& bore, double from_mm,
-                                   double to_mm, Wall wall);
+                                   double to_mm, Wall wall, const std::optional<WallProfile>& known = {});
 
 }  // namespace arthronaut::postop

@@ -1,0 +1,149 @@
+#include "planning/postop/wall_profile.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace arthronaut::postop {
+
+namespace {
+
+constexpr std::size_t kLeastPoints = 10;
+constexpr double kFirstBlur_mm = 0.45;
+constexpr double kLeastBlur_mm = 0.2, kMostBlur_mm = 1.0, kLeastRim_mm = 0.3, kMostRim_mm = 2,
+                 kMostOff_mm = 1.4;
+// Neighbouring voxels share their noise; points nearer than this share the blur's and the grain's.
+constexpr double kCorrelated = 4, kApart_mm = 0.4;
+// A rim stands out from both sides by so much, and is no denser than cortex. One thinner than the least
+// leaves nothing of its own in the picture.
+constexpr double kRimStep_hu = 30, kMostRim_hu = 1200;
+
+double cumulated(double z) { return 0.5 * std::erfc(-z * M_SQRT1_2); }
+double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI); }
+
+struct Shape {
+  double wall_mm, blur_mm, rim_mm;
+};
+
+struct Explained {
+  Shape shape;
+  Eigen::Vector3d levels;  // HU: inside, rim, beyond
+  double unexplained;      // sum of squares, weights of mean 1
+};
+
+class Explanation {
+ public:
+  Explanation(const std::vector<WallPoint>& points, double noise_hu) : points_(points) {
+    double count = 0;
+    for (const WallPoint& point : points) count += point.count / static_cast<double>(points.size());
+    for (const WallPoint& point : points) weights_.push_back(point.count / count);
+    floor_ = kCorrelated * noise_hu * noise_hu / count * static_cast<double>(points.size());
+  }
+
+  // The best wall and blur for a rim of this thickness.
+  [[nodiscard]] Explained with_rim(double rim_mm) const {
+    Explained best = descended({0, kFirstBlur_mm, rim_mm});
+    if (rim_mm == 0) return best;
+    for (const double blur_mm : {0.25, 0.7})
+      if (const Explained tried = descended({0.3, blur_mm, rim_mm}); tried.unexplained < best.unexplained)
+        best = tried;
+    return best;
+  }
+
+ private:
+  // The best levels for a shape.
+  [[nodiscard]] Explained levelled(const Shape& shape) const {
+    // Without a rim its share is none, and its level is held by the first summand.
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Identity() * 1e-6;
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    double squares = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const WallGrey grey = wall_grey(points_[i].off_mm - shape.wall_mm, shape.rim_mm, shape.blur_mm);
+      const Eigen::Vector3d row(grey.inside, grey.rim, grey.beyond);
+      normal += weights_[i] * row * row.transpose();
+      right += weights_[i] * points_[i].hu * row;
+      squares += weights_[i] * points_[i].hu * points_[i].hu;
+    }
+    const Eigen::Vector3d levels = normal.ldlt().solve(right);
+    Explained explained{shape, levels, std::max(0.0, squares - right.dot(levels)) + floor_};
+    const bool is_rim = levels[1] > std::max(levels[0], levels[2]) + kRimStep_hu && levels[1] < kMostRim_hu;
+    if (shape.rim_mm > 0 && !is_rim) explained.unexplained = std::numeric_limits<double>::infinity();
+    return explained;
+  }
+
+  // By ever smaller steps of the wall and of the blur.
+  [[nodiscard]] Explained descended(const Shape& from) const {
+    Explained now = levelled(from);
+    for (double step = 0.2; step > 0.006; step *= 0.5) {
+      for (bool is_better = true; is_better;) {
+        is_better = false;
+        for (int way = 0; way < 4; ++way) {
+          const double by = way % 2 ? step : -step;
+          Shape shape = now.shape;
+          (way < 2 ? shape.wall_mm : shape.blur_mm) += way < 2 ? by : 0.5 * by;
+          if (std::abs(shape.wall_mm) > kMostOff_mm || shape.blur_mm < kLeastBlur_mm ||
+              shape.blur_mm > kMostBlur_mm)
+            continue;
+          const Explained tried = levelled(shape);
+          if (!(tried.unexplained < now.unexplained * (1 - 1e-6))) continue;
+          now = tried;
+          is_better = true;
+        }
+      }
+    }
+    return now;
+  }
+
+  const std::vector<WallPoint>& points_;
+  std::vector<double> weights_;
+  double floor_ = 0;
+};
+
+}  // namespace
+
+WallGrey wall_grey(double off_mm, double rim_mm, double blur_mm) {
+  const double at_wall = off_mm / blur_mm, at_rim = (off_mm - rim_mm) / blur_mm,
+               past_wall = cumulated(at_wall), past_rim = cumulated(at_rim),
+               wall_slope = density(at_wall) / blur_mm, rim_slope = density(at_rim) / blur_mm;
+  return {1 - past_wall, past_wall - past_rim, past_rim, -wall_slope, wall_slope - rim_slope, rim_slope};
+}
+
+WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu) {
+  if (points.size() < kLeastPoints) return {.wall_sigma_mm = std::numeric_limits<double>::infinity()};
+  const Explanation explanation(points, noise_hu);
+  const Explained plain = explanation.with_rim(0);
+  std::vector<Explained> rimmed;
+  for (double rim_mm = kLeastRim_mm; rim_mm < kMostRim_mm + 0.01; rim_mm += 0.1)
+    rimmed.push_back(explanation.with_rim(rim_mm));
+  const Explained& best =
+      *std::min_element(rimmed.begin(), rimmed.end(),
+                        [](const Explained& a, const Explained& b) { return a.unexplained < b.unexplained; });
+  // As many points tell something of their own: the likelihood goes with the unexplained to minus half of
+  // that. A rim takes two numbers more, thickness and density.
+  const double told = (points.back().off_mm - points.front().off_mm) / kApart_mm;
+  const double better = told * std::log(plain.unexplained / best.unexplained) - 2 * std::log(told);
+  WallProfile profile;
+  const Explained& taken = better > 0 ? best : plain;
+  profile.wall_mm = taken.shape.wall_mm;
+  profile.blur_mm = taken.shape.blur_mm;
+  if (better > 0) {
+    profile.rim_mm = taken.shape.rim_mm;
+    profile.rim_hu = taken.levels[1];
+  }
+  // How far the wall lies from there by what else would do, weighed by how likely that is; against what a
+  // rim's two numbers cost, none is favoured by so much as above.
+  double share = 0, squares = 0;
+  const auto weigh = [&](const Explained& other, double favour) {
+    if (!std::isfinite(other.unexplained)) return;
+    const double likely = favour * std::pow(best.unexplained / other.unexplained, 0.5 * told);
+    share += likely;
+    squares += likely * std::pow(other.shape.wall_mm - taken.shape.wall_mm, 2);
+  };
+  weigh(plain, told);
+  for (const Explained& other : rimmed) weigh(other, 1.0);
+  profile.wall_sigma_mm = std::sqrt(squares / share);
+  return profile;
+}
+
+}  // namespace arthronaut::postop

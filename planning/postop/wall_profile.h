@@ -1,0 +1,39 @@
+// The grey across a bore's wall, as the mean all around and along it: one level inside, one beyond, and
+// between them perhaps a dense rim, of bone that the drill pressed together or that healed. What a rim
+// thinner than the scanner's blur looks like, a wall further in looks like too. Inner header of postop.
+#pragma once
+
+#include <vector>
+
+namespace arthronaut::postop {
+
+struct WallPoint {
+  double off_mm;  // outwards
+  double hu;      // mean
+  double count;   // voxels it is the mean of
+};
+
+struct WallProfile {
+  double wall_mm = 0;             // where the wall is
+  double rim_mm = 0, rim_hu = 0;  // 0: no rim
+  double blur_mm = 0.5;           // sigma of the scanner's, voxel included
+  // One sigma of `wall_mm`, by that rims of other thicknesses, or none, explain the same as well or nearly.
+  double wall_sigma_mm = 0;
+
+  [[nodiscard]] bool has_rim() const { return rim_mm > 0; }
+};
+
+// The three levels' shares of the grey `off_mm` outwards of the wall, and their slopes there.
+struct WallGrey {
+  double inside, rim, beyond;
+  double inside_slope, rim_slope, beyond_slope;  // 1/mm, outwards
+};
+[[nodiscard]] WallGrey wall_grey(double off_mm, double rim_mm, double blur_mm);
+
+// Explained with a rim where that explains the points clearly better (Schwarz's criterion, the noise from
+// what is left unexplained), else without one. A rim is 0.3 to 2 mm thick, denser than what is inside and
+// beyond, and no denser than cortex. `noise_hu`: of one voxel. Fewer than 10 points explain nothing: no rim,
+// and `wall_sigma_mm` is infinite.
+[[nodiscard]] WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu);
+
+}  // namespace arthronaut::postop

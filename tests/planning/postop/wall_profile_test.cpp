@@ -1,0 +1,64 @@
+// Profiles made of three levels and a blur that are known.
+#include "planning/postop/wall_profile.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace arthronaut::postop {
+namespace {
+
+struct Wall3 {
+  double wall_mm = 0, rim_mm = 0, rim_hu = 0, blur_mm = 0.4;
+};
+
+// As of a tunnel: some 1000 voxels to a point, their noise 25 HU; 60 HU inside, 160 beyond.
+std::vector<WallPoint> points_of(const Wall3& truth) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0, 25 / std::sqrt(1000.0 / 4));
+  std::vector<WallPoint> points;
+  for (double off_mm = -1.7; off_mm < 3; off_mm += 0.2) {
+    const WallGrey grey = wall_grey(off_mm - truth.wall_mm, truth.rim_mm, truth.blur_mm);
+    points.push_back(
+        {off_mm, 60 * grey.inside + truth.rim_hu * grey.rim + 160 * grey.beyond + noise(random), 1000});
+  }
+  return points;
+}
+
+}  // namespace
+
+TEST(WallProfile, ARimIsTakenWhereThereIsOne) {
+  const WallProfile plain = explain_wall(points_of({.wall_mm = 0.1}), 25);
+  EXPECT_FALSE(plain.has_rim());
+  EXPECT_NEAR(plain.wall_mm, 0.1, 0.05);
+  for (const double rim_mm : {0.7, 1.0, 1.4}) {
+    const WallProfile rimmed = explain_wall(points_of({.wall_mm = 0.3, .rim_mm = rim_mm, .rim_hu = 400}), 25);
+    ASSERT_TRUE(rimmed.has_rim());
+    // Half of 0.3 mm of diameter, each.
+    EXPECT_NEAR(rimmed.wall_mm, 0.3, 0.15) << rim_mm;
+    EXPECT_NEAR(rimmed.rim_mm, rim_mm, 0.3) << rim_mm;
+    EXPECT_NEAR(rimmed.blur_mm, 0.4, 0.1) << rim_mm;
+  }
+}
+
+// Through more blur the wall is less surely known; and it is no further off than said.
+TEST(WallProfile, AThinRimIsKnownTheLessTheMoreItIsBlurred) {
+  const auto seen_through = [](double blur_mm) {
+    return explain_wall(points_of({.wall_mm = 0.2, .rim_mm = 0.5, .rim_hu = 400, .blur_mm = blur_mm}), 25);
+  };
+  const WallProfile sharp = seen_through(0.2), blurred = seen_through(0.5);
+  EXPECT_GT(blurred.wall_sigma_mm, 2 * sharp.wall_sigma_mm);
+  for (const WallProfile& seen : {sharp, blurred})
+    EXPECT_LT(std::abs(seen.wall_mm - 0.2), 3 * seen.wall_sigma_mm + 0.02) << seen.blur_mm;
+}
+
+TEST(WallProfile, TooFewPointsTellNothing) {
+  auto points = points_of({});
+  points.resize(5);
+  const WallProfile seen = explain_wall(points, 25);
+  EXPECT_FALSE(seen.has_rim());
+  EXPECT_TRUE(std::isinf(seen.wall_sigma_mm));
+}
+
+}  // namespace arthronaut::postop
