@@ -13,7 +13,7 @@ struct ReportOptions {
   // name of the video's file, which often is the patient's.
   bool with_identity = false;
   // For strangers: no date, no session's name and no picture of the video, into which a name may be drawn.
-  // Identity is left out whatever is said above. Of a PDF.
+  // Identity is left out whatever is said above. In JSON and CSV they are null.
   bool is_deidentified = false;
   // Says when it was made; without it the same case gives the same bytes at any time.
   bool says_when_made = true;

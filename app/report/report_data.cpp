@@ -69,13 +69,18 @@ ordered_json json_of(const registration::RegistrationSummary& registration) {
            registration.has_pose ? ordered_json(registration.predicted_tre_mm) : ordered_json()}};
 }
 
-ordered_json session_of(const Content& content) {
+// What names a session or a day, which for strangers is null.
+ordered_json unless_deidentified(const ReportOptions& options, const std::string& value) {
+  return options.is_deidentified ? ordered_json() : ordered_json(value);
+}
+
+ordered_json session_of(const Content& content, const ReportOptions& options) {
   if (!content.session) return nullptr;
   const recording::RecordedSession& session = *content.session;
   const recording::SessionHeader& header = session.header();
   const SessionFigures figures = figures_of(session);
-  ordered_json node = {{"id", header.id},
-                       {"started_utc", header.started_utc},
+  ordered_json node = {{"id", unless_deidentified(options, header.id)},
+                       {"started_utc", unless_deidentified(options, header.started_utc)},
                        {"bone", bones::to_text(header.bone)},
                        {"source_kind", header.source_kind},
                        {"medium", camera::medium_to_text(header.refractive_index)},
@@ -100,8 +105,8 @@ ordered_json session_of(const Content& content) {
 }
 
 ordered_json json_of(const Content& content, const operation::AchievedTunnel& achieved,
-                     const std::string& session) {
-  ordered_json node = {{"tunnel", tunnels::name_of(achieved.planned.key())}, {"session", session}};
+                     ordered_json session) {
+  ordered_json node = {{"tunnel", tunnels::name_of(achieved.planned.key())}, {"session", std::move(session)}};
   node["planned"] = json_of(achieved.planned);
   node["measured"] = json_of(achieved.measured);
   node["difference"] = json_of(operation::compare(achieved.planned, achieved.measured));
@@ -154,10 +159,10 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
   ordered_json json;
   json["format"] = "arthronaut.report";
   json["version"] = 1;
-  if (options.says_when_made) json["made_utc"] = files::utc_now();
+  if (options.says_when_made && !options.is_deidentified) json["made_utc"] = files::utc_now();
   json["case"] = {{"name", content.knee.name},
                   {"side", bones::to_text(content.knee.side)},
-                  {"created_utc", content.knee.created_utc}};
+                  {"created_utc", unless_deidentified(options, content.knee.created_utc)}};
   if (content.identity)
     json["patient"] = {{"name", content.identity->patient_name},
                        {"id", content.identity->patient_id},
@@ -166,15 +171,18 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
   for (const auto& [kind, doubts] : content.bone_doubts)
     json["bone_doubts"][std::string(bones::to_text(kind))] = doubts;
   json["tunnels"] = tunnels_of(content);
-  json["session"] = session_of(content);
+  json["session"] = session_of(content, options);
   json["unreadable_sessions"] = ordered_json::array();
   for (const auto& [session, reason] : content.unreadable)
-    json["unreadable_sessions"].push_back({{"id", session}, {"reason", reason}});
+    json["unreadable_sessions"].push_back(
+        {{"id", unless_deidentified(options, session)}, {"reason", unless_deidentified(options, reason)}});
   json["achieved"] = ordered_json::array();
   for (const operation::AchievedTunnel& achieved : content.achieved)
-    json["achieved"].push_back(json_of(content, achieved, content.session->header().id));
+    json["achieved"].push_back(
+        json_of(content, achieved, unless_deidentified(options, content.session->header().id)));
   for (const Content::Earlier& earlier : content.earlier)
-    json["achieved"].push_back(json_of(content, earlier.achieved, earlier.session));
+    json["achieved"].push_back(
+        json_of(content, earlier.achieved, unless_deidentified(options, earlier.session)));
   json["postoperative"] = postoperative_of(content);
   if (!content.postoperative_problem.empty()) json["postoperative_problem"] = content.postoperative_problem;
   json["versions"] = ordered_json::object();

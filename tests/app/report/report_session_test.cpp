@@ -137,6 +137,13 @@ TEST_F(Report, NamesASessionThatCannotBeRead) {
   text = pdf_text();
   expect_contains(text, "NOT READABLE, and not in this report: a session of this case");
   EXPECT_EQ(text.find(newest.filename().string()), std::string::npos);
+  write_report(knee_folder(), json_file, {.is_deidentified = true});
+  const auto for_strangers = nlohmann::json::parse(files::read_text(json_file));
+  EXPECT_EQ(for_strangers.at("unreadable_sessions").at(0).at("id"), nullptr);
+  EXPECT_EQ(for_strangers.at("session").at("id"), nullptr);
+  EXPECT_EQ(for_strangers.at("session").at("started_utc"), nullptr);
+  EXPECT_EQ(for_strangers.at("case").at("created_utc"), nullptr);
+  EXPECT_FALSE(for_strangers.contains("made_utc"));
 }
 
 // Hazard 2: nobody takes the figures of a simulation for a patient's.
