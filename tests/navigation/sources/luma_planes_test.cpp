@@ -20,6 +20,33 @@ TEST(LumaPlane, StretchesToAllSteps) {
   EXPECT_EQ(plane.in_place().data, nullptr);
 }
 
+// Many samples at a time and the few at a row's end are brought to the same, of planar and packed rows alike,
+// and no byte after a row's last sample is looked at or written.
+TEST(LumaPlane, IsTheSameWhereverInARowItStands) {
+  std::vector<std::uint8_t> all(256), by_value;
+  for (int i = 0; i < 256; ++i) all[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(i);
+  for (const std::uint8_t& value : all) {
+    std::vector<std::uint8_t> one;
+    LumaPlane{.data = &value, .stride = 1, .width = 1, .height = 1}.write(one);
+    by_value.push_back(one.front());
+  }
+  for (const int step : {1, 2})
+    for (const int width : {1, 31, 32, 33, 63, 64, 65, 200}) {
+      std::vector<std::uint8_t> sent(static_cast<std::size_t>(2 * step * width - (step - 1)), 7), wanted,
+          luma;
+      for (int i = 0; i < 2 * width; ++i) {
+        const auto value = static_cast<std::uint8_t>(i * 37);
+        sent[static_cast<std::size_t>(i * step)] = value;
+        wanted.push_back(by_value[value]);
+      }
+      // To its last byte: the address sanitizer says if one after it is read.
+      sent.shrink_to_fit();
+      LumaPlane{.data = sent.data(), .stride = width * step, .step = step, .width = width, .height = 2}.write(
+          luma);
+      EXPECT_EQ(luma, wanted) << step << ", " << width;
+    }
+}
+
 // Looked at where it is, rows apart as the driver has them.
 TEST(LumaPlane, IsLeftWhereItIsWhenNothingIsToBeDone) {
   const std::vector<std::uint8_t> sent{1, 2, 0, 3, 4, 0};
