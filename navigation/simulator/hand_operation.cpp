@@ -1,5 +1,6 @@
 #include "navigation/simulator/hand_operation.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "navigation/simulator/frame_pace.h"
@@ -19,6 +20,7 @@ using Eigen::Vector3d;
 using geometry::RigidTransform;
 
 constexpr double kLifted_mm = 5;     // of the probe's tip off the bone at the beginning
+constexpr double kAtDimple_mm = 1;   // where it is to pivot: further off, its marker may leave the view
 constexpr double kGuideBack_mm = 7;  // of the guide's point from the planned entry, at the beginning
 constexpr double kGuideAside_mm = 3, kGuideAslant_deg = 11;
 constexpr double kBumpDegPerMm = 1.5;
@@ -29,6 +31,16 @@ const geometry::TriangleMesh& mesh_of(const SimulationOptions& options) {
 
 Vector3d handle_of(const ProbePose& pose) {
   return (pose.bone_from_marker.translation_mm - pose.tip_mm).normalized();
+}
+
+// Of the swing, in which both markers are seen at every stop: where the probe's is nearest to the middle of
+// the view. Held in the middle of the swing it may hide the bone's.
+Vector3d handle_in_view(const Staging& staging) {
+  const RigidTransform& view = staging.bone_from_camera_pivot;
+  return handle_of(*std::ranges::min_element(staging.pivot, {}, [&](const ProbePose& pose) {
+    return geometry::angle_between_rad(pose.bone_from_marker.translation_mm - view.translation_mm,
+                                       view.rotate(Vector3d::UnitZ()));
+  }));
 }
 
 HandScene scene_of(const SimulationOptions& options, const Staging& staging, const geometry::Surface& bone,
@@ -61,8 +73,8 @@ HandScene scene_of(const SimulationOptions& options, const Staging& staging, con
   start.mark_angle_deg = options.camera.reference_mark_angle_deg;
   const Vector3d place = hand.starts_at_dimple ? scene.dimple_mm : scene.strokes.front().front();
   const Vector3d to_lens = (start.bone_from_camera_probe.translation_mm - place).normalized();
-  start.probe_tip_mm = place + kLifted_mm * to_lens;
-  start.probe_handle = hand.starts_at_dimple ? scene.dimple_handle : scene.handles.front().front();
+  start.probe_tip_mm = place + (hand.starts_at_dimple ? kAtDimple_mm : kLifted_mm) * to_lens;
+  start.probe_handle = hand.starts_at_dimple ? handle_in_view(staging) : scene.handles.front().front();
   Random random(options.seed + 53);
   const Vector3d axis = scene.plan.direction;
   const Vector3d side = Eigen::AngleAxisd(random.between(0, 2 * geometry::kPi), axis) * axis.unitOrthogonal();

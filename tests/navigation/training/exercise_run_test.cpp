@@ -46,6 +46,18 @@ TEST(ExerciseRun, Hazard40TheRecordSaysThatItIsAnExercise) {
   EXPECT_TRUE(recording::is_exercise(record.folder));
 }
 
+// Whoever begins to find the tip sees both markers, before he has moved anything.
+TEST(ExerciseRun, ThePivotBeginsWithBothMarkersInView) {
+  for (const std::uint64_t seed : {1, 2, 4}) {
+    int frames = 0;
+    const simulator::Hand still = [&frames](const simulator::HandScene&, const simulator::HandState&) {
+      return frames++ < 5 ? std::optional<simulator::HandInput>(simulator::HandInput()) : std::nullopt;
+    };
+    const ExerciseSetup setup = standard_setup(*find_exercise("pivot"), Level::Easy, seed);
+    EXPECT_EQ(run_exercise(setup, still).facts.unseen_s, 0) << seed;
+  }
+}
+
 // Who hurries is worth less, in the parts that were done badly.
 TEST(ExerciseRun, HasteCosts) {
   const ExerciseOutcome hurried = run_exercise(aiming(), make_trainee(Goal::Aim, hasty(1)));
