@@ -130,7 +130,7 @@ Coach advise(const OnlineResult& result, const CoachFacts& facts) {
                                      [](const BonePatch& l, const BonePatch& r) { return l.gain < r.gain; });
   if (next != coach.patches.end() && next->gain > 0.02) coach.next_patch_in_bone_mm = next->point_in_bone_mm;
   if (result.state == OnlineState::Confirmed) {
-    coach.message = "Confirmed. Touch three places that you know, to verify.";
+    coach.message.clear();
     coach.progress = 1;
   } else if (coach.next_patch_in_bone_mm) {
     const Eigen::Vector3d touched_mm = facts.pool.best().bone_from_marker * facts.points.centroid_mm;

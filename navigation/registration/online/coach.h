@@ -16,7 +16,8 @@ struct CoachFacts {
   double refine_every_mm;
 };
 
-// How far it is to a confirmation, what is missing, and where the next stroke helps most.
+// How far it is to a confirmation, what is missing, and where the next stroke helps most. Of what is
+// confirmed it says nothing to do: what follows, and whether it is in force at all, the operation knows.
 [[nodiscard]] Coach advise(const OnlineResult& result, const CoachFacts& facts);
 
 }  // namespace arthronaut::registration

@@ -44,6 +44,7 @@ TEST(OnlineRegistration, ConfirmsWhileScratching) {
   EXPECT_EQ(states.back(), OnlineState::Confirmed);
   const OnlineResult& result = online.result();
   EXPECT_DOUBLE_EQ(result.coach.progress, 1);
+  EXPECT_EQ(result.coach.message, "") << "what follows is the operation's to say";
   EXPECT_LT((result.registration.marker_from_bone * bone.target_mm - trial.marker_from_bone * bone.target_mm)
                 .norm(),
             0.4);
