@@ -191,7 +191,9 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Naviga
   ui.log.note("navigate.numbers", area.min(), area.max());
   // No number at all where none is valid: an old one would be believed.
   if (!screen.display.guidance_is_valid) return;
-  widgets::Rect rest = area.inset(ui.theme.px(14));
+  // Close above and below: where a drill is seen every line is needed.
+  const float side = ui.theme.px(14), above = ui.theme.px(8);
+  widgets::Rect rest{area.x + side, area.y + above, area.width - 2 * side, area.height - 2 * above};
   const guidance::GuidanceNumbers& g = screen.display.guidance;
   draw_number(ui, rest, "Offset", widgets::fixed(guidance_severity::offset_mm(g), 1),
               "mm " + widgets::plus_minus(g.sigma_offset_mm), guidance_severity::severity_of_offset(g));

@@ -27,6 +27,7 @@ TheatreLayout NavigateView::layout_in(const widgets::Ui& ui, const widgets::Rect
   TheatreLayoutOptions options;
   options.scale = ui.theme.scale;
   options.afar_px = ui.theme.afar->FontSize;
+  options.number_px = ui.theme.number->FontSize;
   options.guides = layout(theatre::LiveOperation::now_s()) == NavigateLayout::Guide;
   options.is_whole_window = takes_window();
   options.has_buttons = !options.is_whole_window;

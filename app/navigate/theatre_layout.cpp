@@ -33,7 +33,9 @@ TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptio
   // Where the window is taller than the picture, the 3D view stands under it, else in the column.
   if (is_tall) {
     layout.scene = {left.x, left.y + side + gap, side, below - gap};
-    if (options.guides) layout.target = rest.cut_top(std::min(rest.width, rest.height * 0.42F), gap);
+    // Under the target there is room for offset, angle and what remains for a drill.
+    const float numbers = 5 * afar + 3 * options.number_px + 32 * options.scale;
+    if (options.guides) layout.target = rest.cut_top(std::min(rest.width, rest.height - gap - numbers), gap);
     layout.main = rest;
   } else if (options.guides && is_two) {
     // A screen of its own is wide: what is aimed by is as high as its room, the 3D view stands beside it.
@@ -41,8 +43,11 @@ TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptio
     layout.scene = rest.cut_left(rest.width * 0.4F, gap);
     layout.main = rest;
   } else if (options.guides) {
-    widgets::Rect column = rest.cut_left(std::min(rest.width * 0.49F, rest.height * 0.62F), gap);
-    layout.target = column.cut_top(std::min(column.width, column.height * 0.6F), gap);
+    // What is aimed by is as large as the numbers beside it allow: "12.3 posterior" is 6.8 letters' heights
+    // wide.
+    const float numbers = 6.8F * afar + 28 * options.scale;
+    widgets::Rect column = rest.cut_left(std::min(rest.width - gap - numbers, rest.height * 0.8F), gap);
+    layout.target = column.cut_top(std::min(column.width, column.height * 0.72F), gap);
     layout.scene = column;
     layout.main = rest;
   } else {

@@ -26,6 +26,7 @@ struct TheatreLayout {
 struct TheatreLayoutOptions {
   float scale = 1;              // of all sizes, as of the theme
   float afar_px = 52;           // size of the letters that must be read from afar
+  float number_px = 64;         // and of the numbers
   bool guides = true;           // bullseye and numbers, else the registration
   bool is_whole_window = true;  // a header is needed
   bool has_buttons = false;

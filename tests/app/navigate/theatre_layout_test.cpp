@@ -44,7 +44,8 @@ struct Screen {
   }
   ~Screen() { ImGui::DestroyContext(); }
   [[nodiscard]] TheatreLayout layout(bool guides, bool is_whole = true) const {
-    return theatre_layout(area, {theme.scale, theme.afar->FontSize, guides, is_whole, !is_whole});
+    return theatre_layout(
+        area, {theme.scale, theme.afar->FontSize, theme.number->FontSize, guides, is_whole, !is_whole});
   }
   widgets::Theme theme;
   Rect area;
@@ -143,6 +144,20 @@ TEST(TheatreLayout, AcrossTwoScreensTheTargetIsAsHighAsItsRoom) {
   }
 }
 
+// Where the numbers stand beside it on one screen: three fifths of the room's height at the least, both ways,
+// or as wide as they leave it.
+TEST(TheatreLayout, BesideTheNumbersTheTargetIsAsLargeAsTheyAllow) {
+  for (const Shape& shape : kShapes) {
+    SCOPED_TRACE(shape.name);
+    const Screen screen(shape);
+    const TheatreLayout l = screen.layout(true);
+    const bool stands_under_it = l.main.y > l.target.y;
+    if (stands_under_it || std::string(shape.name).starts_with("two")) continue;
+    const bool is_as_wide_as_it_can_be = l.main.width < 7.5F * screen.theme.afar->FontSize;
+    EXPECT_TRUE(std::min(l.target.width, l.target.height) > 0.6F * l.block.height || is_as_wide_as_it_can_be);
+  }
+}
+
 // Every instruction stands in letters for afar, whole, on every screen; so do the numbers.
 TEST(TheatreLayout, WhatGuidesIsReadFromAfar) {
   for (const Shape& shape : kShapes) {
@@ -154,9 +169,9 @@ TEST(TheatreLayout, WhatGuidesIsReadFromAfar) {
     const float width = l.words.width - theme.px(20), height = l.words.height - theme.title->FontSize;
     for (const std::string& words : all_words())
       EXPECT_EQ(widgets::font_that_fits(theme, width, height, words), theme.afar) << words;
-    // Offset with two directions, angle, what remains and the depth of a drill: three numbers and two lines.
+    // Offset with two directions, angle, what remains for a drill: three numbers and two lines.
     const float number = theme.afar->FontSize + theme.number->FontSize;
-    EXPECT_GE(l.main.height, 2 * number + 2 * theme.afar->FontSize + theme.px(44));
+    EXPECT_GE(l.main.height, 3 * number + 2 * theme.afar->FontSize + theme.px(32));
     for (const char* word : {"12.3 posterior", "Remaining", "Registration"}) {
       const ImVec2 size = theme.afar->CalcTextSizeA(theme.afar->FontSize, 1e9F, 0, word);
       EXPECT_LE(size.x, l.main.width - theme.px(28)) << word;
