@@ -22,8 +22,14 @@ void paint(Labels& labels, const images::Volume& grid, const BrushMove& move, st
   const double radius = move.brush.radius_mm;
   // How far a voxel reaches along the normal: those nearer than this are met by the slice.
   const double half_mm = 0.5 * (grid.lps_from_index.linear().transpose() * move.normal).cwiseAbs().sum();
-  const double reach_mm = std::max(radius, half_mm);
-  const Vector3d margin = reach_mm * index_from_lps.linear().rowwise().norm();
+  // How far the brush reaches along each axis of the grid: a disc's slice is one layer of it.
+  const Eigen::Matrix3d index_from_mm = index_from_lps.linear();
+  const Vector3d across = index_from_mm * move.normal;
+  const Vector3d margin =
+      move.brush.is_ball
+          ? Vector3d(radius * index_from_mm.rowwise().norm())
+          : Vector3d(radius * (index_from_mm - across * move.normal.transpose()).rowwise().norm() +
+                     (half_mm + kTie_mm) * across.cwiseAbs());
   const Vector3d a = index_from_lps * move.from_mm, b = index_from_lps * move.to_mm;
   const Vector3i last = grid.size.array() - 1;
   const Vector3i low = (a.cwiseMin(b) - margin).array().ceil().cast<int>().max(0);

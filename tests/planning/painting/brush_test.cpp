@@ -65,6 +65,31 @@ TEST(Brush, ADiscInAnObliqueGridHasNoHoles) {
   }
 }
 
+// However the grid lies under the slice: every voxel that the slice passes through near the line, and no
+// other.
+TEST(Brush, ADiscTakesWhatItIsSaidToTake) {
+  for (const double turn_rad : {0.0, 0.3, 0.8}) {
+    images::Volume volume = test::empty_volume({40, 50, 30}, {1, 0.7, 2});
+    volume.lps_from_index.linear() =
+        Eigen::AngleAxisd(turn_rad, Vector3d(1, 2, 0.3).normalized()) * volume.lps_from_index.linear();
+    const Vector3d from = volume.lps_from_index * Vector3d(18, 20, 14.2);
+    const Vector3d along(5, 3, 0), to = from + along;
+    constexpr double kRadius_mm = 6;
+    Labels labels(volume.values.size(), kNothing), expected = labels;
+    LabelChange change;
+    paint(labels, volume, {from, to, Vector3d::UnitZ(), {kRadius_mm, false}}, kFemur, change);
+    const double half_mm = 0.5 * volume.lps_from_index.linear().row(2).cwiseAbs().sum();
+    test::for_each_voxel(volume, [&](std::size_t v, const Vector3d& p) {
+      const Vector3d in_slice(p.x() - from.x(), p.y() - from.y(), 0);
+      const double share = std::clamp(in_slice.dot(along) / along.squaredNorm(), 0.0, 1.0);
+      if (std::abs(p.z() - from.z()) < half_mm && (in_slice - share * along).norm() <= kRadius_mm)
+        expected[v] = kFemur;
+    });
+    EXPECT_EQ(labels, expected) << turn_rad;
+    EXPECT_GT(count(labels), 100U);
+  }
+}
+
 TEST(Brush, ASmallBrushPaintsTheVoxelUnderItAndNothingOutside) {
   const images::Volume volume = test::empty_volume({10, 10, 10}, {2, 2, 2});
   Labels labels(volume.values.size(), kNothing);
