@@ -52,10 +52,12 @@ PlanCheck check_length(const Tunnel& tunnel, const TunnelGeometry& geometry, con
 
 // The limits of the back wall are the femur's; of the tibia nobody has published one.
 PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const PlanNorms& norms) {
+  // A wall of nothing is 0.0 mm on either side of it, not -0.0.
+  const double shown_mm = std::round(10 * geometry.wall_mm) / 10 + 0.0;
   PlanCheck check{
       .verdict = Verdict::Fine,
       .name = "Wall",
-      .text = number_text(geometry.wall_mm, "mm") + " at " + number_text(geometry.thinnest_station_mm, "mm") +
+      .text = number_text(shown_mm, "mm") + " at " + number_text(geometry.thinnest_station_mm, "mm") +
               " of depth",
       .value = geometry.wall_mm,
       .unit = "mm",

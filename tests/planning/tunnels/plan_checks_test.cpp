@@ -49,6 +49,7 @@ TEST(PlanChecks, JudgesTheWall) {
   EXPECT_EQ(named(check_plan(tunnel, inside(35, 2.0), {}), "Wall").verdict, Verdict::Fine);
   EXPECT_EQ(named(check_plan(tunnel, inside(35, 1.9), {}), "Wall").verdict, Verdict::Look);
   EXPECT_EQ(named(check_plan(tunnel, inside(35, 0.9), {}), "Wall").verdict, Verdict::Wrong);
+  EXPECT_THAT(named(check_plan(tunnel, inside(35, -0.02), {}), "Wall").text, ::testing::StartsWith("0.0 mm"));
   EXPECT_THAT(named(check_plan(tunnel, inside(35, -0.1), {}), "Wall").text,
               ::testing::HasSubstr("breaks out"));
 }
