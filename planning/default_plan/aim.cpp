@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "planning/geometry/rigid_transform.h"
@@ -24,6 +25,8 @@ constexpr double kLeastFacing = 0.25;  // of the exit's normal along where it sh
 constexpr double kThickWall_mm = 2;    // to the outside and to another tunnel
 // What a millimetre of missing wall or length, and a step away from what was asked for, count.
 constexpr double kPerWall = 4, kPerBetween = 8, kPerLength = 3, kPerStep = 0.6;
+// What costs less than so much more than the best counts, too: four steps, or 0.6 mm of wall.
+constexpr double kStillCounts = 2.4;
 
 struct Candidate {
   Vector3d direction;
@@ -82,34 +85,49 @@ std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry, const geomet
       is_femur ? axes.lateral : Vector3d((axes.anterior - 0.7 * axes.lateral).normalized());
   const std::array<double, 2> fitting_mm =
       is_femur ? std::array<double, 2>{30, 45} : std::array<double, 2>{32, 55};
-  std::optional<tunnels::Tunnel> best;
-  double least_cost = std::numeric_limits<double>::infinity();
   auto candidates =
       is_femur ? through_portal(at_entry, joint, options) : along_guide(joint, options, beside != nullptr);
   const auto neighbour = beside != nullptr ? tunnels::measure(*beside, surface) : tunnels::TunnelGeometry{};
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.steps < b.steps; });
-  for (const Candidate& candidate : candidates) {
-    if (kPerStep * candidate.steps >= least_cost) break;  // the rest can only cost more
+  // Of the tunnel itself; infinite where it cannot be.
+  const auto cost_along = [&](const Vector3d& direction) {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
     tunnels::Tunnel tunnel = at_entry;
-    tunnel.direction = candidate.direction;
+    tunnel.direction = direction;
     const auto measured = tunnels::measure(tunnel, surface);
-    if (!measured.enters_bone || (measured.entry_on_surface_mm - tunnel.entry_mm).norm() > 2) continue;
-    if (measured.exit.normal.dot(exit_side) < kLeastFacing) continue;
+    if (!measured.enters_bone || (measured.entry_on_surface_mm - tunnel.entry_mm).norm() > 2) return kNever;
+    if (measured.exit.normal.dot(exit_side) < kLeastFacing) return kNever;
     const double misfit =
         std::max({0.0, fitting_mm[0] - measured.length_mm, measured.length_mm - fitting_mm[1]});
     const double between_mm = neighbour.enters_bone
                                   ? tunnels::gap_between(tunnel, measured, *beside, neighbour).bone_mm
                                   : kThickWall_mm;
-    const double cost = kPerStep * candidate.steps + kPerLength * misfit +
-                        kPerWall * std::max(0.0, kThickWall_mm - measured.wall_mm) +
-                        kPerBetween * std::max(0.0, kThickWall_mm - between_mm);
-    if (cost < least_cost) {
-      least_cost = cost;
-      best = tunnel;
-    }
+    return kPerLength * misfit + kPerWall * std::max(0.0, kThickWall_mm - measured.wall_mm) +
+           kPerBetween * std::max(0.0, kThickWall_mm - between_mm);
+  };
+  std::vector<std::pair<double, Vector3d>> possible;
+  double least_cost = std::numeric_limits<double>::infinity();
+  Vector3d best = at_entry.direction;
+  for (const Candidate& candidate : candidates) {
+    if (options.stop.stop_requested()) return std::nullopt;
+    const double by_steps = kPerStep * candidate.steps;
+    if (by_steps >= least_cost + kStillCounts) break;  // the rest can only cost more
+    const double cost = by_steps + cost_along(candidate.direction);
+    if (!std::isfinite(cost)) continue;
+    possible.emplace_back(cost, candidate.direction);
+    if (cost < least_cost) least_cost = cost, best = candidate.direction;
   }
-  return best;
+  if (possible.empty()) return std::nullopt;
+  // The best alone would leap from one candidate to another that is as good: what is about as good counts,
+  // the nearer to the best the more.
+  Vector3d sum = Vector3d::Zero();
+  for (const auto& [cost, direction] : possible)
+    sum += std::max(0.0, 1 - (cost - least_cost) / kStillCounts) * direction;
+  tunnels::Tunnel aimed = at_entry;
+  aimed.direction = sum.normalized();
+  if (cost_along(aimed.direction) > least_cost + kStillCounts) aimed.direction = best;
+  return aimed;
 }
 
 }  // namespace arthronaut::default_plan

@@ -26,7 +26,9 @@ struct Joint {
 // lateral, tibia: anteromedial), has a length of 30 to 45 mm in the femur, 32 to 55 mm in the tibia, and a
 // wall of 2 mm; less wall, then less length, where none has. Beside another tunnel of the bone (null: there
 // is none) 2 mm of bone between them are worth twice as much as the wall, and the guide's angles are varied
-// further. nullopt when none leaves there.
+// further. Directions that are about as good count, too, the nearer to the best the more, so that
+// the axis does not leap with what another scan shows otherwise. nullopt when none leaves there, and when
+// options.stop asks for it.
 [[nodiscard]] std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry,
                                                  const geometry::Surface& surface, const Joint& joint,
                                                  const Options& options,

@@ -96,7 +96,8 @@ struct Site {
   }
   [[nodiscard]] std::optional<Tunnel> aimed(const std::optional<Tunnel>& at_entry,
                                             const Tunnel* beside = nullptr) const {
-    return at_entry ? aim(*at_entry, *input.surface, joint, options, beside) : std::nullopt;
+    return at_entry && !options.stop.stop_requested() ? aim(*at_entry, *input.surface, joint, options, beside)
+                                                      : std::nullopt;
   }
   // Infinite where one of them misses the bone.
   [[nodiscard]] double between_mm(const Tunnel& one, const Tunnel& other) const {
@@ -175,6 +176,7 @@ std::optional<Tunnel> bundle_tunnel(const Site& site, Places& places, DefaultTun
     steps = steps.subspan(4);  // it stays as long as the other one can still give way
   std::optional<Apart> first, best;
   for (const Shares& shares : steps) {
+    if (site.options.stop.stop_requested()) return std::nullopt;
     const auto apart = bundle_apart(site, places, shares);
     if (shares.of(bundle) == 0) first = apart;
     if (apart && (!best || apart->between_mm > best->between_mm)) best = apart;
@@ -266,6 +268,11 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
   } else {
     result.outcome = Outcome::NoFootprint;
     result.message = "no bone is where the norm places the insertion";
+    return result;
+  }
+  if (options.stop.stop_requested()) {
+    result.outcome = Outcome::Stopped;
+    result.message = "it was stopped";
     return result;
   }
   if (!aimed) {

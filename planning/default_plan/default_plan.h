@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct Options {
   // Tibia: of the guide, between the tunnel and the plane across the bone's long axis, in the sagittal plane;
   // between it and a plateau that slopes backwards it is greater by the slope.
   double guide_deg = 55;
+  // Asked between one direction and the next; then the outcome is Stopped.
+  std::stop_token stop = {};
   // Throws InvalidInput: field, value, range.
   void check() const;
 };
@@ -58,6 +61,7 @@ struct DefaultTunnel {
     NoLandmarks,  // the shape gives no landmarks, and nobody placed those that the grid needs
     NoFootprint,  // no bone at the norm's place of the grid
     NoAim,        // no direction that a drill can follow stays in the bone
+    Stopped,      // by Options::stop
   } outcome = Outcome::NotRun;
   std::string message = "no default was asked for";
   tunnels::Tunnel tunnel;

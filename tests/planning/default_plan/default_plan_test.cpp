@@ -220,6 +220,22 @@ TEST(DefaultPlan, IsBesideTheOtherBundleOfItsBoneAlone) {
   EXPECT_EQ(beside({BoneKind::Tibia, Bundle::Anteromedial}, planned), nullptr);
 }
 
+// Whoever waits no longer is not kept waiting: no direction is tried any more, and it is not said that none
+// is there.
+TEST(DefaultPlan, StopsWhenItIsAskedTo) {
+  const Knee knee(Side::Right);
+  std::stop_source stop;
+  for (const auto bundle : {norms::Bundle::Whole, norms::Bundle::Posterolateral}) {
+    const Options options{.bundle = bundle, .stop = stop.get_token()};
+    EXPECT_TRUE(plan_bone(knee.inputs(true)[0], Side::Right, options).is_usable());
+  }
+  stop.request_stop();
+  for (const auto bundle : {norms::Bundle::Whole, norms::Bundle::Posterolateral}) {
+    const Options options{.bundle = bundle, .stop = stop.get_token()};
+    EXPECT_EQ(plan_bone(knee.inputs(true)[0], Side::Right, options).outcome, DefaultTunnel::Outcome::Stopped);
+  }
+}
+
 TEST(DefaultPlan, RefusesOptionsOutOfRange) {
   const Knee knee(Side::Right);
   EXPECT_THROW((void)plan_bone(knee.inputs(true)[0], Side::Right, {.diameter_mm = 20}), InvalidInput);
