@@ -42,13 +42,13 @@ Halves halves_of(const std::vector<SurfaceSample>& samples, const Matrix3d& axes
 }
 
 // Everything but the frame's direction and the misfit.
-void measure(Condyles& condyles, const Halves& halves) {
+void measure(Condyles& condyles, const Halves& halves, double each_mm2) {
   const Matrix3d& axes = condyles.bone_from_frame;
   const Vector3d behind = -axes.col(1), below = -axes.col(2);
-  condyles.posterior_minus = *furthest(halves.minus, behind);
-  condyles.posterior_plus = *furthest(halves.plus, behind);
-  condyles.distal_minus = *furthest(halves.minus, below);
-  condyles.distal_plus = *furthest(halves.plus, below);
+  condyles.posterior_minus = *furthest(halves.minus, behind, each_mm2);
+  condyles.posterior_plus = *furthest(halves.plus, behind, each_mm2);
+  condyles.distal_minus = *furthest(halves.minus, below, each_mm2);
+  condyles.distal_plus = *furthest(halves.plus, below, each_mm2);
   condyles.depth_mm = halves.foremost - halves.hindmost;
   const double third = 0.33 * condyles.depth_mm;
   const Vector3d posterior = (condyles.posterior_minus + condyles.posterior_plus) / 2,
@@ -58,11 +58,14 @@ void measure(Condyles& condyles, const Halves& halves) {
                        (distal.dot(axes.col(2)) + third) * axes.col(2);
 }
 
-bool is_too_few(const Halves& halves) { return halves.minus.size() < 100 || halves.plus.size() < 100; }
+bool is_too_few(const Halves& halves, double each_mm2) {
+  constexpr double kLeast_mm2 = 100;
+  return static_cast<double>(std::min(halves.minus.size(), halves.plus.size())) * each_mm2 < kLeast_mm2;
+}
 
 }  // namespace
 
-std::optional<Condyles> find_condyles(const std::vector<SurfaceSample>& samples,
+std::optional<Condyles> find_condyles(const std::vector<SurfaceSample>& samples, double each_mm2,
                                       const Matrix3d& bone_from_frame, const Vector3d& origin_mm) {
   Condyles result;
   Matrix3d& axes = result.bone_from_frame;
@@ -70,14 +73,15 @@ std::optional<Condyles> find_condyles(const std::vector<SurfaceSample>& samples,
   result.center_mm = origin_mm;
   for (int round = 0; round < kRounds; ++round) {
     const Halves halves = halves_of(samples, axes, result.center_mm);
-    if (is_too_few(halves)) return std::nullopt;
+    if (is_too_few(halves, each_mm2)) return std::nullopt;
     Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
     Vector2d right = Vector2d::Zero();
     double squares = 0, count = 0;
     for (int degrees = kFirst_deg; degrees <= kLast_deg; degrees += kStep_deg) {
       const double angle = geometry::rad_from_deg(degrees);
       const Vector3d direction = -std::cos(angle) * axes.col(1) - std::sin(angle) * axes.col(2);
-      const Vector3d apart = *furthest(halves.plus, direction) - *furthest(halves.minus, direction);
+      const Vector3d apart =
+          *furthest(halves.plus, direction, each_mm2) - *furthest(halves.minus, direction, each_mm2);
       // Turning x by small angles towards y and z takes this much off what is left along the direction.
       const Vector2d row = Vector2d(-std::cos(angle), -std::sin(angle)) * apart.dot(axes.col(0));
       normal += row * row.transpose();
@@ -86,7 +90,7 @@ std::optional<Condyles> find_condyles(const std::vector<SurfaceSample>& samples,
       count += 1;
     }
     result.misfit_mm = std::sqrt(squares / count);
-    measure(result, halves);
+    measure(result, halves, each_mm2);
     if (round == kRounds - 1) break;
     const Vector2d turn = normal.ldlt().solve(right);
     const Vector3d x = (axes.col(0) + turn.x() * axes.col(1) + turn.y() * axes.col(2)).normalized();
@@ -98,20 +102,6 @@ std::optional<Condyles> find_condyles(const std::vector<SurfaceSample>& samples,
   const double apart = (result.posterior_plus - result.posterior_minus).dot(axes.col(0));
   if (result.depth_mm < 40 || result.depth_mm > 100 || apart < 25 || apart > 80) return std::nullopt;
   return result;
-}
-
-Condyles seen_upright(const std::vector<SurfaceSample>& samples, const Condyles& condyles,
-                      const Vector3d& proximal) {
-  Condyles upright = condyles;
-  Matrix3d& axes = upright.bone_from_frame;
-  axes.col(2) = (proximal - proximal.dot(axes.col(0)) * axes.col(0)).normalized();
-  axes.col(1) = axes.col(2).cross(axes.col(0));
-  for (int round = 0; round < 3; ++round) {
-    const Halves halves = halves_of(samples, axes, upright.center_mm);
-    if (is_too_few(halves)) return condyles;
-    measure(upright, halves);
-  }
-  return upright;
 }
 
 }  // namespace arthronaut::landmarks

@@ -25,15 +25,11 @@ struct Condyles {
   double misfit_mm = 0;  // root mean square of what is left between the outlines
 };
 
-// samples: of the joint's end, without the cut. bone_from_frame, origin_mm: rough, as RoughFrame has it; z is
-// kept as far as the condylar line lets it. nullopt where there are no two condyles.
+// samples: of the joint's end, without the cut, one for each each_mm2. bone_from_frame, origin_mm: rough, as
+// RoughFrame has it; z is kept as far as the condylar line lets it: what is hindmost and lowest depends on
+// it, the condylar line does not. nullopt where there are no two condyles.
 [[nodiscard]] std::optional<Condyles> find_condyles(const std::vector<SurfaceSample>& samples,
-                                                    const Eigen::Matrix3d& bone_from_frame,
+                                                    double each_mm2, const Eigen::Matrix3d& bone_from_frame,
                                                     const Eigen::Vector3d& origin_mm);
-
-// The same view turned about its own direction until `proximal` is up: what is hindmost and lowest depends on
-// it, the condylar line does not.
-[[nodiscard]] Condyles seen_upright(const std::vector<SurfaceSample>& samples, const Condyles& condyles,
-                                    const Eigen::Vector3d& proximal);
 
 }  // namespace arthronaut::landmarks

@@ -21,9 +21,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t kSamples = 20000;
 constexpr double kJointEnd_mm = 75;
-constexpr double kEpicondyle_mm = 0.5;  // of its tip
+// Of a tip: how far back of it counts. Backs of condyles are flat, and an extent is one along its own
+// direction alone.
+constexpr double kEpicondyle_mm = 0.5, kExtent_mm = 2;
 // The shaft begins above the condyles by this share of their depth; it is straight for so far (the femur is
 // bowed).
 constexpr double kShaftFrom = 0.78, kShaftLength_mm = 110;
@@ -31,13 +32,16 @@ constexpr double kShaftFrom = 0.78, kShaftLength_mm = 110;
 struct Shape {
   RoughFrame rough;
   std::vector<SurfaceSample> samples;
+  double each_mm2 = kCoarse_mm2;  // of the samples
+  // Upright by the roof of the notch alone: where landmarks lie does not depend on how much of the shaft is
+  // there.
   Condyles condyles;
   Notch notch;
   std::optional<LongAxis> shaft;
+  Matrix3d axes = Matrix3d::Identity();  // anatomical, with the shaft: x right, y anterior, z proximal
 };
 
-double lowest(const Shape& shape) {
-  const Vector3d z = shape.condyles.bone_from_frame.col(2);
+double lowest(const Shape& shape, const Vector3d& z) {
   return (shape.condyles.distal_minus.dot(z) + shape.condyles.distal_plus.dot(z)) / 2;
 }
 
@@ -63,21 +67,20 @@ Vector3d proximal_of(const Shape& shape) {
 
 std::optional<LongAxis> find_shaft(const Shape& shape, const geometry::TriangleMesh& mesh) {
   const Condyles& condyles = shape.condyles;
-  const Vector3d z = condyles.bone_from_frame.col(2);
-  const Vector3d foot = condyles.center_mm + (lowest(shape) - condyles.center_mm.dot(z)) * z;
+  const Vector3d z = shape.axes.col(2);
+  const Vector3d foot = condyles.center_mm + (lowest(shape, z) - condyles.center_mm.dot(z)) * z;
   const double first = kShaftFrom * condyles.depth_mm;
   return find_long_axis(mesh, shape.rough, foot, z, first, first + kShaftLength_mm);
 }
 
 // Condyles and notch in turn, until they agree: each as the other lets it be seen, and without the shaft, of
-// which more or less may be there. Then the shaft.
-bool refine(Shape& shape, const geometry::TriangleMesh& mesh, const geometry::Surface& surface, Matrix3d axes,
+// which more or less may be there.
+bool refine(Shape& shape, const geometry::Surface& surface, Matrix3d axes, Vector3d origin,
             RoofConvention convention, std::string& reason) {
-  Vector3d origin = shape.rough.origin_mm;
   constexpr int kRounds = 5;
   constexpr double kSettled = 0.001;  // of the axes' directions
   for (int round = 0; round < kRounds; ++round) {
-    const auto condyles = find_condyles(shape.samples, axes, origin);
+    const auto condyles = find_condyles(shape.samples, shape.each_mm2, axes, origin);
     if (!condyles) {
       reason = "it has no two condyles at its joint's end";
       return false;
@@ -96,23 +99,26 @@ bool refine(Shape& shape, const geometry::TriangleMesh& mesh, const geometry::Su
     origin = condyles->center_mm;
     if ((axes - before).norm() < kSettled) break;
   }
-  for (int round = 0; round < 3; ++round) {
-    shape.shaft = find_shaft(shape, mesh);
-    shape.condyles = seen_upright(shape.samples, shape.condyles, proximal_of(shape));
-  }
   return true;
+}
+
+void take_samples(Shape& shape, const geometry::TriangleMesh& mesh, double each_mm2) {
+  const RoughFrame& rough = shape.rough;
+  const Vector3d z = rough.bone_from_frame.col(2);
+  shape.each_mm2 = each_mm2;
+  shape.samples.clear();
+  for (const auto& s : sample_surface(mesh, each_mm2)) {
+    const bool is_cut = rough.cut_normal && s.normal.dot(*rough.cut_normal) > 0.7 &&
+                        s.point_mm.dot(*rough.cut_normal) > rough.cut_offset_mm - 1.6;
+    if (!is_cut && (s.point_mm - rough.origin_mm).dot(z) < kJointEnd_mm) shape.samples.push_back(s);
+  }
 }
 
 std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
                                 const RoughFrame& rough, RoofConvention convention, std::string& reason) {
   Shape shape;
   shape.rough = rough;
-  const Vector3d z0 = rough.bone_from_frame.col(2);
-  for (const auto& s : sample_surface(mesh, kSamples)) {
-    const bool is_cut = rough.cut_normal && s.normal.dot(*rough.cut_normal) > 0.7 &&
-                        s.point_mm.dot(*rough.cut_normal) > rough.cut_offset_mm - 1.6;
-    if (!is_cut && (s.point_mm - rough.origin_mm).dot(z0) < kJointEnd_mm) shape.samples.push_back(s);
-  }
+  take_samples(shape, mesh, kCoarse_mm2);
   // A slanting cut misleads about the long axis: the joint's end is looked at from in front and from behind,
   // too, and of what is found there the roof is taken that the outline shows best.
   std::optional<Shape> best;
@@ -120,20 +126,35 @@ std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geomet
   for (const double lean_deg : {0.0, 15.0, -15.0, 30.0, -30.0}) {
     if (std::abs(lean_deg) > 20 && best) break;
     const Eigen::AngleAxisd lean(geometry::rad_from_deg(lean_deg), Vector3d::UnitX());
-    if (refine(shape, mesh, surface, rough.bone_from_frame * lean, convention, reason_of_last) &&
+    if (refine(shape, surface, rough.bone_from_frame * lean, rough.origin_mm, convention, reason_of_last) &&
         (!best || shape.notch.cost < best->notch.cost))
       best = shape;
   }
-  if (!best) reason = reason_of_last;
+  if (best) {
+    take_samples(*best, mesh, kFine_mm2);
+    const Condyles found = best->condyles;
+    if (!refine(*best, surface, found.bone_from_frame, found.center_mm, convention, reason_of_last))
+      best.reset();
+  }
+  if (!best) {
+    reason = reason_of_last;
+    return std::nullopt;
+  }
+  best->axes = best->condyles.bone_from_frame;
+  for (int round = 0; round < 3; ++round) {
+    best->shaft = find_shaft(*best, mesh);
+    best->axes.col(2) = proximal_of(*best);
+    best->axes.col(1) = best->axes.col(2).cross(best->axes.col(0));
+  }
   return best;
 }
 
 // Positive: lateral is +x. The shaft stands lateral of the condyles' middle and leans that way, and the
 // lateral flank of the groove reaches further forward.
 double side_score(const Shape& shape, const geometry::TriangleMesh& mesh) {
-  const Matrix3d& axes = shape.condyles.bone_from_frame;
+  const Matrix3d& axes = shape.axes;
   const Vector3d x = axes.col(0), z = axes.col(2);
-  const double low = lowest(shape), depth = shape.condyles.depth_mm;
+  const double low = lowest(shape, z), depth = shape.condyles.depth_mm;
   double front_minus = -1e9, front_plus = -1e9;
   for (const auto& s : shape.samples) {
     const Vector3d q = axes.transpose() * (s.point_mm - shape.condyles.center_mm);
@@ -167,7 +188,7 @@ std::optional<Vector3d> epicondyle(const Shape& shape, double sign) {
     if (std::abs(q.y()) < 0.25 * depth && q.z() > -0.08 * depth && q.z() < 0.3 * depth)
       found.push_back(s.point_mm);
   }
-  return furthest(found, sign * axes.col(0), kEpicondyle_mm);
+  return furthest(found, sign * axes.col(0), shape.each_mm2, kEpicondyle_mm);
 }
 
 // Where the outline of one condyle below the line reaches furthest along `direction`.
@@ -178,7 +199,7 @@ std::optional<Vector3d> extent(const Shape& shape, double sign, const Vector3d& 
     const Vector3d from_roof = s.point_mm - shape.notch.anterior_mm;
     if (sign * from_roof.dot(x) > 0 && from_roof.dot(shape.notch.into_bone) < 0) found.push_back(s.point_mm);
   }
-  return furthest(found, direction);
+  return furthest(found, direction, shape.each_mm2, kExtent_mm);
 }
 
 }  // namespace
@@ -201,7 +222,7 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
   if (std::abs(score) > 0.5) proposal.side_by_shape = score > 0 ? bones::Side::Right : bones::Side::Left;
   const bones::Side side = options.side.value_or(score > 0 ? bones::Side::Right : bones::Side::Left);
   const double lateral = side == bones::Side::Right ? 1 : -1;
-  const Matrix3d& axes = shape->condyles.bone_from_frame;
+  const Matrix3d& axes = shape->axes;
   proposal.axes = {AnatomicalAxes::Origin::FromLandmarks, axes.col(1), axes.col(2), lateral * axes.col(0)};
   const bool is_plus = lateral > 0;
   const Condyles& condyles = shape->condyles;

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t kSamples = 4000;
+constexpr double kSamples = 4000;
 constexpr double kJointEnd_mm =
     70;  // of the bone from the joint's end on: what the mirror plane is sought in
 constexpr double kLeastCut_mm2 = 300;  // a smaller plane face may be the bone's own
@@ -250,8 +250,8 @@ std::vector<JointEnd> joint_ends(const std::vector<SurfaceSample>& samples, cons
 
 std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
                                      bones::BoneKind bone) {
-  const auto samples = sample_surface(mesh, kSamples);
-  if (samples.size() < kSamples / 2) return {};
+  const auto samples = sample_surface(mesh, geometry::surface_area_mm2(mesh) / kSamples);
+  if (samples.empty()) return {};
   const double area_each = geometry::surface_area_mm2(mesh) / static_cast<double>(samples.size());
   const auto cut = find_cut(mesh, samples, area_each);
   std::vector<std::pair<double, RoughFrame>> found;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 namespace arthronaut::landmarks {
 
@@ -21,15 +22,16 @@ double radical_inverse(std::size_t n, std::size_t base) {
 
 }  // namespace
 
-std::vector<SurfaceSample> sample_surface(const geometry::TriangleMesh& mesh, std::size_t count) {
+std::vector<SurfaceSample> sample_surface(const geometry::TriangleMesh& mesh, double each_mm2) {
+  constexpr double kMost = 1e6;  // of a bone in a wrong unit
   const auto corner = [&](const std::array<std::int32_t, 3>& t, std::size_t k) -> const Vector3d& {
     return mesh.vertices_mm[static_cast<std::size_t>(t[k])];
   };
   const double total = geometry::surface_area_mm2(mesh);
   std::vector<SurfaceSample> samples;
-  if (!(total > 0) || count == 0) return samples;
-  samples.reserve(count);
-  const double each = total / static_cast<double>(count);
+  if (!(total > 0)) return samples;
+  const double each = std::max(each_mm2, total / kMost);
+  samples.reserve(static_cast<std::size_t>(total / each) + 1);
   double before = 0;
   for (const auto& t : mesh.triangles) {
     const Vector3d a = corner(t, 1) - corner(t, 0), b = corner(t, 2) - corner(t, 0);
@@ -37,7 +39,7 @@ std::vector<SurfaceSample> sample_surface(const geometry::TriangleMesh& mesh, st
     const double area = 0.5 * across.norm();
     if (!(area > 0)) continue;
     const Vector3d normal = across.normalized();
-    while (samples.size() < count && (static_cast<double>(samples.size()) + 0.5) * each < before + area) {
+    while ((static_cast<double>(samples.size()) + 0.5) * each < before + area) {
       const double root = std::sqrt(radical_inverse(samples.size() + 1, 2));
       const double v = radical_inverse(samples.size() + 1, 3);
       samples.push_back({corner(t, 0) + root * (1 - v) * a + root * v * b, normal});
@@ -48,15 +50,16 @@ std::vector<SurfaceSample> sample_surface(const geometry::TriangleMesh& mesh, st
 }
 
 std::optional<Vector3d> furthest(const std::vector<Vector3d>& points_mm, const Vector3d& direction,
-                                 double cap_mm) {
-  if (points_mm.size() < kReach) return std::nullopt;
+                                 double each_mm2, double cap_mm) {
+  const auto furthest_count = static_cast<std::size_t>(std::ceil(kReach_mm2 / each_mm2));
+  if (points_mm.size() < furthest_count) return std::nullopt;
   std::vector<double> heights;
   heights.reserve(points_mm.size());
   for (const Vector3d& p : points_mm) heights.push_back(p.dot(direction));
   std::vector<double> top = heights;
-  std::nth_element(top.begin(), top.begin() + kReach - 1, top.end(), std::greater<>());
-  double reach = 0;
-  for (std::size_t i = 0; i < kReach; ++i) reach += top[i] / static_cast<double>(kReach);
+  const auto last = top.begin() + static_cast<std::ptrdiff_t>(furthest_count) - 1;
+  std::nth_element(top.begin(), last, top.end(), std::greater<>());
+  const double reach = std::accumulate(top.begin(), last + 1, 0.0) / static_cast<double>(furthest_count);
   Vector3d sum = Vector3d::Zero();
   double weights = 0;
   for (std::size_t i = 0; i < points_mm.size(); ++i) {

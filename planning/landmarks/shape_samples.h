@@ -13,17 +13,23 @@ struct SurfaceSample {
   Eigen::Vector3d point_mm, normal;
 };
 
-// `count` samples, each for the same area, so that coarse and fine meshes of a bone weigh alike. They depend
-// on the order of the triangles, not on how the bone lies. Empty for a mesh without area.
-[[nodiscard]] std::vector<SurfaceSample> sample_surface(const geometry::TriangleMesh& mesh,
-                                                        std::size_t count);
+// One for each `each_mm2`, so that coarse and fine meshes of a bone weigh alike, and a bone of which less is
+// there is seen as closely. They depend on the order of the triangles, not on how the bone lies. Empty for a
+// mesh without area; of one that is larger than any bone a million.
+[[nodiscard]] std::vector<SurfaceSample> sample_surface(const geometry::TriangleMesh& mesh, double each_mm2);
 
-// Where samples reach furthest along the unit `direction`: as far as the mean of the `kReach` furthest, and
-// across it in the middle of what lies within cap_mm of there, the nearer to it the more. A single sample
-// wanders over a flat side; this does not. nullopt for fewer than kReach.
-inline constexpr std::size_t kReach = 12;
+// Close enough for a search, and for where a landmark lies: of 1 mm2 each, the middle of a cap wanders by
+// up to 1 mm with which points of it are taken, of a quarter of that it keeps to 0.1 mm.
+inline constexpr double kCoarse_mm2 = 1, kFine_mm2 = 0.25;
+
+// Where samples reach furthest along the unit `direction`: as far as the mean of the furthest kReach_mm2 of
+// them, and across it in the middle of what lies within cap_mm of there, the nearer to it the more. A single
+// sample wanders over a flat side; this does not. each_mm2: what a sample stands for. nullopt for fewer than
+// kReach_mm2.
+inline constexpr double kReach_mm2 = 12;
 [[nodiscard]] std::optional<Eigen::Vector3d> furthest(const std::vector<Eigen::Vector3d>& points_mm,
-                                                      const Eigen::Vector3d& direction, double cap_mm = 1.0);
+                                                      const Eigen::Vector3d& direction, double each_mm2,
+                                                      double cap_mm = 1.0);
 
 // What a plane at right angles to the unit `axis` cuts out of a closed mesh.
 struct Section {

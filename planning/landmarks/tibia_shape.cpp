@@ -19,13 +19,12 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t kSamples = 20000;
 constexpr double kShaftFrom_mm = 42, kShaftLength_mm = 160;
 constexpr double kDrawnOut_mm = 25;
 // Real tibiae score 1.7 and more.
 constexpr double kSureForward = 0.8;
 constexpr double kRim_mm = -6;  // over the plateau's plane: still the plateau
-constexpr double kBeside_mm = 4;
+constexpr double kBeside_mm = 4, kSideEnd_mm = 2;
 constexpr double kMiddle_mm = 12;  // to either side: eminences
 constexpr double kTuberosityFrom_mm = 14, kTuberosityTo_mm = 58;
 constexpr double kSureSide = 0.35;
@@ -104,12 +103,13 @@ double side_score(const Shape& shape, const std::optional<Vector3d>& tuberosity)
 
 // Of the samples that `among` admits.
 template <typename Predicate>
-std::optional<Vector3d> furthest_of(const Shape& shape, const Vector3d& direction, Predicate among) {
+std::optional<Vector3d> furthest_of(const Shape& shape, const Vector3d& direction, Predicate among,
+                                    double cap_mm = 1.0) {
   std::vector<Vector3d> found;
   for (const auto& s : shape.samples) {
     if (among(over_plateau(shape, s.point_mm))) found.push_back(s.point_mm);
   }
-  return furthest(found, direction);
+  return furthest(found, direction, kFine_mm2, cap_mm);
 }
 
 Matrix3d anatomical(const Shape& shape) {
@@ -149,7 +149,7 @@ std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geomet
   }
   shape.plateau = *plateau;
   const Vector3d normal = shape.plateau.bone_from_frame.col(2);
-  for (const auto& s : sample_surface(mesh, kSamples)) {
+  for (const auto& s : sample_surface(mesh, kFine_mm2)) {
     const bool is_cut = rough.cut_normal && s.normal.dot(*rough.cut_normal) > 0.7 &&
                         s.point_mm.dot(*rough.cut_normal) > rough.cut_offset_mm - 1.6;
     if (!is_cut && (s.point_mm - shape.plateau.origin_mm).dot(normal) > -80) shape.samples.push_back(s);
@@ -229,8 +229,8 @@ Proposal propose_tibia(const geometry::TriangleMesh& mesh, const ProposalOptions
   put("plateau_posterior", furthest_of(*shape, -axes.col(1), on_plateau));
   // Side ends are flat: beside the halves' middles, so that the line through both runs straight across.
   const auto beside = [&](const Vector3d& q) { return on_plateau(q) && std::abs(q.y()) < kBeside_mm; };
-  put("plateau_lateral", furthest_of(*shape, lateral * axes.col(0), beside));
-  put("plateau_medial", furthest_of(*shape, -lateral * axes.col(0), beside));
+  put("plateau_lateral", furthest_of(*shape, lateral * axes.col(0), beside, kSideEnd_mm));
+  put("plateau_medial", furthest_of(*shape, -lateral * axes.col(0), beside, kSideEnd_mm));
   if (marks.size() < 4) {
     proposal.landmarks.clear();
     proposal.reason = "the plateau has no rim";
