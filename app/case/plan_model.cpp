@@ -95,7 +95,8 @@ void PlanModel::set_landmarks(bones::BoneKind kind, landmarks::Landmarks landmar
   ++revision_;
 }
 
-default_plan::DefaultTunnel PlanModel::default_tunnel(const tunnels::TunnelKey& key) const {
+default_plan::DefaultTunnel PlanModel::default_tunnel(const tunnels::TunnelKey& key,
+                                                      const std::stop_token& stop) const {
   const bones::BoneKind kind = key.bone;
   const BoneModel& bone = bones_.at(kind);
   return default_plan::plan_bone(
@@ -106,7 +107,8 @@ default_plan::DefaultTunnel PlanModel::default_tunnel(const tunnels::TunnelKey& 
        // Both bundles of a bone are made at once: each leaves the other's default its room, whatever is
        // there.
        .proposal = bone.proposal ? &*bone.proposal : nullptr},
-      knee_.side, {.bundle = key.bundle, .diameter_mm = default_plan::usual_diameter_mm(key.bundle)});
+      knee_.side,
+      {.bundle = key.bundle, .diameter_mm = default_plan::usual_diameter_mm(key.bundle), .stop = stop});
 }
 
 std::optional<tunnels::Tunnel> PlanModel::tunnel(const tunnels::TunnelKey& key) const {
@@ -139,9 +141,11 @@ std::vector<tunnels::PlanCheck> PlanModel::check(const tunnels::TunnelKey& key) 
   return checks;
 }
 
-cases::PlanFit PlanModel::plan_fit(const tunnels::TunnelKey& key) const {
+cases::PlanFit PlanModel::plan_fit(const tunnels::TunnelKey& key) const { return plan_fit(knee_.plan, key); }
+
+cases::PlanFit PlanModel::plan_fit(const cases::Plan& plan, const tunnels::TunnelKey& key) const {
   const auto bone = bones_.find(key.bone);
-  return cases::plan_fit(knee_.plan, key, bone == bones_.end() ? "" : bone->second.mesh_sha256);
+  return cases::plan_fit(plan, key, bone == bones_.end() ? "" : bone->second.mesh_sha256);
 }
 
 double PlanModel::drawn_length_mm(const tunnels::TunnelKey& key) const {

@@ -61,6 +61,8 @@ class PlanModel {
   [[nodiscard]] const std::vector<tunnels::PlanCheck>& checks(const tunnels::TunnelKey& key) const;
   // Whether the tunnel is of the bone's mesh: what is not valid must not be guided by.
   [[nodiscard]] cases::PlanFit plan_fit(const tunnels::TunnelKey& key) const;
+  // Of another plan, as one that was kept, against the bones of now.
+  [[nodiscard]] cases::PlanFit plan_fit(const cases::Plan& plan, const tunnels::TunnelKey& key) const;
   // How far a tunnel is drawn: through the bone, or 30 mm where it misses.
   [[nodiscard]] double drawn_length_mm(const tunnels::TunnelKey& key) const;
   [[nodiscard]] geometry::Bounds bounds(std::optional<bones::BoneKind> only) const;
@@ -83,7 +85,8 @@ class PlanModel {
     return bones_.at(kind).review.footprint;
   }
   // A tunnel by norms and landmarks; read the outcome. Takes a moment.
-  [[nodiscard]] default_plan::DefaultTunnel default_tunnel(const tunnels::TunnelKey& key) const;
+  [[nodiscard]] default_plan::DefaultTunnel default_tunnel(const tunnels::TunnelKey& key,
+                                                           const std::stop_token& stop = {}) const;
   void set_landmarks(bones::BoneKind kind, landmarks::Landmarks landmarks, landmarks::LandmarkStates states);
   // Where the femur is cut open to see the lateral wall of its notch; nullopt without a femur.
   [[nodiscard]] std::optional<scene::CutPlane> notch_cut() const;

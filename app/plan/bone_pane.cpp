@@ -52,7 +52,17 @@ void BonePane::look_from(scene::ViewDirection view) {
   const scene::SceneCamera camera = scene::look_from(view, model_->axes(of), joint, aspect_);
   open_ = {(joint.min_mm + joint.max_mm) / 2, (camera.position_mm - camera.focus_mm).normalized()};
   pane_.look(camera);
+  named_ = camera;
   is_stale_ = true;
+}
+
+bool BonePane::is_seen_from(scene::ViewDirection view) const {
+  constexpr double kSame = 1e-6;
+  const auto direction = [](const scene::SceneCamera& camera) -> Eigen::Vector3d {
+    return (camera.focus_mm - camera.position_mm).normalized();
+  };
+  return looked_from_ == view && (direction(camera()) - direction(named_)).norm() < kSame &&
+         (camera().up.normalized() - named_.up.normalized()).norm() < kSame;
 }
 
 void BonePane::look_at(const Eigen::Vector3d& point_mm, BoneKind bone) {

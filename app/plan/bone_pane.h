@@ -53,6 +53,8 @@ class BonePane {
   void look_at(const Eigen::Vector3d& point_mm, bones::BoneKind bone);
   // nullopt: from no named side, at a point.
   [[nodiscard]] const std::optional<scene::ViewDirection>& looked_from() const { return looked_from_; }
+  // From there, and not turned by hand since.
+  [[nodiscard]] bool is_seen_from(scene::ViewDirection view) const;
   // The one bone that the view is of; nullopt: both are shown.
   [[nodiscard]] std::optional<bones::BoneKind> only() const { return only_; }
   [[nodiscard]] bool shows(bones::BoneKind bone) const { return !only_ || *only_ == bone; }
@@ -81,6 +83,7 @@ class BonePane {
   scene::SceneContent beside_;
   std::shared_ptr<const scene::VolumeItem> volume_;
   std::optional<scene::ViewDirection> looked_from_;
+  scene::SceneCamera named_;  // of looked_from_
   std::optional<bones::BoneKind> only_;
   std::optional<scene::CutPlane> cut_;
   scene::CutPlane open_;  // through the middle of what is looked at, towards the eye: of an MR in 3D

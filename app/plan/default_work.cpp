@@ -12,9 +12,10 @@ namespace arthronaut::plan {
 namespace {
 
 // The top of a thread: the geometry library's assertions, too, are words about that tunnel.
-default_plan::DefaultTunnel default_tunnel(const open_case::PlanModel& model, const tunnels::TunnelKey& key) {
+default_plan::DefaultTunnel default_tunnel(const open_case::PlanModel& model, const tunnels::TunnelKey& key,
+                                           const std::stop_token& stop) {
   try {
-    return model.default_tunnel(key);
+    return model.default_tunnel(key, stop);
   } catch (const std::exception& error) {
     default_plan::DefaultTunnel none;
     none.message = error.what();
@@ -26,15 +27,16 @@ default_plan::DefaultTunnel default_tunnel(const open_case::PlanModel& model, co
 
 void DefaultWork::start(const open_case::PlanModel& model, const std::vector<tunnels::TunnelKey>& keys) {
   made_of_ = std::make_shared<const open_case::PlanModel>(model);
+  stop_ = {};
   asked_ = keys.size();
   done_ = 0;
   running_.start(
-      [this, model = made_of_, keys] {
+      [this, model = made_of_, keys, stop = stop_.get_token()] {
         std::vector<std::future<default_plan::DefaultTunnel>> running;
         running.reserve(keys.size());
         for (const tunnels::TunnelKey& key : keys)
           running.push_back(std::async(std::launch::async, [&, key] {
-            auto made = default_tunnel(*model, key);
+            auto made = default_tunnel(*model, key, stop);
             ++done_;
             wake_();
             return made;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,18 @@ class DefaultWork {
  public:
   // wake: called from other threads when a tunnel is done.
   explicit DefaultWork(std::function<void()> wake) : wake_(std::move(wake)) {}
+  ~DefaultWork() { cancel(); }  // and waits for the thread
+  DefaultWork(const DefaultWork&) = delete;
+  DefaultWork& operator=(const DefaultWork&) = delete;
 
   // Precondition: not is_busy(), and the model has these bones.
   void start(const open_case::PlanModel& model, const std::vector<tunnels::TunnelKey>& keys);
-  // What is being made will not be taken. The thread ends by itself: until then nothing can be started.
-  void cancel() { made_of_ = nullptr; }
+  // What is being made will not be taken. The thread is asked to end, and does within a direction that it is
+  // trying: until then nothing can be started.
+  void cancel() {
+    made_of_ = nullptr;
+    stop_.request_stop();
+  }
   [[nodiscard]] bool is_running() const { return made_of_ != nullptr; }  // and was not cancelled
   [[nodiscard]] bool is_busy() const { return running_.is_busy(); }
   // Whether the model's plan and landmarks are those that it is made of. Precondition: is_running().
@@ -37,6 +45,7 @@ class DefaultWork {
  private:
   std::function<void()> wake_;
   std::shared_ptr<const open_case::PlanModel> made_of_;  // null: nothing is wanted
+  std::stop_source stop_;
   std::size_t asked_ = 0;
   std::atomic<std::size_t> done_ = 0;
   worker::Awaited<std::vector<MadeTunnel>> running_;  // last: ends first

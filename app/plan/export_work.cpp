@@ -6,16 +6,17 @@
 
 namespace arthronaut::plan {
 
-std::string ExportOutcome::in_words(const std::filesystem::path& open_case_folder) const {
-  std::string words = case_folder == open_case_folder ? text : "Of the case \"" + case_name + "\": " + text;
+std::string ExportOutcome::in_words(std::uint64_t revision_now) const {
+  std::string words = text;
+  if (is_written && revision_now != revision) words += "\nIt is the plan as it was before the last change.";
   for (const std::string& doubt : doubts) words += "\nLook: " + doubt;
   return words;
 }
 
-void ExportWork::start(cases::Case knee, std::filesystem::path case_folder) {
+void ExportWork::start(cases::Case knee, std::uint64_t revision, std::filesystem::path case_folder) {
   running_.start(
-      [knee = std::move(knee), folder = std::move(case_folder)] {
-        ExportOutcome outcome{.case_folder = folder, .case_name = knee.name};
+      [knee = std::move(knee), revision, folder = std::move(case_folder)] {
+        ExportOutcome outcome{.revision = revision};
         try {  // a full disk is a state of the screen
           const plan_export::ExportSummary summary = plan_export::export_plan(knee, folder / "export");
           outcome.text = "Exported into " + (folder / "export").string() + ":";

@@ -1,6 +1,7 @@
 // The plan written for other programs while the screen goes on: drilling the bones takes a while.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -13,14 +14,13 @@
 namespace arthronaut::plan {
 
 struct ExportOutcome {
-  std::filesystem::path case_folder;
-  std::string case_name;
+  std::uint64_t revision = 0;  // PlanModel::revision() of what was exported
   bool is_written = false;
   std::string text = {};                 // where what was written, or why nothing was
   std::vector<std::string> doubts = {};  // what to look at in what was written
 
-  // For who has that case open by now. To another one's eyes it names its own case.
-  [[nodiscard]] std::string in_words(const std::filesystem::path& open_case_folder) const;
+  // For who may have changed the plan meanwhile.
+  [[nodiscard]] std::string in_words(std::uint64_t revision_now) const;
 };
 
 class ExportWork {
@@ -30,7 +30,7 @@ class ExportWork {
 
   // Into the folder "export" of the case, which is its owner's alone to read, as `arthronaut plan --export`
   // writes them (plan_export::export_plan). Precondition: not is_running().
-  void start(cases::Case knee, std::filesystem::path case_folder);
+  void start(cases::Case knee, std::uint64_t revision, std::filesystem::path case_folder);
   [[nodiscard]] bool is_running() const { return running_.is_busy(); }
   // For every frame: once what came of it; nullopt while there is no news.
   [[nodiscard]] std::optional<ExportOutcome> take_outcome();

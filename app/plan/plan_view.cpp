@@ -85,7 +85,7 @@ void PlanView::tick(double now_s) {
   follow_plan();
   follow_defaults();
   if (const auto exported = export_.take_outcome())
-    state_.hint = {exported->in_words(case_folder_), exported->is_written && exported->doubts.empty()};
+    state_.hint = {exported->in_words(model_->revision()), exported->is_written && exported->doubts.empty()};
   if (volume_.is_on()) slices_.want();
   slices_.tick();
   volume_.follow(slices_.shared_volume());
@@ -161,8 +161,10 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
                                                                      : "nothing");
   ui.log.note_state("hint", state_.hint.text);
   ui.log.note_state("volume", volume_.in_words(slices_.reason()));
-  ui.log.note_state("view_direction",
-                    bones_.looked_from() ? scene::to_text(*bones_.looked_from()) : "a landmark");
+  const auto& from = bones_.looked_from();
+  ui.log.note_state("view_direction", !from                        ? "a landmark"
+                                      : bones_.is_seen_from(*from) ? scene::to_text(*from)
+                                                                   : "turned by hand");
   ui.log.note_state("tunnel", tunnels::name_of(state_.key));
   const auto tunnel = model_->tunnel(state_.key);
   ui.log.note_state("diameter_mm", tunnel ? widgets::fixed(tunnel->diameter_mm, 2) : "");
@@ -219,22 +221,6 @@ const geometry::TriangleMesh& PlanView::tunnel_mesh(const tunnels::TunnelKey& ke
   return kept.mesh;
 }
 
-// Over the bones, where it is not overlooked: nothing is saved until it is answered.
-void PlanView::draw_conflict(const widgets::Ui& ui, const widgets::Rect& area) const {
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.AddRectFilled(area.min(), area.max(), widgets::kPanel, ui.theme.px(6));
-  draw.AddRect(area.min(), area.max(), widgets::kCaution, ui.theme.px(6), 0, ui.theme.px(2));
-  const float middle = area.y + area.height / 2, font = ui.theme.strong->FontSize;
-  widgets::draw_sign(draw, {area.x + ui.theme.px(26), middle}, ui.theme.px(10), widgets::Severity::Caution);
-  draw.AddText(ui.theme.strong, font, {area.x + ui.theme.px(50), middle - font / 2}, widgets::kText,
-               "Another program has saved another plan of this case");
-  const float height = ui.theme.px(44), width = ui.theme.px(190);
-  ImGui::SetCursorScreenPos({area.x + area.width - 2 * width - ui.theme.px(20), middle - height / 2});
-  widgets::action_button(ui, "plan.take_theirs", width, height);
-  ImGui::SetCursorScreenPos({area.x + area.width - width - ui.theme.px(10), middle - height / 2});
-  widgets::action_button(ui, "plan.keep_ours", width, height);
-}
-
 void PlanView::show_content() {
   scene::SceneContent content;
   for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
@@ -281,37 +267,6 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   follow(bones_.draw(ui, area, marks()));
   draw_survey_legend(ui, area);
   draw_hint(ui, area);
-}
-
-void PlanView::draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const {
-  const std::string bone(bones::to_text(state_.key.bone));
-  const Hint& hint = state_.hint;
-  std::string text = hint.text;
-  if (text.empty() && state_.placing == Placing::Entry)
-    text = "Click on the " + bone + ": the tunnel begins there. Esc leaves it.";
-  if (text.empty() && state_.placing == Placing::Landmark)
-    text = "Click on the " + bone + " where the landmark is. Esc leaves it.";
-  if (text.empty() && defaults_.is_running())
-    text = "Making the default plan: " + defaults_.progress() + ". Esc leaves it.";
-  if (text.empty()) return;
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  ImFont* font = hint.of ? ui.theme.body : text.size() > 90 ? ui.theme.strong : ui.theme.title;
-  const float wrap = area.width - ui.theme.px(40), pad = ui.theme.px(6);
-  const ImVec2 at{area.x + ui.theme.px(20), area.y + ui.theme.px(16)};
-  ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, wrap, text.c_str());
-  // What came of something stands there until somebody has read it, and hides the bone.
-  constexpr const char* kWayOut = "Esc takes this away";
-  const float way_out = hint.is_news || hint.of ? ui.theme.body->FontSize : 0;
-  if (way_out > 0) size.x = std::max(size.x, ui.theme.body->CalcTextSizeA(way_out, 1e9F, 0, kWayOut).x);
-  // Read over a bright bone or a brighter MR, too.
-  draw.AddRectFilled({at.x - pad, at.y - pad}, {at.x + size.x + pad, at.y + size.y + way_out + pad},
-                     IM_COL32(12, 16, 20, 210), pad);
-  if (way_out > 0) draw.AddText(ui.theme.body, way_out, {at.x, at.y + size.y}, widgets::kQuietText, kWayOut);
-  draw.AddText(font, font->FontSize, at,
-               hint.text.empty() ? widgets::kAccent
-               : hint.is_news    ? widgets::kText
-                                 : widgets::kCaution,
-               text.c_str(), nullptr, wrap);
 }
 
 std::optional<Eigen::Vector3d> PlanView::aim_handle() const {

@@ -49,6 +49,8 @@ class PlanView : public mode::Mode {
   }
   void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
+  // An export, which the end of the program or another case would cut off.
+  [[nodiscard]] bool has_running_work() const override { return export_.is_running(); }
   [[nodiscard]] bool is_busy() const override {
     return history_.is_moving() || defaults_.is_running() || slices_.is_loading() || volume_.is_preparing();
   }
@@ -126,11 +128,13 @@ class PlanView : public mode::Mode {
   void look_from(scene::ViewDirection view);
   void draw_bones(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_slices(const widgets::Ui& ui, const std::array<widgets::Rect, 3>& areas);
+  // plan_notes.cpp
   void draw_conflict(const widgets::Ui& ui, const widgets::Rect& area) const;
+  void draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const;
+
   void show_content();
   [[nodiscard]] std::vector<PaneMark> marks() const;
   void follow(const PaneEvent& event);
-  void draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const;
   [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle() const;
   [[nodiscard]] const geometry::TriangleMesh& tunnel_mesh(const tunnels::TunnelKey& key);
 

@@ -48,7 +48,7 @@ void PlanView::take_version(std::size_t place) {
 void PlanView::export_plan() {
   history_.settle_now();
   state_.hint = {"Exporting: the bones are drilled, which takes a while ...", true};
-  export_.start(model_->knee(), case_folder_);
+  export_.start(model_->knee(), model_->revision(), case_folder_);
 }
 
 void PlanView::add_version_actions(widgets::Actions& actions) {

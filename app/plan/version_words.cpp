@@ -9,7 +9,7 @@ namespace arthronaut::plan {
 KeptVersion measured_in(const open_case::PlanModel& model, cases::PlanVersion version) {
   KeptVersion kept{std::move(version), {}};
   for (const auto& [key, tunnel] : kept.version.plan.tunnels)
-    if (model.has_bone(key.bone))
+    if (model.has_bone(key.bone) && model.plan_fit(kept.version.plan, key).is_valid())
       kept.measured.emplace(
           key, plan_review::MeasuredTunnel{tunnel, tunnels::measure(tunnel, model.surface(key.bone))});
   return kept;
@@ -30,6 +30,8 @@ std::vector<std::string> against_the_plan(const open_case::PlanModel& model, con
                                 : files::format("; %.1f mm long", then.length_mm) + beside(now.length_mm) +
                                       files::format(", wall %.1f mm", then.wall_mm) + beside(now.wall_mm);
     }
+    if (kept.version.plan.tunnels.contains(difference.key) && there == kept.measured.end())
+      line += "; planned on another surface of the bone";
     lines.push_back(std::move(line));
   }
   return lines;

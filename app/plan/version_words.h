@@ -13,7 +13,8 @@ namespace arthronaut::plan {
 
 struct KeptVersion {
   cases::PlanVersion version;
-  plan_review::MeasuredPlan measured;  // in the bones of the case; a version never changes
+  // In the bones of the case, where they are those that it was planned on; a version never changes.
+  plan_review::MeasuredPlan measured;
 };
 // About a millisecond a tunnel.
 [[nodiscard]] KeptVersion measured_in(const open_case::PlanModel& model, cases::PlanVersion version);

@@ -186,10 +186,12 @@ std::optional<Tunnel> bundle_tunnel(const Site& site, Places& places, DefaultTun
   result.off_norm_mm = (best->tunnel.entry_mm - places.entry(bundle)->entry_mm).norm();
   if (result.off_norm_mm == 0) return best->tunnel;
   const std::string other = tunnels::name_of({site.input.bone->kind, other_bundle(bundle)});
-  result.place = files::format(
-      "%.1f mm off the norm's place, away from the tunnel %s, for %.1f mm of bone between the two",
-      result.off_norm_mm, other.c_str(), best->between_mm);
-  if (first) result.place += files::format(": %.1f mm at the norm's place", first->between_mm);
+  result.place = files::format("%.1f mm off the norm's place", result.off_norm_mm);
+  if (!std::isfinite(best->between_mm)) return best->tunnel;  // the other bundle has no tunnel to be near to
+  result.place += files::format(", away from the tunnel %s, for %.1f mm of bone between the two",
+                                other.c_str(), best->between_mm);
+  if (first && std::isfinite(first->between_mm))
+    result.place += files::format(": %.1f mm at the norm's place", first->between_mm);
   return best->tunnel;
 }
 

@@ -18,7 +18,7 @@ using testing::StartsWith;
 ExportOutcome outcome_of(const cases::Case& knee, const std::filesystem::path& case_folder) {
   std::promise<void> woken;
   ExportWork work([&] { woken.set_value(); });
-  work.start(knee, case_folder);
+  work.start(knee, 7, case_folder);
   EXPECT_TRUE(work.is_running());
   woken.get_future().wait();
   std::optional<ExportOutcome> outcome;
@@ -33,7 +33,7 @@ TEST(ExportWork, WritesThePlanAndSaysWhere) {
   const cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "export");
   const ExportOutcome outcome = outcome_of(knee, folder / "Knee.arthro");
   EXPECT_TRUE(outcome.is_written);
-  EXPECT_THAT(outcome.in_words(folder / "Knee.arthro"),
+  EXPECT_THAT(outcome.in_words(7),
               StartsWith("Exported into " + (folder / "Knee.arthro/export").string() +
                          ": plan.json plan.csv plan.mrk.json femur_drilled.stl tibia_drilled.stl"));
   EXPECT_TRUE(std::filesystem::exists(folder / "Knee.arthro/export/plan.mrk.json"));
@@ -43,20 +43,21 @@ TEST(ExportWork, SaysWhyNothingWasWritten) {
   const test::TemporaryFolder folder;
   const ExportOutcome outcome = outcome_of({}, folder / "Knee.arthro");
   EXPECT_FALSE(outcome.is_written);
-  EXPECT_THAT(outcome.in_words(folder / "Knee.arthro"), StartsWith("Not exported: plan: nothing is planned"));
+  EXPECT_THAT(outcome.in_words(8), StartsWith("Not exported: plan: nothing is planned"));
 }
 
-// It takes a while: by then another case may be open, whose plan was not exported.
-TEST(ExportWork, NamesItsCaseWhereAnotherOneIsOpen) {
-  const ExportOutcome outcome{.case_folder = "/cases/A.arthro",
-                              .case_name = "Knee A",
+// It takes a while: by then the plan may have been changed, and what lies there is not what is seen.
+TEST(ExportWork, SaysThatThePlanWasChangedMeanwhile) {
+  const ExportOutcome outcome{.revision = 7,
                               .is_written = true,
                               .text = "Exported into /cases/A.arthro/export: plan.json",
                               .doubts = {"the femur is not closed"}};
-  EXPECT_EQ(outcome.in_words("/cases/B.arthro"),
-            "Of the case \"Knee A\": Exported into /cases/A.arthro/export: plan.json\n"
+  EXPECT_EQ(outcome.in_words(8),
+            "Exported into /cases/A.arthro/export: plan.json\n"
+            "It is the plan as it was before the last change.\n"
             "Look: the femur is not closed");
-  EXPECT_THAT(outcome.in_words("/cases/A.arthro"), StartsWith("Exported into"));
+  EXPECT_EQ(outcome.in_words(7),
+            "Exported into /cases/A.arthro/export: plan.json\nLook: the femur is not closed");
 }
 
 }  // namespace

@@ -47,5 +47,13 @@ TEST_F(VersionWords, NameNoNumbersThatThereAreNot) {
                           testing::MatchesRegex("tibia: planned there alone; .* mm long, wall .* mm")));
 }
 
+// Kept before the bone was painted anew: no number of another surface stands for it.
+TEST_F(VersionWords, MeasureNothingOnASurfaceThatItWasNotPlannedOn) {
+  cases::Plan other = model_.knee().plan;
+  other.tunnels.at(BoneKind::Femur).diameter_mm += 2;
+  other.mesh_sha256.at(BoneKind::Femur) = std::string(64, 'a');
+  EXPECT_THAT(against(other)[0], testing::EndsWith("+2.0 mm wide; planned on another surface of the bone"));
+}
+
 }  // namespace
 }  // namespace arthronaut::plan

@@ -69,6 +69,19 @@ TEST_F(PlanWindow, OnlyAHandleThatIsSeenIsTakenHoldOf) {
   EXPECT_LT(moved, 2.5);  // 3 px of 0.25 mm on a wall that lies up to 70 degrees off the view
 }
 
+// The button of a view is lit while the bones are seen from there, not after they were turned.
+TEST_F(PlanWindow, AViewThatWasTurnedIsNoMoreTheViewThatItWas) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  ASSERT_TRUE(app.wait_for_state("view_direction", "anterior"));
+  const auto [x, y] = middle(app, "plan.view");
+  app.drag(x + 200, y, x + 240, y);
+  ASSERT_TRUE(app.wait_for_state("view_direction", "turned by hand"));
+  app.press("1");
+  EXPECT_TRUE(app.wait_for_state("view_direction", "anterior"));
+}
+
 // P: Esc leaves it; a click on the other bone, or beside both, says so and leaves no step to undo.
 TEST_F(PlanWindow, PlacingCanBeLeftAndTakesNoOtherBone) {
   const VirtualDisplay display(1280, 720);
