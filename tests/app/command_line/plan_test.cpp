@@ -2,11 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/cases/plan_versions.h"
+#include "planning/files/atomic_file.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/phantom/phantom_knee.h"
 #include "tests/app/command_line/program.h"
@@ -84,6 +86,19 @@ TEST_F(PlanCommand, KeepsWhatADefaultTakesThePlaceOf) {
   const auto again = run({"plan", "--bone", "femur", "--default", "--json"});
   EXPECT_EQ(nlohmann::json::parse(again.output).at("kept_version"), 1) << "it is a version already";
   EXPECT_EQ(cases::load_plan_versions(folder_ / "knee.arthro").size(), 1U);
+}
+
+// What a newer program says against a bone cannot be read: the plan that is there stays, and no version of it
+// is kept for nothing.
+TEST_F(PlanCommand, WhatCannotBeReadLeavesThePlan) {
+  std::ofstream(folder_ / "knee.arthro/bone_doubts.json")
+      << R"({"format": "arthronaut.bone_doubts", "version": 99})";
+  const std::string plan = files::read_text(folder_ / "knee.arthro/plan.json");
+  const auto result = run({"plan", "--bone", "femur", "--default"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, HasSubstr("bone_doubts.json"));
+  EXPECT_EQ(files::read_text(folder_ / "knee.arthro/plan.json"), plan);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "knee.arthro/plan_versions"));
 }
 
 // A diameter without a tunnel to place would be taken for a change of the one that is there; of a tunnel that

@@ -139,7 +139,7 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
   EXPECT_EQ(pdf_text().find("1.37 mm"), std::string::npos);
   files::write_atomically(achieved_file, "{");
   write_report(knee_folder(), pdf());
-  expect_contains(pdf_text(), "NOT READABLE");
+  expect_contains(pdf_text(), "NOT READABLE: achieved.json");
   std::filesystem::remove(achieved_file);
   write_report(knee_folder(), pdf());
   expect_contains(pdf_text(), "No comparison with images after the operation");

@@ -189,7 +189,8 @@ TEST_F(Report, HasStepsMarksAndTheLastHash) {
   for (const std::size_t at : {0, 16, 32, 48}) expect_contains(text, hash.substr(at, 16));
   files::write_atomically(recording::marks_file(session), "{");
   write_report(knee_folder(), pdf());
-  expect_contains(pdf_text(), "NOT READABLE");
+  // Without where the case lies: its folder may bear a name.
+  expect_contains(pdf_text(), "NOT READABLE: sessions/");
   expect_contains(pdf_text(), "bone registered");
 }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/study.h"
 #include "planning/geometry/error.h"
@@ -206,6 +208,23 @@ TEST(CaseImport, WhatFailsHalfWayLeavesNothingOnAnotherSurface) {
   EXPECT_FALSE(cases::load_cartilage(folder / "a", BoneKind::Femur));
   EXPECT_TRUE(after.images.empty());
   EXPECT_FALSE(std::filesystem::exists(folder / "a/images/1.nrrd"));
+}
+
+// What a newer program keeps in the case cannot be read: nothing of the bone before is forgotten for it.
+TEST(CaseImport, WhatCannotBeReadIsFoundOutBeforeAnythingIsForgotten) {
+  const TemporaryFolder folder;
+  cases::Case made = add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
+  made.landmarks[BoneKind::Femur]["medial_epicondyle"] = {40, 0, 0};
+  cases::save_case(folder / "a", made);
+  std::ofstream(folder / "a/bone_doubts.json") << R"({"format": "arthronaut.bone_doubts", "version": 99})";
+  BoneImport other = imported(BoneKind::Femur);
+  other.bones[0].bone.mesh = test::ellipsoid({38, 30, 25}, 2);
+  EXPECT_THAT(message_of<InvalidInput>([&] { add_to_case(folder / "a", other, "", "bone.stl"); }),
+              HasSubstr("bone_doubts.json"));
+  const cases::Case after = cases::load_case(folder / "a");
+  EXPECT_EQ(after.bones.at(BoneKind::Femur).mesh.vertices_mm,
+            made.bones.at(BoneKind::Femur).mesh.vertices_mm);
+  EXPECT_EQ(after.landmarks.size(), 1U);
 }
 
 // Cartilage is of the surface that it was declared on; that of the bone that stays, stays.
