@@ -191,9 +191,13 @@ TEST(KilledRecord, HoldsEveryCommandButThoseOfTheLastSecond) {
 
       const auto left =
           recording::find_resumable(folders[at]->path(), bones::BoneKind::Femur, "the phantom's", {});
-      ASSERT_TRUE(left);
-      EXPECT_FALSE(left->was_finished);
       const operation::OperationStatePtr expected = state_after(kept);
+      // On a busy machine all that one was given may lie in its last second, and nothing had come of it yet.
+      ASSERT_EQ(left.has_value(), expected->depth_stop_mm.has_value() ||
+                                      expected->registration->in_force.registration != nullptr)
+          << kept << " commands kept";
+      if (!left) continue;
+      EXPECT_FALSE(left->was_finished);
       EXPECT_EQ(left->operation.session, session.header().id);
       EXPECT_EQ(left->operation.plan, expected->plan);
       EXPECT_EQ(left->operation.depth_stop_mm, expected->depth_stop_mm);
