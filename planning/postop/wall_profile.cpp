@@ -38,7 +38,8 @@ class Explanation {
     double count = 0;
     for (const WallPoint& point : points) count += point.count / static_cast<double>(points.size());
     for (const WallPoint& point : points) weights_.push_back(point.count / count);
-    floor_ = kCorrelated * noise_hu * noise_hu / count * static_cast<double>(points.size());
+    constexpr double kLeast = 1e-6;  // of a picture without noise, which is explained to the last bit
+    floor_ = kLeast + kCorrelated * noise_hu * noise_hu / count * static_cast<double>(points.size());
   }
 
   // The best wall and blur for a rim of this thickness.
