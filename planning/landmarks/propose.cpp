@@ -21,6 +21,19 @@ std::string_view to_text(RoofShape shape) {
   return "unknown";
 }
 
+namespace {
+
+// Of either side, since the shape need not tell it. What is not would be proposed here and passed over by
+// whoever takes axes of it.
+bool gives_axes(const geometry::TriangleMesh& mesh, bones::BoneKind bone, const Landmarks& landmarks) {
+  const auto is_believed = [&](bones::Side side) {
+    return anatomical_axes(bone, side, landmarks, mesh).origin == AnatomicalAxes::Origin::FromLandmarks;
+  };
+  return is_believed(bones::Side::Right) || is_believed(bones::Side::Left);
+}
+
+}  // namespace
+
 Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone, const ProposalOptions& options) {
   if (mesh.empty() || !(geometry::surface_area_mm2(mesh) > 0)) {
     Proposal nothing;
@@ -30,6 +43,12 @@ Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone, const
   }
   Proposal proposal =
       bone == bones::BoneKind::Femur ? propose_femur(mesh, options) : propose_tibia(mesh, options);
+  if (proposal.is_usable() && !gives_axes(mesh, bone, proposal.landmarks)) {
+    proposal = {};
+    proposal.outcome = Proposal::Outcome::NotThisBone;
+    proposal.reason = "the places that its shape gives lie as on no " + std::string(bones::to_text(bone)) +
+                      "; is it cut off through the joint's end?";
+  }
   if (proposal.is_usable() && options.side && proposal.side_by_shape &&
       *options.side != *proposal.side_by_shape) {
     proposal.doubts.push_back("by its shape the " + std::string(bones::to_text(bone)) + " is a " +

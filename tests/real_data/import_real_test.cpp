@@ -12,6 +12,7 @@
 #include "planning/images/dicom_slice.h"
 #include "planning/images/volume_file.h"
 #include "planning/import/bone_import.h"
+#include "planning/landmarks/propose.h"
 #include "tests/message_of.h"
 #include "tests/real_data/real_data.h"
 
@@ -190,6 +191,24 @@ TEST(ImportRealVolumes, BonesOfTheCts) {
       }
     }
   }
+}
+
+// The images of one end within the femur, in front: of what is left of it no landmarks are proposed, where
+// they turned it over. The other one is whole, and its landmarks tell its axes.
+TEST(ImportRealVolumes, AFemurThatIsCutOffInFrontGivesNoLandmarks) {
+  ARTHRONAUT_REQUIRE_DATA(cut, "volumes/knee-ct-028/CT");
+  ARTHRONAUT_REQUIRE_DATA(whole, "volumes/knee-ct-051/CT");
+  const auto proposed_of = [](const std::filesystem::path& folder) {
+    BoneImportOptions options;
+    options.side = Side::Left;
+    const BoneImport import = import_bones(folder, options);
+    EXPECT_EQ(import.bones.at(0).bone.kind, BoneKind::Femur);
+    return landmarks::propose(import.bones.at(0).bone.mesh, BoneKind::Femur, {.side = Side::Left});
+  };
+  const landmarks::Proposal of_cut = proposed_of(cut);
+  EXPECT_FALSE(of_cut.is_usable());
+  EXPECT_THAT(of_cut.reason, HasSubstr("cut off through the joint's end"));
+  EXPECT_TRUE(proposed_of(whole).is_usable());
 }
 
 // An oblique label map: the bones must stand above each other in the patient, and have the size of a knee.
