@@ -17,9 +17,9 @@ namespace {
 
 // Why a file of the case cannot be read, without where the case lies: a folder may bear the patient's name.
 std::string reason_in_case(const Content& content, std::string reason) {
-  const std::string folder = content.folder.string();
+  const std::string folder = (content.folder / "").string();  // with the stroke: "." stands in any sentence
   for (auto at = reason.find(folder); at != std::string::npos; at = reason.find(folder, at))
-    reason.erase(at, folder.size() + (reason.substr(at + folder.size()).starts_with("/") ? 1 : 0));
+    reason.erase(at, folder.size());
   return reason;
 }
 

@@ -45,6 +45,7 @@ void WorkstationWindow::take_opened_case() {
   leave_shown();
   // The one before is let go when no mode knows it any more.
   std::unique_ptr<open_case::CaseOpening> before = std::exchange(case_, std::move(opening_));
+  const bool is_same_folder = before != nullptr && before->folder() == case_->folder();
   lender_ = nullptr;
   bool all_know = model() != nullptr;
   if (model() != nullptr)
@@ -54,7 +55,7 @@ void WorkstationWindow::take_opened_case() {
     known_to_modes_.reset();
   else if (before != nullptr && before->model() != nullptr)
     known_to_modes_ = std::move(before);
-  if (before == nullptr || before->folder() != case_->folder()) paint_.close();
+  if (!is_same_folder) paint_.close();
   const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
   if (is_unpainted()) paint_.open(knee, case_->folder(), case_->is_read_only());
   start::note_recent_case(

@@ -163,7 +163,7 @@ const RecordedFrame& SessionTimeline::frame(std::size_t at) const {
   } catch (const IoError&) {
     // Told by problems(), since reading all of it met the same page.
   } catch (const InvalidInput&) {
-    // Told by problems() likewise.
+    // Told by problems() likewise; a state of an outside tracker by the check of the session alone.
   }
   s.kept_at = at;
   return s.kept;

@@ -200,5 +200,17 @@ TEST_F(TrainingViewTest, Hazard40NothingBeginsInACaseThatIsSomebodys) {
   EXPECT_FALSE(view_.has_running_work());
 }
 
+// Two keys between two pictures: the picture is taken, and then it is finished. Neither is lost, none is
+// given twice.
+TEST(HandInbox, GivesOnePressAPictureInTheirOrder) {
+  using simulator::Press;
+  const auto inbox = std::make_shared<HandInbox>();
+  const simulator::Hand hand = inbox->hand(inbox);
+  inbox->press(Press::Picture);
+  inbox->press(Press::Finish);
+  for (const Press press : {Press::Picture, Press::Finish, Press::None})
+    EXPECT_EQ(hand({}, {})->press, press);
+}
+
 }  // namespace
 }  // namespace arthronaut::training_mode
