@@ -1,11 +1,9 @@
 #include "navigation/calibration/residual_plot.h"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "planning/files/atomic_file.h"
+#include "navigation/sources/picture.h"
 #include "planning/files/format.h"
-#include "planning/geometry/error.h"
 
 namespace arthronaut::calibration {
 namespace {
@@ -101,11 +99,7 @@ camera::Frame draw_residuals(const CalibrationSummary& summary,
 
 void write_residual_plot(const std::filesystem::path& file, const CalibrationSummary& summary,
                          std::span<const CalibrationPicture> pictures) {
-  camera::Frame frame = draw_residuals(summary, pictures);
-  const cv::Mat canvas(frame.height, frame.width, CV_8UC3, frame.bgr.data());
-  std::vector<std::uint8_t> png;
-  if (!cv::imencode(".png", canvas, png)) throw IoError(file, "the plot can't be encoded");
-  files::write_atomically(file, std::string_view(reinterpret_cast<const char*>(png.data()), png.size()));
+  sources::write_png(file, draw_residuals(summary, pictures));
 }
 
 }  // namespace arthronaut::calibration

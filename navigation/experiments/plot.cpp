@@ -1,10 +1,8 @@
 #include "navigation/experiments/plot.h"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "planning/files/atomic_file.h"
-#include "planning/geometry/error.h"
+#include "navigation/sources/picture.h"
 
 namespace arthronaut::experiments {
 
@@ -13,9 +11,11 @@ void write_text(cv::Mat& plot, const std::string& text, cv::Point at, double siz
 }
 
 void write_plot(const std::filesystem::path& file, const cv::Mat& plot) {
-  files::write_atomically(file, [&](const std::filesystem::path& temporary) {
-    if (!cv::imwrite(temporary.string(), plot)) throw IoError(file, "the picture could not be written");
-  });
+  camera::Frame picture;
+  picture.width = plot.cols;
+  picture.height = plot.rows;
+  picture.bgr.assign(plot.datastart, plot.dataend);
+  sources::write_png(file, picture);
 }
 
 }  // namespace arthronaut::experiments

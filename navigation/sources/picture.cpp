@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "navigation/sources/frame_source.h"
 #include "navigation/sources/picture_size.h"
+#include "navigation/sources/still_codec.h"
+#include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::sources {
@@ -28,8 +28,7 @@ std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
-// libjpeg fills what is missing with grey and says nothing that OpenCV passes on; libpng behaves alike for
-// late rows.
+// A decoder may fill what is missing with grey, and says at best that something is wrong, not what.
 bool is_cut_off(const std::vector<std::uint8_t>& bytes) {
   const auto contains_at_end = [&](std::initializer_list<std::uint8_t> mark) {
     const std::size_t tail = std::min<std::size_t>(bytes.size(), 4096);
@@ -57,35 +56,20 @@ void read_picture_into(const std::filesystem::path& file, camera::Frame& frame) 
                            " pixels, more than the " + std::to_string(kLargestImage_px / 1'000'000) +
                            " million that a picture may have");
   }
-  const cv::Mat picture = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-  if (picture.empty()) throw InvalidInput(file, "", "is not a picture that can be decoded");
-  if (picture.depth() != CV_8U) {
-    throw InvalidInput(file, "",
-                       "has " + std::to_string(8 * picture.elemSize1()) + " bits a channel; 8 are needed");
-  }
-  frame.width = picture.cols;
-  frame.height = picture.rows;
-  frame.bgr.resize(3 * picture.total());
-  cv::Mat bgr(picture.rows, picture.cols, CV_8UC3, frame.bgr.data());
-  switch (picture.channels()) {
-    case 1:
-      cv::cvtColor(picture, bgr, cv::COLOR_GRAY2BGR);
-      break;
-    case 3:
-      picture.copyTo(bgr);
-      break;
-    case 4:
-      cv::cvtColor(picture, bgr, cv::COLOR_BGRA2BGR);
-      break;
-    default:
-      throw InvalidInput(file, "", "has " + std::to_string(picture.channels()) + " channels");
-  }
+  if (const std::string problem = decode_still(bytes, frame); !problem.empty())
+    throw InvalidInput(file, "", problem);
 }
 
 camera::Frame read_picture(const std::filesystem::path& file) {
   camera::Frame frame;
   read_picture_into(file, frame);
   return frame;
+}
+
+void write_png(const std::filesystem::path& file, const camera::Frame& picture) {
+  const std::string png = encode_png(picture);
+  if (png.empty()) throw IoError(file, "the picture can't be encoded");
+  files::write_atomically(file, png);
 }
 
 }  // namespace arthronaut::sources

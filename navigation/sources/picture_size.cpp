@@ -121,16 +121,49 @@ Size pnm_size(Bytes bytes) {
 
 }  // namespace
 
-std::optional<PictureSize> picture_size(std::span<const std::uint8_t> bytes) {
+std::optional<PictureFormat> picture_format(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < 8) return std::nullopt;
-  if (has_at(bytes, 0, "\x89PNG\r\n\x1a\n") && has_at(bytes, 12, "IHDR"))
-    return PictureSize{number_at(bytes, 16, 4, true), number_at(bytes, 20, 4, true)};
-  if (bytes[0] == 0xFF && bytes[1] == 0xD8) return jpeg_size(bytes);
-  if (has_at(bytes, 0, "BM")) return bmp_size(bytes);
+  if (has_at(bytes, 0, "\x89PNG\r\n\x1a\n") && has_at(bytes, 12, "IHDR")) return PictureFormat::Png;
+  if (bytes[0] == 0xFF && bytes[1] == 0xD8) return PictureFormat::Jpeg;
+  if (has_at(bytes, 0, "BM")) return PictureFormat::Bmp;
   if (has_at(bytes, 0, std::string_view("II*\0", 4)) || has_at(bytes, 0, std::string_view("MM\0*", 4)))
-    return tiff_size(bytes);
-  if (has_at(bytes, 0, "RIFF") && has_at(bytes, 8, "WEBP")) return webp_size(bytes);
-  if (bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '6') return pnm_size(bytes);
+    return PictureFormat::Tiff;
+  if (has_at(bytes, 0, "RIFF") && has_at(bytes, 8, "WEBP")) return PictureFormat::WebP;
+  if (bytes[0] != 'P') return std::nullopt;
+  switch (bytes[1]) {
+    case '1':
+    case '4':
+      return PictureFormat::Pbm;
+    case '2':
+    case '5':
+      return PictureFormat::Pgm;
+    case '3':
+    case '6':
+      return PictureFormat::Ppm;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<PictureSize> picture_size(std::span<const std::uint8_t> bytes) {
+  const std::optional<PictureFormat> format = picture_format(bytes);
+  if (!format) return std::nullopt;
+  switch (*format) {
+    case PictureFormat::Png:
+      return PictureSize{number_at(bytes, 16, 4, true), number_at(bytes, 20, 4, true)};
+    case PictureFormat::Jpeg:
+      return jpeg_size(bytes);
+    case PictureFormat::Bmp:
+      return bmp_size(bytes);
+    case PictureFormat::Tiff:
+      return tiff_size(bytes);
+    case PictureFormat::WebP:
+      return webp_size(bytes);
+    case PictureFormat::Pbm:
+    case PictureFormat::Pgm:
+    case PictureFormat::Ppm:
+      return pnm_size(bytes);
+  }
   return std::nullopt;
 }
 
