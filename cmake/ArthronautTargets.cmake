@@ -13,7 +13,9 @@ endif()
 
 find_program(ARTHRONAUT_CCACHE ccache)
 if(ARTHRONAUT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${ARTHRONAUT_CCACHE})
+  # Paths count from the source tree: a second clone or work tree takes what the first one compiled.
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+    ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=true ${ARTHRONAUT_CCACHE})
 endif()
 
 # lld links the VTK and CGAL objects several times faster than the default linker.
@@ -47,22 +49,25 @@ endif()
 
 # arthronaut_library(planning_bones SOURCES a.cpp ... PUBLIC libs... PRIVATE libs...)
 # Declares a module. The name's first word is the layer; a link that points up the layers stops the configuration.
-# APART: its sources name their own things alike, so that CI does not compile several of them as one.
+# APART: those of its sources that name things of their own as another one does. CI, which compiles several sources as
+# one, compiles these by themselves.
 function(arthronaut_library name)
-  cmake_parse_arguments(ARG "APART" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE;APART" ${ARGN})
   arthronaut_check_layers(${name} ${ARG_PUBLIC} ${ARG_PRIVATE})
   if(ARG_SOURCES)
     add_library(${name} STATIC ${ARG_SOURCES})
     target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE arthronaut_compile_options ${ARG_PRIVATE})
     target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
-    if(ARG_APART)
-      set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
-    endif()
+    arthronaut_compile_apart(${ARG_APART})
   else()
     add_library(${name} INTERFACE)
     target_link_libraries(${name} INTERFACE ${ARG_PUBLIC})
     target_include_directories(${name} INTERFACE ${CMAKE_SOURCE_DIR})
   endif()
+endfunction()
+
+function(arthronaut_compile_apart)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 function(arthronaut_check_layers name)
@@ -84,14 +89,12 @@ function(arthronaut_test name)
   if(NOT ARTHRONAUT_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "APART;ALONE" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "ALONE" "TIMEOUT" "SOURCES;LIBS;LABELS;APART" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
   add_executable(${name}_test ${ARG_SOURCES})
-  if(ARG_APART)
-    set_target_properties(${name}_test PROPERTIES UNITY_BUILD OFF)
-  endif()
+  arthronaut_compile_apart(${ARG_APART})
   target_link_libraries(${name}_test PRIVATE arthronaut_compile_options ${ARG_LIBS} GTest::gtest_main GTest::gmock)
   gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
     PROPERTIES TIMEOUT ${ARG_TIMEOUT} RUN_SERIAL ${ARG_ALONE} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]" LABELS "${ARG_LABELS}")
