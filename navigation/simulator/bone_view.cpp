@@ -4,72 +4,122 @@
 #include <cmath>
 #include <limits>
 
-#include "navigation/simulator/light.h"
 #include "navigation/simulator/parallel_rows.h"
+#include "navigation/simulator/picture_kernel.h"
 #include "navigation/simulator/random.h"
 
 namespace arthronaut::simulator {
 namespace {
 
-constexpr int kLattice = 32;                         // a power of two
 constexpr float kGrainMm = 0.45f, kMottleMm = 2.3f;  // spacing of the fine and the middle noise
 constexpr float kRednessMm = 5.5f;
 
-const Eigen::Vector3f kBoneBgr{0.30f, 0.42f, 0.50f}, kRedBgr{0.05f, 0.065f, 0.26f};
+std::vector<float> drawn_lattice(std::uint64_t seed) {
+  std::vector<float> lattice;
+  lattice.reserve(kLatticeFloats);
+  Random random(seed);
+  for (int row = 0; row < kLattice * kLattice; ++row) {
+    const std::size_t begin = lattice.size();
+    for (int i = 0; i < 4 * kLattice; ++i) lattice.push_back(static_cast<float>(random.between(-1, 1)));
+    for (std::size_t channel = 0; channel < 4; ++channel) lattice.push_back(lattice[begin + channel]);
+  }
+  return lattice;
+}
+
+// Where a triangle stands in the picture. A pixel's shares of its second and third corner are linear in
+// column and row.
+struct PictureTriangle {
+  PictureTriangle(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c)
+      : corner(a), ab(b - a), ac(c - a), inverse(1 / (ab.x() * ac.y() - ab.y() * ac.x())) {}
+  [[nodiscard]] float share_b_step() const { return ac.y() * inverse; }
+  [[nodiscard]] float share_c_step() const { return -ab.y() * inverse; }
+  [[nodiscard]] float share_b(float x, float y) const {
+    return ((x - corner.x()) * ac.y() - (y - corner.y()) * ac.x()) * inverse;
+  }
+  [[nodiscard]] float share_c(float x, float y) const {
+    return (ab.x() * (y - corner.y()) - ab.y() * (x - corner.x())) * inverse;
+  }
+  Eigen::Vector2f corner, ab, ac;
+  float inverse;
+};
+
+// Columns of a row in which a share that is linear along it is not below 0, with one to spare: they narrow
+// what was known.
+class ShareSpan {
+ public:
+  explicit ShareSpan(float step) : inverse_(1 / step), grows_(step > 0), is_even_(step == 0) {}
+  void narrow(float share_at_0, float& first, float& last) const {
+    if (is_even_) return;
+    const float column = -share_at_0 * inverse_;
+    if (grows_) {
+      first = std::max(first, column - 1);
+    } else {
+      last = std::min(last, column + 1);
+    }
+  }
+
+ private:
+  float inverse_;
+  bool grows_, is_even_;
+};
 
 }  // namespace
 
-BoneView::Noise::Noise(std::uint64_t seed) : lattice_(kLattice * kLattice * kLattice) {
-  Random random(seed);
-  for (Eigen::Array4f& node : lattice_) {
-    for (int i = 0; i < 4; ++i) node[i] = static_cast<float>(random.between(-1, 1));
-  }
+void BoneRows::clear(int first_row, int count, int width) {
+  first_row_ = first_row;
+  count_ = count;
+  // A packet of pairs of columns may read as far beyond the row.
+  stride_ = padded(width + 1) + kTogether;
+  const auto size = static_cast<std::size_t>(count) * static_cast<std::size_t>(stride_);
+  depth_mm_.assign(size, kNothing_mm);
+  triangles_.assign(size, -1);
 }
 
-Eigen::Array4f BoneView::Noise::at(const Eigen::Array3f& position) const {
-  const Eigen::Array3f floor = position.floor();
-  const Eigen::Array3f linear = position - floor;
-  const Eigen::Array3f f = linear * linear * (3.0f - 2.0f * linear);
-  const Eigen::Array3i low = floor.cast<int>();
-  const auto index = [&](int dx, int dy, int dz) {
-    const int mask = kLattice - 1;
-    return static_cast<std::size_t>(
-        (((low.z() + dz) & mask) * kLattice + ((low.y() + dy) & mask)) * kLattice + ((low.x() + dx) & mask));
-  };
-  const auto row = [&](int dy, int dz) -> Eigen::Array4f {
-    const Eigen::Array4f a = lattice_[index(0, dy, dz)];
-    return a + f.x() * (lattice_[index(1, dy, dz)] - a);
-  };
-  const Eigen::Array4f near0 = row(0, 0), near1 = row(1, 0), far0 = row(0, 1), far1 = row(1, 1);
-  const Eigen::Array4f near = near0 + f.y() * (near1 - near0), far = far0 + f.y() * (far1 - far0);
-  return near + f.z() * (far - near);
+void BoneRows::repeat_last_pixels(int width) {
+  for (int row = first_row_; row < end_row(); ++row) {
+    depth_mm(row)[width] = depth_mm(row)[width - 1];
+    triangles(row)[width] = triangles(row)[width - 1];
+  }
 }
 
 BoneView::BoneView(const geometry::TriangleMesh& mesh, std::uint64_t seed)
-    : noise_(seed), triangles_(mesh.triangles) {
+    : lattice_(drawn_lattice(seed)), triangles_(mesh.triangles) {
   const std::vector<Eigen::Vector3d> normals = geometry::vertex_normals(mesh);
-  vertices_.reserve(mesh.vertices_mm.size());
+  const auto noise_at = [this](const Eigen::Vector3f& at_mm, float nodes_per_mm, std::size_t channel) {
+    std::array<std::array<float, kTogether>, 3> at{};
+    std::array<std::array<float, kTogether>, 4> values{};
+    for (std::size_t i = 0; i < 3; ++i) at[i].fill(at_mm[static_cast<int>(i)]);
+    picture_kernel().noise_at(lattice_.data(), {at[0].data(), at[1].data(), at[2].data()}, nodes_per_mm,
+                              kTogether,
+                              {values[0].data(), values[1].data(), values[2].data(), values[3].data()});
+    return values[channel][0];
+  };
+  attributes_.resize(mesh.vertices_mm.size());
   for (std::size_t i = 0; i < mesh.vertices_mm.size(); ++i) {
-    vertices_.push_back(mesh.vertices_mm[i].cast<float>());
+    const Eigen::Vector3f at = mesh.vertices_mm[i].cast<float>();
+    vertices_.push_back(at);
     normals_.push_back(normals[i].cast<float>());
-    const Eigen::Array3f at = vertices_.back().array() / kRednessMm;
-    const float patches = noise_.at(at)[0] + 0.5f * noise_.at(2.7f * at)[1];
-    redness_.push_back(std::clamp(1.1f * patches - 0.15f, 0.0f, 0.8f));
+    const float patches = noise_at(at, 1 / kRednessMm, 0) + 0.5f * noise_at(at, 2.7f / kRednessMm, 1);
+    Attributes& attributes = attributes_[i];
+    attributes.fill(0);
+    std::copy_n(at.data(), 3, attributes.begin() + BoneAttributes::kBone);
+    attributes[BoneAttributes::kRedness] = std::clamp(1.1f * patches - 0.15f, 0.0f, 0.8f);
   }
-  camera_vertices_.resize(vertices_.size());
-  camera_normals_.resize(vertices_.size());
   pixels_.resize(vertices_.size());
 }
 
 void BoneView::look(const geometry::RigidTransform& camera_from_bone, const RayTable& rays,
                     const PixelArea& area) {
   area_ = area;
-  const Eigen::Matrix3f rotation = camera_from_bone.matrix().cast<float>();
+  const Eigen::Matrix3d rotation = camera_from_bone.matrix();
+  const Eigen::Matrix3f turn = rotation.cast<float>();
   parallel_rows(static_cast<int>(vertices_.size()), [&](int first, int end) {
     for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); ++i) {
-      const Eigen::Vector3d in_camera = camera_from_bone * vertices_[i].cast<double>();
-      camera_vertices_[i] = in_camera.cast<float>();
-      camera_normals_[i] = rotation * normals_[i];
+      const Eigen::Vector3d in_camera =
+          rotation * vertices_[i].cast<double>() + camera_from_bone.translation_mm;
+      Attributes& attributes = attributes_[i];
+      Eigen::Map<Eigen::Vector3f>(attributes.data() + BoneAttributes::kCamera) = in_camera.cast<float>();
+      Eigen::Map<Eigen::Vector3f>(attributes.data() + BoneAttributes::kNormal) = turn * normals_[i];
       // Beyond the field stop a place is as good as any other further out: nothing of it is drawn.
       const bool is_before = in_camera.z() > 0.5;
       const Eigen::Vector2d tangent = in_camera.head<2>() / in_camera.z();
@@ -98,68 +148,107 @@ void BoneView::look(const geometry::RigidTransform& camera_from_bone, const RayT
   }
 }
 
-void BoneView::draw(int first_row, int end_row, std::vector<BonePixel>& pixels) const {
-  for (int band = first_row / kBandRows; band * kBandRows < end_row; ++band) {
-    const int first = std::max(first_row, band * kBandRows), end = std::min(end_row, (band + 1) * kBandRows);
+void BoneView::draw(BoneRows& rows) const {
+  const int last_band = (rows.end_row() - 1) / kBandRows;
+  for (int band = rows.first_row() / kBandRows; band <= last_band; ++band) {
     for (const Facing& facing : bands_[static_cast<std::size_t>(band)]) {
-      draw_triangle(facing, first, end, pixels);
+      // What goes on from the band before was drawn with it.
+      const bool is_drawn = facing.first_row < band * kBandRows && band * kBandRows > rows.first_row();
+      if (!is_drawn) draw_triangle(facing, rows);
     }
   }
+  rows.repeat_last_pixels(area_.width);
 }
 
-void BoneView::draw_triangle(const Facing& facing, int first_row, int end_row,
-                             std::vector<BonePixel>& pixels) const {
+void BoneView::draw_triangle(const Facing& facing, BoneRows& rows) const {
+  const int first_row = std::max(rows.first_row(), facing.first_row);
+  const int last_row = std::min(rows.end_row() - 1, facing.last_row);
+  if (first_row > last_row) return;
   const auto& [ia, ib, ic] = triangles_[static_cast<std::size_t>(facing.triangle)];
   const Eigen::Vector2f a = pixels_[static_cast<std::size_t>(ia)], b = pixels_[static_cast<std::size_t>(ib)],
                         c = pixels_[static_cast<std::size_t>(ic)];
-  const Eigen::Vector2f ab = b - a, ac = c - a;
   const int x0 = std::max(0, static_cast<int>(std::ceil(std::min({a.x(), b.x(), c.x()}))) - area_.left);
   const int x1 =
       std::min(area_.width - 1, static_cast<int>(std::floor(std::max({a.x(), b.x(), c.x()}))) - area_.left);
-  const float za = camera_vertices_[static_cast<std::size_t>(ia)].z();
-  const float zb = camera_vertices_[static_cast<std::size_t>(ib)].z() - za;
-  const float zc = camera_vertices_[static_cast<std::size_t>(ic)].z() - za;
-  const float inverse = 1 / (ab.x() * ac.y() - ab.y() * ac.x());
-  for (int y = std::max(first_row, facing.first_row); y <= std::min(end_row - 1, facing.last_row); ++y) {
-    const float py = static_cast<float>(y + area_.top) - a.y();
-    BonePixel* row = pixels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(area_.width);
-    // Shares of the corners along the row: both are linear in the column.
-    const float b_step = ac.y() * inverse, c_step = -ab.y() * inverse;
-    const float px0 = static_cast<float>(area_.left) - a.x();
-    const float b_at0 = (px0 * ac.y() - py * ac.x()) * inverse,
-                c_at0 = (ab.x() * py - ab.y() * px0) * inverse;
-    for (int x = x0; x <= x1; ++x) {
-      const float share_b = b_at0 + static_cast<float>(x) * b_step;
-      const float share_c = c_at0 + static_cast<float>(x) * c_step;
-      if (share_b < 0 || share_c < 0 || share_b + share_c > 1) continue;
-      const float depth = za + share_b * zb + share_c * zc;
-      if (depth < row[x].depth_mm) row[x] = {facing.triangle, depth, share_b, share_c};
-    }
+  const PictureTriangle triangle(a, b, c);
+  constexpr auto kDepth = static_cast<std::size_t>(BoneAttributes::kCamera) + 2;
+  const auto depth = [&](std::int32_t vertex) {
+    return attributes_[static_cast<std::size_t>(vertex)][kDepth];
+  };
+  TriangleRow in_row;
+  in_row.triangle = facing.triangle;
+  in_row.share_b_step = triangle.share_b_step();
+  in_row.share_c_step = triangle.share_c_step();
+  in_row.depth_mm = depth(ia);
+  in_row.depth_b_mm = depth(ib) - in_row.depth_mm;
+  in_row.depth_c_mm = depth(ic) - in_row.depth_mm;
+  const ShareSpan of_b(in_row.share_b_step), of_c(in_row.share_c_step),
+      of_a(-in_row.share_b_step - in_row.share_c_step);
+  const PictureKernel& kernel = picture_kernel();
+  for (int row = first_row; row <= last_row; ++row) {
+    const auto x = static_cast<float>(area_.left), y = static_cast<float>(row + area_.top);
+    in_row.share_b = triangle.share_b(x, y);
+    in_row.share_c = triangle.share_c(x, y);
+    auto first = static_cast<float>(x0), last = static_cast<float>(x1);
+    of_b.narrow(in_row.share_b, first, last);
+    of_c.narrow(in_row.share_c, first, last);
+    of_a.narrow(1 - in_row.share_b - in_row.share_c, first, last);
+    if (first > last) continue;
+    kernel.draw_triangle(in_row, static_cast<int>(first), static_cast<int>(last) + 1, rows.depth_mm(row),
+                         rows.triangles(row));
   }
 }
 
-Eigen::Vector3f BoneView::shade(const BonePixel& pixel, float exposure) const {
-  const auto& corners = triangles_[static_cast<std::size_t>(pixel.triangle)];
-  const float sb = pixel.share_b, sc = pixel.share_c, sa = 1 - sb - sc;
-  const auto mix = [&](const auto& of) {
-    return (sa * of[static_cast<std::size_t>(corners[0])] + sb * of[static_cast<std::size_t>(corners[1])] +
-            sc * of[static_cast<std::size_t>(corners[2])])
-        .eval();
+void BoneView::shade(int row, const int* columns, const std::int32_t* triangles, int count, float exposure,
+                     Shading& memory, float* bgr) const {
+  if (count == 0) return;
+  constexpr int kAttributes = BoneAttributes::kCount, kNoise = 8;
+  const int room = padded(count);
+  memory.values_.resize(static_cast<std::size_t>((kAttributes + kNoise) * room));
+  memory.columns_.resize(static_cast<std::size_t>(room));
+  float* const at_columns = memory.columns_.data();
+  for (int i = 0; i < room; ++i) at_columns[i] = static_cast<float>(columns[std::min(i, count - 1)]);
+  const auto values = [&](int k) { return memory.values_.data() + static_cast<std::ptrdiff_t>(k) * room; };
+
+  // All attributes are linear along a run of pixels on one triangle.
+  for (int first = 0, end = 0; first < room; first = end) {
+    const std::int32_t on = triangles[std::min(first, count - 1)];
+    while (end < room && triangles[std::min(end, count - 1)] == on) ++end;
+    const auto& [ia, ib, ic] = triangles_[static_cast<std::size_t>(on)];
+    const auto va = static_cast<std::size_t>(ia), vb = static_cast<std::size_t>(ib),
+               vc = static_cast<std::size_t>(ic);
+    const PictureTriangle triangle(pixels_[va], pixels_[vb], pixels_[vc]);
+    const auto x = static_cast<float>(area_.left), y = static_cast<float>(row + area_.top);
+    const float b = triangle.share_b(x, y), c = triangle.share_c(x, y);
+    const float b_step = triangle.share_b_step(), c_step = triangle.share_c_step();
+    Attributes start, step;
+    for (std::size_t k = 0; k < start.size(); ++k) {
+      const float to_b = attributes_[vb][k] - attributes_[va][k];
+      const float to_c = attributes_[vc][k] - attributes_[va][k];
+      start[k] = attributes_[va][k] + b * to_b + c * to_c;
+      step[k] = b_step * to_b + c_step * to_c;
+    }
+    for (int k = 0; k < kAttributes; ++k) {
+      float* const out = values(k);
+      const float from = start[static_cast<std::size_t>(k)], by = step[static_cast<std::size_t>(k)];
+      for (int i = first; i < end; ++i) out[i] = from + at_columns[i] * by;
+    }
+  }
+
+  BoneAttributes attributes;
+  for (int k = 0; k < kAttributes; ++k) attributes.at[k] = values(k);
+  const float* const* const bone = attributes.at + BoneAttributes::kBone;
+  const PictureKernel& kernel = picture_kernel();
+  const auto noise = [&](int first, float spacing_mm) {
+    kernel.noise_at(lattice_.data(), {bone[0], bone[1], bone[2]}, 1 / spacing_mm, room,
+                    {values(first), values(first + 1), values(first + 2), values(first + 3)});
   };
-  const Eigen::Array3f in_bone = mix(vertices_).array();
-  const Eigen::Array4f grain = noise_.at(in_bone / kGrainMm), mottle = noise_.at(in_bone / kMottleMm);
-  const float redness = sa * redness_[static_cast<std::size_t>(corners[0])] +
-                        sb * redness_[static_cast<std::size_t>(corners[1])] +
-                        sc * redness_[static_cast<std::size_t>(corners[2])];
-  const float red = std::clamp(redness * (1 + 0.9f * mottle[0] + 0.3f * grain[0]), 0.0f, 0.9f);
-  Skin skin;
-  skin.albedo_bgr = (1 + 0.05f * grain[0] + 0.06f * mottle[1]) * ((1 - red) * kBoneBgr + red * kRedBgr);
-  // The film of fluid glitters: its highlights follow a rougher normal than the bone's own.
-  const Eigen::Vector3f smooth = unit(mix(camera_normals_));
-  const Eigen::Vector3f rough = unit(smooth + (0.10f * grain.tail<3>() + 0.13f * mottle.tail<3>()).matrix());
-  skin.specular = 1.4f;
-  skin.gloss_doublings = 7;
-  return lit(mix(camera_vertices_), rough, skin, exposure);
+  constexpr int kGrain = kAttributes, kMottle = kAttributes + 4;
+  noise(kGrain, kGrainMm);
+  noise(kMottle, kMottleMm);
+  kernel.light_bone(attributes, {values(kGrain), values(kGrain + 1), values(kGrain + 2), values(kGrain + 3)},
+                    {values(kMottle), values(kMottle + 1), values(kMottle + 2), values(kMottle + 3)}, room,
+                    exposure, bgr);
 }
 
 }  // namespace arthronaut::simulator

@@ -25,6 +25,15 @@ class RayTable {
     return arm * (scale_[entry] + share * (scale_[entry + 1] - scale_[entry]));
   }
 
+  // Of `count` pixels of a row, one beside the other.
+  void row(double first_x_px, double y_px, int count, float* x, float* y) const {
+    for (int i = 0; i < count; ++i) {
+      const Eigen::Vector2d at = tangent(first_x_px + i, y_px);
+      x[i] = static_cast<float>(at.x());
+      y[i] = static_cast<float>(at.y());
+    }
+  }
+
   // The pixel that sees along (tangent, 1). Error below 0.001 px. What lies further out than the table
   // reaches comes out at its end, on the same side.
   [[nodiscard]] Eigen::Vector2d pixel(const Eigen::Vector2d& tangent) const {

@@ -1,6 +1,7 @@
 // Draws one frame of a simulated scene through the exact camera model, on raw pixels, on the CPU.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -8,7 +9,10 @@
 #include "navigation/camera/camera_model.h"
 #include "navigation/camera/frame.h"
 #include "navigation/simulator/bone_view.h"
+#include "navigation/simulator/ground.h"
+#include "navigation/simulator/parallel_rows.h"
 #include "navigation/simulator/sensor.h"
+#include "navigation/simulator/solid_layer.h"
 #include "navigation/simulator/solids.h"
 
 namespace arthronaut::simulator {
@@ -31,12 +35,18 @@ class Renderer {
               std::uint64_t noise_seed, camera::Frame& frame);
 
  private:
+  // Kept from frame to frame for their memory.
+  struct ThreadMemory {
+    BoneRows bone_rows;
+    Ground::Memory ground;
+    SolidLayer::Memory solids;
+  };
+
   BoneView* bone_;
   double vignette_share_;
   Sensor sensor_;
-  // Kept from frame to frame for their memory.
-  std::vector<BonePixel> bone_pixels_;
-  cv::Mat light_;
+  std::array<ThreadMemory, kMostThreads> memory_;
+  std::vector<float> light_;
 };
 
 }  // namespace arthronaut::simulator

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
-#include "navigation/simulator/parallel_rows.h"
 #include "navigation/simulator/random.h"
 #include "planning/geometry/rigid_transform.h"
 
@@ -13,9 +11,7 @@ namespace arthronaut::simulator {
 namespace {
 
 constexpr double kToothHalfWidthDeg = 2.5, kToothDepthShare = 0.035;
-constexpr double kGamma = 2.2;
 constexpr int kQuantiles = 1024;
-constexpr int kTones = 4096;
 
 // Quantiles of the normal distribution: a uniform index gives a normal deviate.
 const std::array<float, kQuantiles>& normal_quantiles() {
@@ -35,10 +31,6 @@ const std::array<float, kQuantiles>& normal_quantiles() {
   return table;
 }
 
-std::uint8_t to_byte(float level) {
-  return static_cast<std::uint8_t>(std::clamp(static_cast<int>(level + 0.5f), 0, 255));
-}
-
 // Normal deviates in no order. A row takes its noise from a place drawn for it, which is as good as noise of
 // its own and costs no random number a pixel.
 const std::vector<float>& deviates() {
@@ -52,6 +44,21 @@ const std::vector<float>& deviates() {
     return deviates;
   }();
   return drawn;
+}
+
+// The area's columns that light reaches in a row of the picture, with what the blur spreads of it.
+std::array<int, 2> lit_columns(const PixelArea& area, const FieldStop* stop, int y) {
+  if (y < area.top || y >= area.top + area.height) return {0, 0};
+  if (stop == nullptr) return {0, area.width};
+  // Of the rows within the blur's reach the widest.
+  std::array<int, 2> lit{area.width, 0};
+  for (const int other : {y - kBlurReach, y, y + kBlurReach}) {
+    const auto open = stop->open_columns(area.left, other, area.width);
+    if (open[0] == open[1]) continue;
+    lit = {std::min(lit[0], open[0]), std::max(lit[1], open[1])};
+  }
+  if (lit[0] >= lit[1]) return {0, 0};
+  return {std::max(0, lit[0] - kBlurReach), std::min(area.width, lit[1] + kBlurReach)};
 }
 
 }  // namespace
@@ -94,74 +101,111 @@ float FieldStop::share_passed(double x_px, double y_px) const {
   return static_cast<float>(vignette * open / 64.0);
 }
 
-void FieldStop::stop(double left_px, double y_px, int width, Eigen::Vector3f* light) const {
+std::array<int, 2> FieldStop::open_columns(double left_px, double y_px, int width) const {
+  const double dy = y_px - boundary_.center_px.y(), radius = boundary_.radius_px + 1;
+  if (std::abs(dy) >= radius) return {0, 0};
+  const double reach = std::sqrt(radius * radius - dy * dy), center = boundary_.center_px.x() - left_px;
+  const int first = std::clamp(static_cast<int>(std::floor(center - reach)), 0, width);
+  return {first, std::clamp(static_cast<int>(std::ceil(center + reach)) + 1, first, width)};
+}
+
+void FieldStop::stop(double left_px, double y_px, int width, float* light) const {
+  const auto dim = [light](int x, float share) {
+    for (int c = 0; c < 3; ++c) light[3 * x + c] *= share;
+  };
+  const auto [first, end] = open_columns(left_px, y_px, width);
+  std::fill(light, light + static_cast<std::ptrdiff_t>(3) * first, 0.0f);
+  std::fill(light + static_cast<std::ptrdiff_t>(3) * end, light + static_cast<std::ptrdiff_t>(3) * width,
+            0.0f);
   // Inside the circle that the tooth does not reach, which is nearly all of it, there is the vignette alone.
   const double dy = y_px - boundary_.center_px.y(), limit2 = boundary_.radius_px * boundary_.radius_px;
   const double plain_radius = boundary_.radius_px * (1 - kToothDepthShare) - 2;
   const double reach = std::sqrt(std::max(0.0, plain_radius * plain_radius - dy * dy));
   const double center = boundary_.center_px.x() - left_px;
-  const int plain_from = std::clamp(static_cast<int>(std::ceil(center - reach)), 0, width);
-  const int plain_end = std::clamp(static_cast<int>(std::floor(center + reach)), plain_from, width);
-  for (int x = 0; x < plain_from; ++x) light[x] *= share_passed(left_px + x, y_px);
+  const int plain_from = std::clamp(static_cast<int>(std::ceil(center - reach)), first, end);
+  const int plain_end = std::clamp(static_cast<int>(std::floor(center + reach)), plain_from, end);
+  for (int x = first; x < plain_from; ++x) dim(x, share_passed(left_px + x, y_px));
   const auto scale = static_cast<float>(vignette_share_ / limit2);
   const auto along = static_cast<float>(center), across2 = static_cast<float>(dy * dy);
   for (int x = plain_from; x < plain_end; ++x) {
     const float dx = static_cast<float>(x) - along;
-    light[x] *= 1 - scale * (dx * dx + across2);
+    dim(x, 1 - scale * (dx * dx + across2));
   }
-  for (int x = plain_end; x < width; ++x) light[x] *= share_passed(left_px + x, y_px);
+  for (int x = plain_end; x < end; ++x) dim(x, share_passed(left_px + x, y_px));
 }
 
-Sensor::Sensor(const SensorOptions& options) : blur_sigma_px_(options.blur_sigma_px), tones_(kTones + 1) {
-  // Divided by the square root of the light, so that the dark end, where gamma is steep, is finely divided.
-  for (int i = 0; i <= kTones; ++i) {
-    const double root = static_cast<double>(i) / kTones;
-    const double level = 255 * std::pow(root * root, 1 / kGamma);
-    const double variance =
-        options.read_noise_levels * options.read_noise_levels + options.shot_noise_share * level;
-    tones_[static_cast<std::size_t>(i)] = {static_cast<float>(level),
-                                           static_cast<float>(std::sqrt(variance))};
+Sensor::Sensor(const SensorOptions& options) {
+  if (options.blur_sigma_px > 0) {
+    double sum = 0;
+    for (int k = 0; k <= kBlurReach; ++k) {
+      const double weight = std::exp(-0.5 * k * k / (options.blur_sigma_px * options.blur_sigma_px));
+      blur_[k] = static_cast<float>(weight);
+      sum += k == 0 ? weight : 2 * weight;
+    }
+    for (float& weight : blur_) weight /= static_cast<float>(sum);
   }
-  dark_.reserve(deviates().size());
-  for (const float deviate : deviates()) {
-    dark_.push_back(to_byte(tones_[0].level + tones_[0].noise_sigma * deviate));
-  }
+  tone_.read_variance = static_cast<float>(options.read_noise_levels * options.read_noise_levels);
+  tone_.shot_share = static_cast<float>(options.shot_noise_share);
+  const std::vector<float> black(static_cast<std::size_t>(kTogether), 0.0f);
+  dark_.resize(deviates().size());
+  for (std::size_t i = 0; i < dark_.size(); i += kTogether)
+    picture_kernel().expose(tone_, black.data(), deviates().data() + i, kTogether, dark_.data() + i);
 }
 
-void Sensor::expose_row(float* light, const PixelArea& area, std::size_t noise_from, int width,
-                        std::uint8_t* out) const {
-  const auto copy_dark = [&](int first, int end) {
-    std::copy_n(dark_.data() + noise_from + 3 * static_cast<std::size_t>(first), 3 * (end - first),
-                out + 3 * first);
+// Some columns of a row of the area, with these deviates as their noise.
+void Sensor::expose_row(const float* light, const PixelArea& area, int row, const std::array<int, 2>& columns,
+                        const float* deviates, Memory& memory, std::uint8_t* out) const {
+  constexpr int kMargin = 3 * kBlurReach;
+  const int width = 3 * area.width, first = 3 * columns[0], count = 3 * (columns[1] - columns[0]);
+  const int room = padded(count);
+  // What the blur takes in from both sides; beyond its ends the row goes on as it ends.
+  const int from = std::max(0, first - kMargin),
+            wide = padded(std::min(width, first + count + kMargin) - from);
+  memory.across.resize(static_cast<std::size_t>(wide + room + 2 * kMargin));
+  memory.along.resize(static_cast<std::size_t>(room));
+  memory.grey.resize(static_cast<std::size_t>(room));
+  const auto row_at = [&](int y) {
+    return light + static_cast<std::ptrdiff_t>(width) * std::clamp(y, 0, area.height - 1) + from;
   };
-  if (!light) return copy_dark(0, width);
-  copy_dark(0, area.left);
-  copy_dark(area.left + area.width, width);
-  const int count = 3 * area.width;
-  cv::Mat row(1, count, CV_32F, light);
-  cv::sqrt(row, row);
-  const float* deviate = deviates().data() + noise_from + 3 * static_cast<std::size_t>(area.left);
-  std::uint8_t* lit = out + 3 * area.left;
-  for (int i = 0; i < count; ++i) {
-    const int at = std::min(static_cast<int>(light[i] * kTones + 0.5f), kTones);
-    const Tone& tone = tones_[static_cast<std::size_t>(at)];
-    lit[i] = to_byte(tone.level + tone.noise_sigma * deviate[i]);
-  }
+  const PictureKernel& kernel = picture_kernel();
+  float* const across = memory.across.data() + kMargin - (first - from);  // where column `from` lies
+  kernel.blur_across({row_at(row - 3), row_at(row - 2), row_at(row - 1), row_at(row), row_at(row + 1),
+                      row_at(row + 2), row_at(row + 3)},
+                     blur_, wide, across);
+  float* const begin = memory.across.data() + kMargin;
+  for (int k = first - from; k < kMargin; ++k) begin[-1 - k] = begin[2 - k % 3 - (first - from)];
+  for (int k = std::min(width, first + count + kMargin) - first; k < count + kMargin; ++k)
+    begin[k] = begin[k - 3];
+  kernel.blur_along(begin, blur_, room, memory.along.data());
+  kernel.expose(tone_, memory.along.data(), deviates, room, memory.grey.data());
+  std::copy_n(memory.grey.data(), count, out);
 }
 
-void Sensor::expose(cv::Mat& light, const PixelArea& area, std::uint64_t noise_seed,
-                    camera::Frame& frame) const {
-  if (blur_sigma_px_ > 0) {
-    cv::GaussianBlur(light, light, {7, 7}, blur_sigma_px_, blur_sigma_px_, cv::BORDER_REPLICATE);
-  }
-  frame.bgr.resize(static_cast<std::size_t>(3) * static_cast<std::size_t>(frame.width * frame.height));
-  const std::size_t places = deviates().size() - 3 * static_cast<std::size_t>(frame.width);
-  parallel_rows(frame.height, [&](int first, int end) {
+void Sensor::expose(const std::vector<float>& light, const PixelArea& area, const FieldStop* stop,
+                    std::uint64_t noise_seed, camera::Frame& frame) {
+  const auto stride = static_cast<std::size_t>(3) * static_cast<std::size_t>(frame.width);
+  frame.bgr.resize(stride * static_cast<std::size_t>(frame.height));
+  const std::size_t places = deviates().size() - stride - kTogether;
+  parallel_bands(frame.height, [&](int first, int end, int thread) {
     for (int y = first; y < end; ++y) {
       const std::uint64_t draw = Random(noise_seed * 0x100000001B3ULL + static_cast<std::uint64_t>(y)).bits();
-      const bool in_rows = y >= area.top && y < area.top + area.height;
-      expose_row(in_rows ? light.ptr<float>(y - area.top) : nullptr, area, draw % places, frame.width,
-                 frame.bgr.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(3 * frame.width));
+      const std::size_t from = draw % places;
+      std::uint8_t* const out = frame.bgr.data() + static_cast<std::size_t>(y) * stride;
+      const auto copy_dark = [&](int begin_px, int end_px) {
+        std::copy_n(dark_.data() + from + 3 * static_cast<std::size_t>(begin_px), 3 * (end_px - begin_px),
+                    out + static_cast<std::ptrdiff_t>(3) * begin_px);
+      };
+      const std::array<int, 2> lit = lit_columns(area, stop, y);
+      if (lit[0] == lit[1]) {
+        copy_dark(0, frame.width);
+        continue;
+      }
+      const int left = area.left + lit[0], right = area.left + lit[1];
+      copy_dark(0, left);
+      expose_row(light.data(), area, y - area.top, lit,
+                 deviates().data() + from + 3 * static_cast<std::size_t>(left),
+                 memory_[static_cast<std::size_t>(thread)], out + static_cast<std::ptrdiff_t>(3) * left);
+      copy_dark(right, frame.width);
     }
   });
 }

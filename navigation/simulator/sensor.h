@@ -1,14 +1,16 @@
 // From light to a frame: the round field stop with its tooth, the blur of the optics, the sensor's noise,
-// gamma, 8 bits. Inner header of the simulator: OpenCV's picture may stand in it.
+// gamma, 8 bits.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <opencv2/core.hpp>
 #include <vector>
 
 #include "navigation/camera/camera_model.h"
 #include "navigation/camera/frame.h"
 #include "navigation/simulator/bone_view.h"
+#include "navigation/simulator/parallel_rows.h"
+#include "navigation/simulator/picture_kernel.h"
 
 namespace arthronaut::simulator {
 
@@ -25,8 +27,10 @@ class FieldStop {
  public:
   FieldStop(const camera::Boundary& boundary, double mark_angle_deg, double vignette_share);
   [[nodiscard]] float share_passed(double x_px, double y_px) const;
-  // The same for `width` pixels of a row from left_px on, taken from their light.
-  void stop(double left_px, double y_px, int width, Eigen::Vector3f* light) const;
+  // The same for `width` pixels of a row from left_px on, taken from their light, three values a pixel.
+  void stop(double left_px, double y_px, int width, float* light) const;
+  // Of such a row the pixels, from the first to one behind the last, beyond which nothing passes.
+  [[nodiscard]] std::array<int, 2> open_columns(double left_px, double y_px, int width) const;
 
  private:
   [[nodiscard]] bool is_open(double dx, double dy) const;
@@ -39,21 +43,31 @@ class Sensor {
  public:
   explicit Sensor(const SensorOptions& options);
 
-  // `light` is the area's linear light (CV_32FC3) behind the field stop; it is used up. The noise is a
-  // function of noise_seed and the pixel alone. At most kWidestPx pixels a row.
-  void expose(cv::Mat& light, const PixelArea& area, std::uint64_t noise_seed, camera::Frame& frame) const;
+  // How many values expose() wants to find: three a pixel, and some to spare.
+  [[nodiscard]] static std::size_t light_size(const PixelArea& area) {
+    return static_cast<std::size_t>(3) * static_cast<std::size_t>(area.width) *
+               static_cast<std::size_t>(area.height) +
+           kTogether;
+  }
+  // `light` is the area's linear light, blue green red, row after row, which passed the field stop, if there
+  // is one. The noise is a function of noise_seed and the pixel alone. At most kWidestPx pixels a row.
+  void expose(const std::vector<float>& light, const PixelArea& area, const FieldStop* stop,
+              std::uint64_t noise_seed, camera::Frame& frame);
   static constexpr int kWidestPx = 16384;
 
  private:
-  struct Tone {
-    float level = 0, noise_sigma = 0;  // grey levels
+  // Of one thread.
+  struct Memory {
+    std::vector<float> across, along;
+    std::vector<std::uint8_t> grey;
   };
-  void expose_row(float* light, const PixelArea& area, std::size_t noise_from, int width,
-                  std::uint8_t* out) const;
+  void expose_row(const float* light, const PixelArea& area, int row, const std::array<int, 2>& columns,
+                  const float* deviates, Memory& memory, std::uint8_t* out) const;
 
-  double blur_sigma_px_;
-  std::vector<Tone> tones_;         // by the square root of the light
+  float blur_[kBlurReach + 1] = {1};  // weights of the middle and of its neighbours
+  ToneNumbers tone_;
   std::vector<std::uint8_t> dark_;  // what the sensor makes of no light, one value for each of the noise's
+  std::array<Memory, kMostThreads> memory_;
 };
 
 }  // namespace arthronaut::simulator

@@ -4,15 +4,39 @@
 #include <cmath>
 #include <opencv2/aruco.hpp>
 
+#include "planning/geometry/error.h"
+
 namespace arthronaut::simulator {
 namespace {
-
-enum Region { kPaper, kInk, kSide };
 
 const Skin kPaperSkin{{0.66f, 0.72f, 0.76f}, 0.02f, 4};
 const Skin kInkSkin{{0.020f, 0.020f, 0.021f}, 0.01f, 4};
 const Skin kSideSkin{{0.06f, 0.065f, 0.07f}, 0.05f, 5};
-constexpr double kNearestMm = 0.5;  // nothing is seen closer than this
+constexpr double kNearestMm = kNearest_mm;
+
+void put(const Eigen::Vector3d& from, float (&to)[3]) {
+  for (int i = 0; i < 3; ++i) to[i] = static_cast<float>(from[i]);
+}
+
+void put_columns(const Eigen::Matrix3d& from, float (&to)[3][3]) {
+  for (int i = 0; i < 3; ++i) put(from.col(i), to[i]);
+}
+
+PrintNumbers numbers_of(const PrintedMarker& marker) {
+  PrintNumbers print;
+  const int count = marker.cells.count;
+  if (count < 1 || count * count > 32 * PrintNumbers::kWords)
+    throw InvalidInput("simulator: a marker has 1 to 16 cells each way");
+  print.center_mm[0] = static_cast<float>(marker.center_mm.x());
+  print.center_mm[1] = static_cast<float>(marker.center_mm.y());
+  print.cells_per_mm = static_cast<float>(count / marker.size_mm);
+  print.count = count;
+  std::array<std::uint32_t, PrintNumbers::kWords> words{};
+  for (std::size_t cell = 0; cell < marker.cells.is_white.size(); ++cell)
+    words[cell / 32] |= std::uint32_t{marker.cells.is_white[cell]} << (cell % 32);
+  for (std::size_t i = 0; i < words.size(); ++i) print.words[i] = static_cast<std::int32_t>(words[i]);
+  return print;
+}
 
 // A ray in the plate's frame: origin + depth * direction.
 struct LocalRay {
@@ -25,7 +49,27 @@ class Plate : public Solid {
       : shape_(shape),
         camera_from_plate_(camera_from_plate),
         rotation_(camera_from_plate.matrix()),
-        origin_(camera_from_plate.inverse().translation_mm) {}
+        origin_(camera_from_plate.inverse().translation_mm) {
+    for (const PrintedMarker& marker : shape.markers) prints_.push_back(numbers_of(marker));
+  }
+
+  void meet(const RayRow& rays, int count, int first_part, const MetRow& met) const override {
+    PlateNumbers plate;
+    put_columns(rotation_, plate.axes);
+    put(origin_, plate.origin_mm);
+    for (int i = 0; i < 2; ++i) plate.half_size_mm[i] = static_cast<float>(shape_.half_size_mm[i]);
+    plate.thickness_mm = static_cast<float>(shape_.thickness_mm);
+    plate.tick_spacing_mm = static_cast<float>(shape_.tick_spacing_mm);
+    plate.yields_mm = static_cast<float>(yields_mm);
+    plate.is_round = shape_.is_round;
+    plate.prints = prints_.data();
+    plate.print_count = static_cast<int>(prints_.size());
+    picture_kernel().meet_plate(plate, rays, count, first_part, met);
+  }
+
+  std::vector<Look> looks() const override {
+    return {{kPaperSkin, true}, {kInkSkin, true}, {kSideSkin, false}};
+  }
 
   bool hit(const Eigen::Vector3d& direction, SolidHit& hit) const override {
     const LocalRay ray{origin_, rotation_.transpose() * direction};
@@ -60,8 +104,6 @@ class Plate : public Solid {
     hit.depth_mm = depth;
     hit.normal = rotation_.col(2);
     hit.region = is_ink(at) ? kInk : kPaper;
-    hit.skin = hit.region == kInk ? &kInkSkin : &kPaperSkin;
-    hit.is_print = true;
     return true;
   }
 
@@ -128,7 +170,6 @@ class Plate : public Solid {
     hit.depth_mm = depth;
     hit.normal = rotation_ * normal(at);
     hit.region = kSide;
-    hit.skin = &kSideSkin;
     return true;
   }
 
@@ -136,6 +177,7 @@ class Plate : public Solid {
   geometry::RigidTransform camera_from_plate_;
   Eigen::Matrix3d rotation_;
   Eigen::Vector3d origin_;  // of the camera, in the plate's frame
+  std::vector<PrintNumbers> prints_;
 };
 
 class Checkerboard : public Solid {
@@ -155,10 +197,19 @@ class Checkerboard : public Solid {
     hit.normal = rotation_.col(2) * (origin_.z() > 0 ? 1 : -1);
     hit.region =
         (static_cast<long>(std::floor(at.x())) + static_cast<long>(std::floor(at.y()))) & 1 ? kPaper : kInk;
-    hit.skin = hit.region == kInk ? &kInkSkin : &kPaperSkin;
-    hit.is_print = true;
     return true;
   }
+
+  void meet(const RayRow& rays, int count, int first_part, const MetRow& met) const override {
+    BoardNumbers board;
+    put_columns(rotation_, board.axes);
+    put(origin_, board.origin_mm);
+    board.square_mm = static_cast<float>(square_mm_);
+    board.yields_mm = static_cast<float>(yields_mm);
+    picture_kernel().meet_board(board, rays, count, first_part, met);
+  }
+
+  std::vector<Look> looks() const override { return {{kPaperSkin, true}, {kInkSkin, true}}; }
 
   std::vector<Ball> cover() const override { return {}; }
 
@@ -192,6 +243,18 @@ class Rod : public Solid {
     return hit_end(direction, from_, hit) || hit_end(direction, from_ + length_ * along_, hit);
   }
 
+  void meet(const RayRow& rays, int count, int first_part, const MetRow& met) const override {
+    RodNumbers rod;
+    put(from_, rod.from_mm);
+    put(along_, rod.along);
+    rod.radius_mm = static_cast<float>(radius_);
+    rod.length_mm = static_cast<float>(length_);
+    rod.yields_mm = static_cast<float>(yields_mm);
+    picture_kernel().meet_rod(rod, rays, count, first_part, met);
+  }
+
+  std::vector<Look> looks() const override { return {{skin_, false}}; }
+
   std::vector<Ball> cover() const override {
     std::vector<Ball> balls;
     const int count = 2 + static_cast<int>(length_ / radius_);
@@ -216,7 +279,6 @@ class Rod : public Solid {
     hit.depth_mm = depth;
     hit.normal = (depth * direction - axis_point) / radius_;
     hit.region = 0;
-    hit.skin = &skin_;
     return true;
   }
 

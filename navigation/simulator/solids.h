@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "navigation/simulator/picture_kernel.h"
 #include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::simulator {
@@ -21,8 +22,11 @@ struct Skin {
 struct SolidHit {
   double depth_mm = 0;  // along the camera's z axis
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  const Skin* skin = nullptr;
-  int region = 0;         // differs between parts of a solid that look different
+  int region = 0;  // differs between parts of a solid that look different
+};
+
+struct Look {
+  Skin skin;
   bool is_print = false;  // of a printed face, whose edges are measured
 };
 
@@ -37,6 +41,12 @@ class Solid {
   // Where the ray `depth * direction` (direction.z == 1) enters the solid in front of the camera. False: it
   // misses.
   [[nodiscard]] virtual bool hit(const Eigen::Vector3d& direction, SolidHit& hit) const = 0;
+  // The same for many rays at once, in single precision (0.001 px): what is nearer than what they met so far,
+  // and less than yields_mm behind the bone, is taken for met. Parts are first_part + region; see
+  // picture_kernel.h.
+  virtual void meet(const RayRow& rays, int count, int first_part, const MetRow& met) const = 0;
+  // By region, kRegions at most.
+  [[nodiscard]] virtual std::vector<Look> looks() const = 0;
   // How far behind the bone's surface the solid is still drawn: what a surgeon clears out of the way by
   // bending the knee.
   double yields_mm = 0;
@@ -47,7 +57,7 @@ class Solid {
 // A printed square of count x count cells, its black border included; row 0 is the marker's top.
 struct MarkerCells {
   int count = 0;
-  std::vector<bool> is_white;  // row by row
+  std::vector<bool> is_white;  // row by row; at most 16 x 16
   bool operator==(const MarkerCells&) const = default;
 };
 // The whole printed square of DICT_4X4_50, its black border included. id in 0..49.

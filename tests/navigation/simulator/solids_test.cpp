@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace arthronaut::simulator {
 namespace {
 
@@ -76,6 +78,79 @@ TEST(Checkerboard, Alternates) {
     EXPECT_NE(hit.region, previous);
     previous = hit.region;
   }
+}
+
+// Many rays at once meet what each meets alone, but for those within 0.002 px of an edge.
+TEST(Solids, AreMetAlikeByRaysTogetherAndAlone) {
+  std::vector<std::unique_ptr<Solid>> solids;
+  const Eigen::Quaterniond tilt(Eigen::AngleAxisd(0.5, Vector3d(0.6, 0.8, 0)));
+  const geometry::RigidTransform tilted{tilt * facing_at(20).rotation, {0.4, -0.3, 21}};
+  PlateShape square, disc, ruler;
+  square.markers = {{{0, 0}, 4.0, marker_cells(7)}};
+  disc.is_round = true;
+  disc.thickness_mm = 3;
+  disc.markers = {{{0.2, 0.1}, 3.5, marker_cells(12)}};
+  ruler.half_size_mm = {8, 3};
+  ruler.tick_spacing_mm = 1;
+  ruler.markers = {{{-4, -0.5}, 2.9, marker_cells(3)}, {{4, -0.5}, 2.9, marker_cells(4)}};
+  for (const PlateShape& shape : {square, disc, ruler}) solids.push_back(make_plate(tilted, shape));
+  solids.push_back(make_checkerboard(tilted, 1.5));
+  solids.push_back(make_rod({-5, 1, 19}, {4, -2, 23}, 1.5, steel()));
+  solids.push_back(make_rod({0, 0, 15}, {0.5, 0.5, 60}, 2.2, steel()));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(-0.6f, 0.6f);
+  constexpr int kRays = 4000;
+  std::vector<float> x(kRays), y(kRays), ground(kRays, 1e9f), depth(kRays), normal[3];
+  std::vector<std::int32_t> part(kRays);
+  for (auto& axis : normal) axis.resize(kRays);
+  for (std::size_t i = 0; i < kRays; ++i) {
+    x[i] = uniform(random);
+    y[i] = uniform(random);
+  }
+  constexpr double kEdge = 0.002 / 790;  // px: of the standard scope in saline
+  for (std::size_t s = 0; s < solids.size(); ++s) {
+    std::fill(depth.begin(), depth.end(), 1e9f);
+    std::fill(part.begin(), part.end(), 0);
+    solids[s]->meet({x.data(), y.data(), ground.data()}, kRays, 5,
+                    {depth.data(), part.data(), {normal[0].data(), normal[1].data(), normal[2].data()}});
+    int differing = 0, met = 0;
+    for (std::size_t i = 0; i < kRays; ++i) {
+      const auto alone = [&](double dx, double dy, SolidHit& hit) {
+        return solids[s]->hit({x[i] + dx, y[i] + dy, 1}, hit) ? 5 + hit.region : 0;
+      };
+      SolidHit hit, beside;
+      const int expected = alone(0, 0, hit);
+      met += expected != 0;
+      if (part[i] != expected) {
+        bool is_at_edge = false;
+        for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+          is_at_edge = is_at_edge || alone(dx * kEdge, dy * kEdge, beside) == part[i];
+        EXPECT_TRUE(is_at_edge) << s << ": " << x[i] << " " << y[i];
+        ++differing;
+      } else if (expected != 0) {
+        EXPECT_NEAR(depth[i], hit.depth_mm, 2e-3) << s;
+        EXPECT_NEAR((Vector3d(normal[0][i], normal[1][i], normal[2][i]) - hit.normal).norm(), 0, 3e-3) << s;
+      }
+    }
+    EXPECT_GT(met, 50) << s;
+    EXPECT_LT(differing, 5) << s;
+  }
+}
+
+// What was met nearer, and what lies behind the bone, stays as it is; what yields may lie so far behind it.
+TEST(Solids, LeaveWhatIsNearer) {
+  const auto plate = make_plate(facing_at(20), {});
+  std::vector<float> x(kTogether, 0.01f), y = x, depth{1e9f, 19, 21, 1e9f, 1e9f, 1e9f, 1e9f, 1e9f};
+  std::vector<float> ground{1e9f, 1e9f, 1e9f, 19, 21, 17, 1e9f, 1e9f}, normal(kTogether, 0.0f);
+  std::vector<std::int32_t> part(kTogether, 0);
+  const auto meet = [&] {
+    plate->meet({x.data(), y.data(), ground.data()}, kTogether, 1,
+                {depth.data(), part.data(), {normal.data(), normal.data(), normal.data()}});
+    return part;
+  };
+  EXPECT_EQ(meet(), (std::vector<std::int32_t>{1, 0, 1, 0, 1, 0, 1, 1}));
+  plate->yields_mm = 2;
+  EXPECT_EQ(meet(), (std::vector<std::int32_t>{1, 0, 1, 1, 1, 0, 1, 1}));
 }
 
 }  // namespace
