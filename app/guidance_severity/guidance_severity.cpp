@@ -42,6 +42,20 @@ Severity severity_of_drill(const guidance::DrillDepth& drill) {
   return drill.remaining_mm < 5 || drill.breakout == Breakout::Near ? Severity::Caution : Severity::Quiet;
 }
 
+DrillText drill_text(const guidance::DrillDepth& drill) {
+  using guidance::Breakout;
+  const std::string mm = widgets::fixed(std::abs(drill.remaining_mm), 1);
+  if (drill.breakout == Breakout::Through || drill.remaining_mm < 0) return {"Too deep", mm};
+  switch (severity_of_drill(drill)) {
+    case Severity::Bad:
+      return {"Stop: exit", mm};
+    case Severity::Caution:
+      return {"Exit near", mm};
+    default:
+      return {"Remaining", mm};
+  }
+}
+
 std::string marker_name(const tools::ToolSet& tools, int marker_id) {
   for (const tools::WorldMarker& marker : tools.world_markers)
     if (marker.marker_id == marker_id)

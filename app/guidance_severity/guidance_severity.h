@@ -18,6 +18,12 @@ namespace arthronaut::guidance_severity {
 // Bad where less than 2 mm of the planned length remain or the drill is about to break out of the bone's far
 // side, caution below 5 mm; quiet else.
 [[nodiscard]] widgets::Severity severity_of_drill(const guidance::DrillDepth& drill);
+// What remains, or what it is too much, under the name that warns: "Remaining", "Exit near", "Stop: exit",
+// "Too deep". At most as long as "Remaining" and a letter: it stands in a narrow column.
+struct DrillText {
+  std::string name, mm;
+};
+[[nodiscard]] DrillText drill_text(const guidance::DrillDepth& drill);
 
 // Length of the offset in the plane across the plan.
 [[nodiscard]] double offset_mm(const guidance::GuidanceNumbers& guidance);

@@ -14,8 +14,9 @@ void draw_card(const widgets::Ui& ui, const widgets::Rect& area, const Card& car
 class DepthEntry {
  public:
   void open();
+  void close() { is_open_ = wants_focus_ = false; }
   // At the foot of the picture while it is open; the reading, in mm, in the frame in which it was entered.
-  // What is no reading is told and asked for again; Esc closes it.
+  // What is no reading is told and asked for again; Esc or the pedal for the way back closes it.
   [[nodiscard]] std::optional<double> draw(const widgets::Ui& ui, const widgets::Rect& video);
   [[nodiscard]] bool is_open() const { return is_open_; }
   [[nodiscard]] bool wants_focus() const { return wants_focus_; }

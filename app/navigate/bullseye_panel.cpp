@@ -183,6 +183,20 @@ bool draw_number(const widgets::Ui& ui, widgets::Rect& rest, const std::string& 
   return true;
 }
 
+// Whether a drill has a marker of its own here.
+bool has_drill(const NavigateScreen& screen) {
+  const std::vector<tools::Tool>& tools = screen.options().tools.tools;
+  return std::any_of(tools.begin(), tools.end(),
+                     [](const tools::Tool& tool) { return tool.kind == tools::ToolKind::Drill; });
+}
+
+// For tests.
+std::string drill_state(const NavigateScreen& screen) {
+  const auto& drill = screen.display.drill;
+  if (!drill) return has_drill(screen) ? "not seen" : "none";
+  return drill->is_at_plan() ? guidance_severity::drill_text(*drill).name : "beside the plan";
+}
+
 }  // namespace
 
 void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
@@ -204,15 +218,26 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Naviga
   draw_number(ui, rest, "Angle", widgets::fixed(g.angle_deg, 1) + "\u00B0",
               widgets::plus_minus(g.sigma_angle_deg), guidance_severity::severity_of_angle(g));
   (void)rest.cut_top(ui.theme.px(8));
-  // Said of a drill that is seen alone: a guide does not know how deep the drill is that runs through it.
-  if (g.drill && g.drill->is_at_plan()) {
-    draw_number(ui, rest, "Remaining", widgets::fixed(g.drill->remaining_mm, 1), "mm",
-                guidance_severity::severity_of_drill(*g.drill));
-    draw_number(ui, rest, "Depth", widgets::fixed(g.drill->depth_mm, 1),
-                "mm " + widgets::plus_minus(g.drill->sigma_mm), widgets::Severity::Quiet);
+  draw_depth(ui, rest, screen);
+}
+
+// Said of a drill that is seen alone: a guide does not know how deep the drill is that runs through it.
+void draw_depth(const widgets::Ui& ui, widgets::Rect& rest, const NavigateScreen& screen) {
+  const auto& drill = screen.display.drill;
+  ui.log.note_state("drill", drill_state(screen));
+  if (drill && drill->is_at_plan()) {
+    const guidance_severity::DrillText text = guidance_severity::drill_text(*drill);
+    draw_number(ui, rest, text.name, text.mm, "mm", guidance_severity::severity_of_drill(*drill));
+    draw_number(ui, rest, "Depth", widgets::fixed(drill->depth_mm, 1),
+                "mm " + widgets::plus_minus(drill->sigma_mm), widgets::Severity::Quiet);
   } else if (const auto& stop_mm = screen.live->operation->depth_stop_mm) {
     // The surgeon's reading, not a measurement: nothing is reckoned from it, least of all what remains.
     draw_number(ui, rest, "Depth stop", widgets::fixed(*stop_mm, 1), "mm, read", widgets::Severity::Quiet);
+  } else if (drill) {
+    widgets::draw_afar(ui, rest, widgets::kCaution, "Drill beside the plan");
+  } else if (has_drill(screen)) {
+    // A number that is gone asks for a reason.
+    widgets::draw_afar(ui, rest, widgets::kQuietText, "Drill not seen");
   }
 }
 

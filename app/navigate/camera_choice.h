@@ -58,7 +58,8 @@ class CameraChoice {
   // Empty: none was, or "igtl://" alone, and the tools say who sees them.
   [[nodiscard]] const std::string& tracker() const { return tracker_; }
   void forget_tracker() { tracker_.clear(); }
-  // While it is open; what was clicked on, or typed and entered with Enter, in that frame. Esc closes it.
+  // While it is open; what was clicked on, or typed and entered with Enter, in that frame. Esc or the
+  // pedal for the way back closes it.
   [[nodiscard]] std::optional<LivePictures> draw(const widgets::Ui& ui, const widgets::Rect& video);
   // What the keys do now: in the field a letter is a letter.
   [[nodiscard]] std::string_view keys() const;

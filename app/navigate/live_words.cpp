@@ -53,11 +53,41 @@ std::string words_of(NextAction action) {
   return "";
 }
 
+namespace {
+constexpr const char* kLooksOtherwise = "bone looks otherwise: ";
+}
+
 std::string words_of_verifying(const operation::OperationState& state) {
+  if (state.control_point_due == operation::ControlPointDue::CannotCheckLooks)
+    return kLooksOtherwise + ("touch places that you know, " + std::to_string(state.places_in_doubt)) +
+           " to go";
   const std::string words = words_of(NextAction::VerifyByTouch);
   const int missing = state.registration->touches.places_to_verify();
   const bool counts = state.verification != operation::Verification::ByTouches && missing > 0;
   return counts ? words + ", " + std::to_string(missing) + " to go" : words;
+}
+
+std::string words_of_registering_anew(const operation::OperationState& state) {
+  if (state.registration->in_force.standing != Standing::Stands) return words_of(NextAction::RegisterAnew);
+  return "touches lie off the bone: draw more, or hold Shift+T to forget them";
+}
+
+std::string words_of_checking(const operation::OperationState& state) {
+  using operation::ControlPointDue;
+  const std::string words = words_of(NextAction::CheckControlPoint);
+  switch (state.control_point_due) {
+    case ControlPointDue::CheckBeforeDrilling:
+      return "before drilling: " + words;
+    case ControlPointDue::CheckAfterLoss:
+      return "marker was out of sight: " + words;
+    case ControlPointDue::CheckLooks:
+      return kLooksOtherwise + words;
+    case ControlPointDue::None:
+    case ControlPointDue::Set:
+    case ControlPointDue::CannotCheckLooks:
+      return words;
+  }
+  return words;
 }
 
 bool must_place_anew(const operation::RegistrationState& registration) {

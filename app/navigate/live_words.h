@@ -11,6 +11,10 @@ namespace arthronaut::navigate {
 [[nodiscard]] std::string words_of(operation::NextAction action);
 // The same of a touch that verifies, with how many are still missing.
 [[nodiscard]] std::string words_of_verifying(const operation::OperationState& state);
+// "register anew: let the probe draw", or that touches have denied what stands.
+[[nodiscard]] std::string words_of_registering_anew(const operation::OperationState& state);
+// "touch the control point again", with why it is asked for.
+[[nodiscard]] std::string words_of_checking(const operation::OperationState& state);
 // The picture shows the bone elsewhere, and no control point was set before that could deny it: what was
 // found is of a place that nobody knows. To be placed anew; and what is then to be done.
 [[nodiscard]] bool must_place_anew(const operation::RegistrationState& registration);

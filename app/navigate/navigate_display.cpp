@@ -144,17 +144,27 @@ void explain(NavigateDisplay& display, const theatre::LiveState& live) {
       display.headline = "Lens angle unknown";
       display.detail = trouble_of(result.lens).advice;
       break;
-    case GuidanceState::Stale:
-      display.headline = "Poses too old";
-      display.detail = "The markers were not seen together";
+    case GuidanceState::Stale:  // also what was reckoned by what is not in force any more
+      display.headline = "Nothing guides yet";
+      display.detail = "The next picture that shows bone marker and guide together gives the numbers";
       break;
   }
 }
 
 }  // namespace
 
+bool breaks_out(const NavigateDisplay& display) {
+  using guidance::Breakout;
+  return display.drill && display.drill->is_at_plan() &&
+         (display.drill->breakout == Breakout::Imminent || display.drill->breakout == Breakout::Through);
+}
+
 bool is_under_way(const theatre::LiveState& live) {
   return live.phase == Phase::Starting || live.phase == Phase::Running;
+}
+
+bool awaits_picture(const theatre::LiveState& live) {
+  return live.phase == Phase::Starting || (live.phase == Phase::Running && live.picture == nullptr);
 }
 
 bool is_of_source_before(const theatre::LiveState& live) {
@@ -216,6 +226,10 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
       display.overlay_is_valid || (result.tracker_from_world.is_valid && !result.is_frozen && !is_revoked);
   display.tip_is_valid = display.world_is_placed && may_guide && result.tip_is_valid;
   display.guidance_is_valid = display.world_is_placed && may_guide && result.guidance.is_valid();
+  const bool lacks_guide_alone =
+      result.guidance.state == GuidanceState::GuideLost || result.guidance.state == GuidanceState::NoGuide;
+  if (display.guidance_is_valid || (display.world_is_placed && may_guide && lacks_guide_alone))
+    display.drill = result.guidance.drill;
   if (display.guidance_is_valid)
     display.guidance = result.guidance;
   else

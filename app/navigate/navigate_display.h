@@ -3,6 +3,7 @@
 // place.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/navigate/live_words.h"
@@ -21,10 +22,16 @@ struct NavigateDisplay {
   double age_s = 0;              // of the picture, from its capture to now; with is_live or when it is late
   std::string headline, detail;  // why not; empty while guidance is valid
   guidance::GuidanceNumbers guidance;  // meaningful when guidance_is_valid
+  // Of a drill that is seen by its own marker, also while the guide is not: over a wire there is none.
+  std::optional<guidance::DrillDepth> drill;
 };
 
+// A drill that is seen at the plan is about to leave the bone on the far side, or has.
+[[nodiscard]] bool breaks_out(const NavigateDisplay& display);
 // A source runs or is being opened: it has to be stopped before the other bone is taken.
 [[nodiscard]] bool is_under_way(const theatre::LiveState& live);
+// One is being opened, or is open and has given no picture yet: nothing can be asked of anybody.
+[[nodiscard]] bool awaits_picture(const theatre::LiveState& live);
 // What live.operation says is of the source before: the one that was started last is still being opened, or
 // could not be.
 [[nodiscard]] bool is_of_source_before(const theatre::LiveState& live);

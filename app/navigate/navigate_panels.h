@@ -66,6 +66,8 @@ void draw_reason(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
 void draw_states(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
 void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
 void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
+// How deep the drill is, or why that is not said; cut off the top of `rest`. Needs a source.
+void draw_depth(const widgets::Ui& ui, widgets::Rect& rest, const NavigateScreen& screen);
 // While the probe draws: how far the registration is, and what is missing. Needs a status.
 void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
 // The same in every detail: strokes, touches, earlier ones.

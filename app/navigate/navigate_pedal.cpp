@@ -11,7 +11,7 @@ using operation::NextAction;
 using Phase = theatre::LiveState::Phase;
 
 namespace {
-constexpr double kReadable_s = 1.5;  // of what is asked, where a press too soon would cost much
+constexpr double kReadable_s = 1.5;  // of what a press would say for the surgeon
 }
 
 bool NavigateView::can_simulate() const {
@@ -86,11 +86,13 @@ std::string NavigateView::next_step() {
   if (!guided) return words_of(NextAction::PlanTunnel);
   if (waits_for_take_over() && guided->bundle != norms::Bundle::Whole)
     return "take over the tunnel " + tunnels::name_of(*guided);
-  if (live_->phase == Phase::Starting)
+  if (awaits_picture(*live_))
     return stops_once_open_ ? "wait: it stops once it is open" : "wait for the first picture";
   if (takes_guide_in_simulation()) return "take the guide (simulation)";
   if (action == NextAction::CheckWorldMarker && must_place_anew(registration())) return place_anew_words();
   if (action == NextAction::VerifyByTouch) return words_of_verifying(*live_->operation);
+  if (action == NextAction::CheckControlPoint) return words_of_checking(*live_->operation);
+  if (action == NextAction::RegisterAnew) return words_of_registering_anew(*live_->operation);
   const bool starts = action == NextAction::StartSource || action == NextAction::PlanTunnel;
   if (!starts) return words_of(action);
   if (must_set_up()) return "calibrate camera and tools in Set up";
@@ -105,9 +107,13 @@ std::string NavigateView::words_of_start() const {
   return kind_ || !choices_.videos.empty() ? "open the next video" : "choose a camera";
 }
 
-// What is confirmed or recorded is what was asked on the screen: a press that was meant for what stood there
-// before the last picture came confirms nothing.
-bool NavigateView::was_asked() { return next_step() == choices_.next; }
+// What is confirmed, recorded or said to be out stands in the record for good. It has to have been asked on
+// the screen for long enough to be read: a second press of a foot that slipped, and one that was meant for
+// what stood there before, say nothing.
+bool NavigateView::was_read() {
+  return next_step() == choices_.next &&
+         theatre::LiveOperation::now_s() - choices_.next_since_s >= kReadable_s;
+}
 
 void NavigateView::take_next_step() {
   if (cameras_.is_open()) {
@@ -120,7 +126,7 @@ void NavigateView::take_next_step() {
   if (choices_.goes_to_other_bone) return;
   if (tunnel_to_choose().empty() && finishes())
     return finish_step(finish_action(finished_bones(), choices_.bone, is_under_way(*live_)));
-  if (live_->phase == Phase::Starting) return;
+  if (awaits_picture(*live_)) return;
   if (!bones_.guided(choices_.bone)) {
     if (!bones_.must_choose(choices_.bone)) go_elsewhere_(Elsewhere::Plan);
     return;
@@ -131,7 +137,7 @@ void NavigateView::take_next_step() {
     case NextAction::PlanTunnel:  // of an operation that was not told yet of the plan that is there
       return must_set_up() ? go_elsewhere_(Elsewhere::SetUp) : start_same_kind();
     case NextAction::ConfirmTimeOut:
-      if (was_asked()) ask(operation::ConfirmTimeOut{!patient_.empty()});
+      if (was_read()) ask(operation::ConfirmTimeOut{!patient_.empty()});
       return;
     case NextAction::Draw:
     case NextAction::RegisterAnew:
@@ -145,8 +151,7 @@ void NavigateView::take_next_step() {
       return take_touch(false);
     case NextAction::CheckWorldMarker:
       if (!must_place_anew(registration())) return take_touch(true);
-      if (was_asked() && theatre::LiveOperation::now_s() - choices_.next_since_s >= kReadable_s)
-        ask(operation::MarkerPlacedAnew{});
+      if (was_read()) ask(operation::MarkerPlacedAnew{});
       return;
     case NextAction::SetControlPoint:
     case NextAction::CheckControlPoint:
@@ -154,7 +159,7 @@ void NavigateView::take_next_step() {
     case NextAction::CheckGuide:
       return ask(operation::CheckGuide{});
     case NextAction::RecordDrilled:
-      if (was_asked()) ask(operation::TunnelDrilled{});
+      if (was_read()) ask(operation::TunnelDrilled{});
       return;
     case NextAction::BringGuide:
       if (takes_guide_in_simulation()) start_simulation(SimulatedPart::Drill);
@@ -175,11 +180,17 @@ bool NavigateView::pedal_acts() {
   if (choices_.looked_at) return repeat_of(*choices_.looked_at, *live_->operation) != Repeat::NothingNow;
   if (!tunnel_to_choose().empty()) return false;
   if (finishes())
-    return finish_action(finished_bones(), choices_.bone, is_under_way(*live_)) != FinishAction::Nothing;
-  if (live_->phase == Phase::Starting) return false;
+    return finish_action(finished_bones(), choices_.bone, is_under_way(*live_)) != FinishAction::Nothing &&
+           was_read();
+  if (awaits_picture(*live_)) return false;
   switch (live_->operation->next_action) {
     case NextAction::BringGuide:
       return takes_guide_in_simulation();
+    case NextAction::ConfirmTimeOut:
+    case NextAction::RecordDrilled:
+      return was_read();
+    case NextAction::CheckWorldMarker:
+      return !must_place_anew(registration()) || was_read();
     case NextAction::ShowWorldMarker:
     case NextAction::GoOnDrawing:
     case NextAction::WaitForRegistration:
@@ -191,10 +202,8 @@ bool NavigateView::pedal_acts() {
   }
 }
 
-// A second press of a foot that slipped must not say that a marker is out: what is asked has to have stood
-// there long enough to be read.
 void NavigateView::finish_step(FinishAction action) {
-  if (theatre::LiveOperation::now_s() - choices_.next_since_s < kReadable_s) return;
+  if (!was_read()) return;
   switch (action) {
     case FinishAction::TakeMarkerOut:
       log::info("world marker said to be out: " + std::string(bones::to_text(choices_.bone)));
@@ -218,6 +227,7 @@ void NavigateView::take_step_back() {
     return;
   }
   if (cameras_.is_open()) return cameras_.close();
+  if (depth_.is_open()) return depth_.close();
   if (resume_.is_looking() || left_behind() != nullptr || choices_.goes_to_other_bone) return;
   choices_.looked_at = step_before(choices_.looked_at.value_or(step_of_now(rail())));
 }

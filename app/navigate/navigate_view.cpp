@@ -329,6 +329,7 @@ void NavigateView::sound(double now_s) {
   if (const auto due = heard_.follow({.guides = runs && display.guidance_is_valid,
                                       .doubts = runs && doubts,
                                       .reached = runs && choices_.reached.since(now_s).has_value(),
+                                      .breaks_out = runs && breaks_out(display),
                                       .runs = runs,
                                       .end_was_asked = end_was_asked_},
                                      now_s))

@@ -82,7 +82,7 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] std::string words_of_start() const;
   // One pedal: carries out what is a command, and starts nothing but the kind of source that was chosen.
   void take_next_step();
-  [[nodiscard]] bool was_asked();
+  [[nodiscard]] bool was_read();
   void finish_step(FinishAction action);
   // Another pedal: one step back, to do it again; after the first step the one of now is shown again.
   void take_step_back();

@@ -101,6 +101,12 @@ void draw_reason(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
   widgets::Rect inner = area.inset(ui.theme.px(18));
   if (!screen.tunnel.empty())
     widgets::draw_afar(ui, inner.cut_top(ui.theme.afar->FontSize * 1.2F), widgets::kAccent, screen.tunnel);
+  // A drill that is seen is told of whatever else is missing.
+  if (display.drill && screen.has_source()) {
+    const float number = ui.theme.afar->FontSize + ui.theme.number->FontSize;
+    widgets::Rect depth = inner.cut_bottom(std::min(2 * number, inner.height / 2));
+    draw_depth(ui, depth, screen);
+  }
   // Before there is a picture nothing is wrong.
   const bool is_amiss = display.has_picture;
   if (is_amiss) draw.AddRect(area.min(), area.max(), widgets::kCaution, ui.theme.px(6), 0, ui.theme.px(5));

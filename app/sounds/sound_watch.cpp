@@ -24,6 +24,8 @@ std::optional<Sound> SoundWatch::follow(const Shown& shown, double now_s) {
     guides_since_s_.reset();
     if (!gone_since_s_) gone_since_s_ = now_s;
   }
+  // Nothing else is so urgent; what comes with it is said by the screen.
+  if (shown.breaks_out && !before.breaks_out) return due(Sound::Breakout, now_s);
   if (shown.doubts && !before.doubts) {
     did_guide_ = false;  // said already why it is gone
     return due(Sound::Doubtful, now_s);

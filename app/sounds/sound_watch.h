@@ -13,6 +13,7 @@ struct Shown {
   bool guides = false;         // numbers that may be followed
   bool doubts = false;         // what guided is in doubt, void, or an alarm stands
   bool reached = false;        // the guide stands on the plan
+  bool breaks_out = false;     // a drill that is seen is about to leave the bone, or has
   bool runs = true;            // a source; without one nothing guides
   bool end_was_asked = false;  // where none runs: somebody ended it, or started another one
 };
@@ -20,9 +21,9 @@ struct Shown {
 class SoundWatch {
  public:
   // A sound for the newest thing that has happened; what is doubtful before what is lost, since both come at
-  // once. Guidance counts as lost when it was there for settles_s and then is gone for as long: a marker that
-  // flickers makes no noise. A source that fails or ends by itself is followed until the loss was said; one
-  // that somebody ended is forgotten at once.
+  // once; a drill that breaks out before both. Guidance counts as lost when it was there for settles_s and
+  // then is gone for as long: a marker that flickers makes no noise. A source that fails or ends by itself is
+  // followed until the loss was said; one that somebody ended is forgotten at once.
   [[nodiscard]] std::optional<Sound> follow(const Shown& shown, double now_s);
 
   // What guided is gone, and that is not said yet: follow() has to be called soon.
@@ -37,7 +38,7 @@ class SoundWatch {
   Shown before_;
   std::optional<double> guides_since_s_, gone_since_s_;
   bool did_guide_ = false;  // for long enough to be missed
-  double last_s_[3] = {-1e9, -1e9, -1e9};
+  double last_s_[4] = {-1e9, -1e9, -1e9, -1e9};
 };
 
 }  // namespace arthronaut::sounds

@@ -13,6 +13,8 @@ std::string_view to_text(Sound sound) {
       return "doubtful";
     case Sound::Reached:
       return "reached";
+    case Sound::Breakout:
+      return "breakout";
   }
   return "";
 }
@@ -25,6 +27,8 @@ std::vector<Beat> rhythm_of(Sound sound) {
       return {{0.36, 0.10, 494}, {0.10, 0.05, 392}};
     case Sound::Reached:
       return {{0.10, 0.07, 659}, {0.36, 0.05, 880}};
+    case Sound::Breakout:
+      return {{0.26, 0.08, 988}, {0.26, 0.05, 988}};
   }
   return {};
 }

@@ -1,9 +1,10 @@
-// The three sounds of the theatre, made by arithmetic: told apart by their rhythm, so that who hears no
+// The four sounds of the theatre, made by arithmetic: told apart by their rhythm, so that who hears no
 // pitch, or only half of it through the room, tells them apart all the same.
 //
 //   lost      three short, low            . . .
 //   doubtful  long, short, falling        - .
 //   reached   short, long, rising         . -
+//   breakout  two long, high              - -
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace arthronaut::sounds {
 
-enum class Sound { Lost, Doubtful, Reached };
+enum class Sound { Lost, Doubtful, Reached, Breakout };
 [[nodiscard]] std::string_view to_text(Sound sound);  // "lost", ...
 
 inline constexpr int kSampleRate = 48'000;

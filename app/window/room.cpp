@@ -30,9 +30,9 @@ void Room::press_pedals(widgets::Actions& actions, const std::vector<std::string
   if (foot_switch_ == nullptr) return;
   for (const pedals::PedalEvent& event : foot_switch_->take()) {
     const int key = pedals::key_of(event.pedal);
-    if (!event.is_down)
-      actions.release(key);
-    else if (!is_typing)
+    if (!event.is_down) actions.release(key);
+    // A foot writes nothing into a field, and must not be caught in one that was opened by a slip.
+    else if (!is_typing || event.pedal == pedals::Pedal::Back)
       actions.press({key, 0, false}, prefixes);
   }
 }

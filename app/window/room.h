@@ -21,7 +21,8 @@ class Room {
   [[nodiscard]] const std::string& screen_stream() const { return settings_.screen_stream; }
   // The key whose meaning this key has: its own, unless the settings say otherwise.
   [[nodiscard]] int meaning_of(int key) const;
-  // Pedals that were pressed or let go, as keys; while `is_typing`, presses are nobody's.
+  // Pedals that were pressed or let go, as keys; while `is_typing`, presses of all but the way back are
+  // nobody's.
   void press_pedals(widgets::Actions& actions, const std::vector<std::string_view>& prefixes, bool is_typing);
 
   [[nodiscard]] std::string trouble() const;  // of the settings or of a foot switch; empty: none

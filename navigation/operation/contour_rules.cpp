@@ -6,13 +6,13 @@ namespace arthronaut::operation {
 void Operation::Parts::end_contour() {
   if (contour.check) contour.check->end();
   contour.drift.reset();
-  contour.looks_otherwise.reset();
+  contour.looks.reset();
   contour.is_in_doubt = false;
 }
 
 // The probe, or the surgeon, has said that the bone lies where it lay.
 void Operation::Parts::look_anew() {
-  contour.looks_otherwise.reset();
+  contour.looks.reset();
   contour.is_in_doubt = false;
   contour.begins_anew = true;
 }
@@ -65,17 +65,19 @@ void Operation::Parts::check_contour(const camera::Frame& picture) {
   const bool looks_otherwise = verdict.state == contour::ContourState::LooksOtherwise;
   if ((looks_otherwise || verdict.state == contour::ContourState::Holds) &&
       looks_otherwise != contour.is_in_doubt)
-    contour.looks_otherwise = looks_otherwise;
+    contour.looks = {looks_otherwise, verdict.held_until_ns};
 }
 
 // It is told a second or more after the bone has moved. A control point that was set meanwhile says that the
 // bone lies where it lies now, and nothing of whether it moved.
 void Operation::Parts::take_drift() {
-  if (const auto otherwise = std::exchange(contour.looks_otherwise, std::nullopt);
-      otherwise && *otherwise != contour.is_in_doubt && ledger.in_force().standing == Standing::Stands) {
-    note(JournalKind::BoneLooks, std::string(*otherwise ? kLooksOtherwise : kLooksAsItDid));
-    contour.is_in_doubt = *otherwise;
-    contour.doubt_has_control_point = ledger.touches().has_control_point();
+  if (const auto looks = std::exchange(contour.looks, std::nullopt);
+      looks && looks->otherwise != contour.is_in_doubt && ledger.in_force().standing == Standing::Stands) {
+    note(JournalKind::BoneLooks, to_text(*looks));
+    contour.is_in_doubt = looks->otherwise;
+    contour.doubt_has_control_point =
+        ledger.touches().has_control_point() && in_view.control_set_ns < looks->held_until_ns;
+    contour.touches_before_doubt = ledger.touches().count();
     changed = true;
   }
   if (!contour.drift) return;

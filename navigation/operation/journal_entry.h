@@ -19,8 +19,8 @@ enum class JournalKind {
   OutcomeTaken,   // text: its request count
   LookTaken,      // text: index of the frame whose picture was seen in the other medium
   BoneMoved,      // in the picture, against its marker; text: see seen_drift.h
-  BoneLooks,      // in the picture; text: "otherwise", or "as it did". A doubt ends without it, too: by the
-                  // control point, and with its registration
+  BoneLooks,      // in the picture; text: see seen_drift.h. A doubt ends without it, too: by the control
+                  // point, and with its registration
   SourceStarted,  // what stands before the first of these was given before any source
   SourceEnded,
   RegistrationInForce,  // registration is set; without a pose: none is in force any more
@@ -35,9 +35,6 @@ enum class JournalKind {
   Drilled,           // achieved is set
   Note,
 };
-
-// The texts of BoneLooks.
-inline constexpr std::string_view kLooksOtherwise = "otherwise", kLooksAsItDid = "as it did";
 
 struct JournalEntry {
   std::int64_t after_frame = -1;  // index of the last frame before it; -1: none of this source yet

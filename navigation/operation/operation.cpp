@@ -1,5 +1,6 @@
 #include "navigation/operation/operation.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "navigation/operation/operation_parts.h"
@@ -127,6 +128,7 @@ void Operation::apply(const Command& command) {
     p.guide_check.forget_point();
     p.contour.doubt_has_control_point = false;  // one that is set anew was set in doubt
   }
+  p.contour.touches_before_doubt = std::min(p.contour.touches_before_doubt, p.ledger.touches().count());
   p.follow_ledger();
 }
 
@@ -166,8 +168,8 @@ void Operation::tell_bone_moved(const SeenDrift& drift) {
   parts_->take_drift();
 }
 
-void Operation::tell_bone_looks(bool otherwise) {
-  parts_->contour.looks_otherwise = otherwise;
+void Operation::tell_bone_looks(const SeenLooks& looks) {
+  parts_->contour.looks = looks;
   parts_->take_drift();
 }
 
@@ -195,6 +197,7 @@ OperationStatePtr Operation::state() {
   state->time_out = p.time_out();
   state->resumed = p.resumed;
   state->control_point_due = p.control_point_due();
+  state->places_in_doubt = p.places_in_doubt();
   state->touch_refusal = p.touch.refusal;
   state->guide_check = p.guide_check.state();
   state->guide_check.has_point = p.control_point_of_now_mm().has_value();

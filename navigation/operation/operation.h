@@ -84,7 +84,7 @@ class Operation {
   // of a record. Nothing without a registration that stands, or where a picture has just told it.
   void tell_bone_moved(const SeenDrift& drift);
   // The same of a bone that does not look as it did, or does again.
-  void tell_bone_looks(bool otherwise);
+  void tell_bone_looks(const SeenLooks& looks);
 
   // The picture of the newest frame is to be seen in the other medium; once for each.
   [[nodiscard]] std::optional<MediumLookRequest> take_look_request();

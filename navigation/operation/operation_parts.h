@@ -78,6 +78,7 @@ struct Operation::Parts {
   [[nodiscard]] std::optional<std::size_t> guide_in_view() const;
   [[nodiscard]] std::optional<Eigen::Vector3d> control_point_of_now_mm() const;
   [[nodiscard]] ControlPointDue control_point_due() const;
+  [[nodiscard]] int places_in_doubt() const;
   [[nodiscard]] Verification verification() const;
   [[nodiscard]] TimeOut time_out() const;
   void hide_guidance(guidance::GuidanceState reason);
@@ -190,9 +191,11 @@ struct Operation::Parts {
     // Told by the newest picture: in force with the next one, between the two, as everything that a run from
     // the record alone has to hear of.
     std::optional<SeenDrift> drift;
-    std::optional<bool> looks_otherwise;
-    // In force: it does not look as it did, and whether a control point was set before it was told.
+    std::optional<SeenLooks> looks;
+    // In force: it does not look as it did; whether a control point was set while it was seen to lie where it
+    // lay; and how many touches there were then.
     bool is_in_doubt = false, doubt_has_control_point = false;
+    std::size_t touches_before_doubt = 0;
     bool begins_anew = false;  // what it looks like now is how it looks
   } contour;
   struct Drilling {

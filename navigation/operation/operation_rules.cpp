@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "navigation/operation/operation_parts.h"
 
 namespace arthronaut::operation {
@@ -336,10 +338,19 @@ void Operation::Parts::apply(const GiveRegistration& give) {
               std::make_shared<const registration::RegistrationSummary>(give.registration), of);
 }
 
+// No control point can end such a doubt. Touches end it neither: a bone that went along its surface is
+// touched all the same. So they are asked for, shown, and then the operation goes on in doubt, as it is said
+// to be.
+int Operation::Parts::places_in_doubt() const {
+  if (!contour.is_in_doubt || contour.doubt_has_control_point) return 0;
+  return std::max(
+      setup.limits.touches_to_verify - ledger.touches().places_since(contour.touches_before_doubt), 0);
+}
+
 ControlPointDue Operation::Parts::control_point_due() const {
   if (!has_source || ledger.in_force().standing != Standing::Stands) return ControlPointDue::None;
-  if (contour.is_in_doubt)
-    return contour.doubt_has_control_point ? ControlPointDue::CheckLooks : ControlPointDue::CannotCheckLooks;
+  if (contour.is_in_doubt && contour.doubt_has_control_point) return ControlPointDue::CheckLooks;
+  if (places_in_doubt() > 0) return ControlPointDue::CannotCheckLooks;
   if (!ledger.touches().has_control_point()) return ControlPointDue::Set;
   if (in_view.was_lost_for_long) return ControlPointDue::CheckAfterLoss;
   return in_view.guide_was_seen && frame.timestamp_ns - in_view.control_touched_ns > kControlHolds_ns

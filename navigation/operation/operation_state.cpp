@@ -114,6 +114,14 @@ NextAction action_without_registration(const OperationState& state) {
   return registration.point_count >= kEnoughPoints ? NextAction::RegisterStrokes : NextAction::Draw;
 }
 
+// Enough places were touched, and they lie off the bone: no further touch can verify, another registration
+// may.
+NextAction action_of_denied(const OperationState& state) {
+  if (state.registration->is_fitting) return NextAction::WaitForRegistration;
+  if (!state.draws) return NextAction::RegisterAnew;
+  return state.registration->point_count > 0 ? NextAction::RegisterStrokes : NextAction::GoOnDrawing;
+}
+
 }  // namespace
 
 std::string_view to_text(Step step) {
@@ -165,7 +173,10 @@ NextAction next_action_of(const OperationState& state) {
     return NextAction::ConfirmByTouch;
   if (in_force.standing != Standing::Stands) return action_without_registration(state);
   const bool guides = state.frame.guidance.is_valid();
-  if (state.verification == Verification::NotYet && !guides) return NextAction::VerifyByTouch;
+  if (state.verification == Verification::NotYet && !guides) {
+    if (registration.touches.places_to_verify() > 0) return NextAction::VerifyByTouch;
+    return action_of_denied(state);
+  }
   if (state.control_point_due == ControlPointDue::CannotCheckLooks) return NextAction::VerifyByTouch;
   if (state.control_point_due == ControlPointDue::Set && !guides) return NextAction::SetControlPoint;
   if (state.control_point_due > ControlPointDue::Set) return NextAction::CheckControlPoint;

@@ -68,6 +68,7 @@ enum class ControlPointDue {
   CheckAfterLoss,
   CheckLooks,  // the picture does not show the bone as it did
   // So it is, and no control point was set before: one that is set now learns where the bone lies since.
+  // Asked for until as many places were touched as verify; what they say is the surgeon's to judge.
   CannotCheckLooks,
 };
 
@@ -122,6 +123,7 @@ struct OperationState {
   Verification verification = Verification::NotYet;
   TimeOut time_out = TimeOut::NotAsked;
   ControlPointDue control_point_due = ControlPointDue::None;
+  int places_in_doubt = 0;                          // still to be touched, with CannotCheckLooks
   TouchRefusal touch_refusal = TouchRefusal::None;  // of the last touch, or check of the guide, asked for
   bool touch_is_of_guide = false;                   // a check of it
   std::int64_t touch_asked_ns = 0;                  // in the source's time

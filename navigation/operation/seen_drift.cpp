@@ -12,7 +12,17 @@ namespace arthronaut::operation {
 namespace {
 
 constexpr std::string_view kUntil = " mm, where it lay until ";
+constexpr std::string_view kLookedUntil = ", as it did until ";
 constexpr std::string_view kUnit = " ns";
+
+// " mm, where it lay until 5 ns" after that head; false: it is something else.
+bool read_until(std::string_view text, std::string_view head, std::int64_t& until_ns) {
+  if (!text.starts_with(head)) return false;
+  text.remove_prefix(head.size());
+  const char* const end = text.data() + text.size();
+  const auto [unit, error] = std::from_chars(text.data(), end, until_ns);
+  return error == std::errc() && std::string_view(unit, static_cast<std::size_t>(end - unit)) == kUnit;
+}
 
 }  // namespace
 
@@ -30,14 +40,30 @@ SeenDrift seen_drift_from_text(const std::string& text, const std::string& where
   const char* const end = text.data() + text.size();
   const auto [after, error] = std::from_chars(text.data(), end, drift.drift_mm);
   if (error != std::errc() || !std::isfinite(drift.drift_mm) || drift.drift_mm < 0) throw refuse();
-  std::string_view rest(after, static_cast<std::size_t>(end - after));
+  const std::string_view rest(after, static_cast<std::size_t>(end - after));
   if (rest.empty()) return drift;
-  if (!rest.starts_with(kUntil)) throw refuse();
-  rest.remove_prefix(kUntil.size());
-  const auto [unit, wrong] = std::from_chars(rest.data(), end, drift.held_until_ns);
-  if (wrong != std::errc() || std::string_view(unit, static_cast<std::size_t>(end - unit)) != kUnit)
-    throw refuse();
+  if (!read_until(rest, kUntil, drift.held_until_ns)) throw refuse();
   return drift;
+}
+
+std::string to_text(const SeenLooks& looks) {
+  if (!looks.otherwise) return std::string(kLooksAsItDid);
+  std::string text(kLooksOtherwise);
+  if (looks.held_until_ns == SeenLooks().held_until_ns) return text;
+  return text + std::string(kLookedUntil) + std::to_string(looks.held_until_ns) + std::string(kUnit);
+}
+
+SeenLooks seen_looks_from_text(const std::string& text, const std::string& where) {
+  SeenLooks looks;
+  if (text == kLooksAsItDid) return looks;
+  looks.otherwise = true;
+  const bool is_short = text == kLooksOtherwise;
+  const bool is_long =
+      text.starts_with(kLooksOtherwise) &&
+      read_until(std::string_view(text).substr(kLooksOtherwise.size()), kLookedUntil, looks.held_until_ns);
+  if (!is_short && !is_long)
+    throw InvalidInput(where, "", "\"" + text + "\" does not say how the bone looks");
+  return looks;
 }
 
 }  // namespace arthronaut::operation

@@ -1,10 +1,11 @@
-// A bone that the picture shows elsewhere than where it lay, as an operation is told of it and its journal
-// keeps it.
+// A bone that the picture shows elsewhere than where it lay, or otherwise than it looked, as an operation is
+// told of it and its journal keeps it.
 #pragma once
 
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 
 namespace arthronaut::operation {
 
@@ -19,5 +20,18 @@ struct SeenDrift {
 [[nodiscard]] std::string to_text(const SeenDrift& drift);
 // Also of older versions, which wrote the millimetres alone. Throws InvalidInput that names `where`.
 [[nodiscard]] SeenDrift seen_drift_from_text(const std::string& text, const std::string& where);
+
+// Whether what is seen of the bone looks as it did.
+struct SeenLooks {
+  bool otherwise = false;
+  // With otherwise, as above.
+  std::int64_t held_until_ns = std::numeric_limits<std::int64_t>::max();
+};
+inline constexpr std::string_view kLooksOtherwise = "otherwise", kLooksAsItDid = "as it did";
+
+// "otherwise, as it did until 4000000000 ns", or "as it did".
+[[nodiscard]] std::string to_text(const SeenLooks& looks);
+// Also of older versions, which wrote "otherwise" alone. Throws InvalidInput that names `where`.
+[[nodiscard]] SeenLooks seen_looks_from_text(const std::string& text, const std::string& where);
 
 }  // namespace arthronaut::operation

@@ -181,6 +181,18 @@ int Touches::places_to_verify() const {
   return std::max(limits_.touches_to_verify - static_cast<int>(misses_mm().size()), 0);
 }
 
+int Touches::places_since(std::size_t count) const {
+  std::vector<Eigen::Vector3d> places_mm;
+  for (std::size_t i = count; i < touches_.size(); ++i) {
+    const Eigen::Vector3d& tip_mm = touches_[i].tip_in_marker_mm;
+    const bool is_new = std::none_of(
+        places_mm.begin(), places_mm.end(),
+        [&](const Eigen::Vector3d& place_mm) { return (place_mm - tip_mm).norm() < limits_.apart_mm; });
+    if (is_new) places_mm.push_back(tip_mm);
+  }
+  return static_cast<int>(places_mm.size());
+}
+
 bool Touches::last_confirms() const {
   return last_ == Last::Kind::Touch && !residuals_mm_.empty() && residuals_mm_.back() &&
          std::abs(*residuals_mm_.back()) < limits_.max_confirming_mm;

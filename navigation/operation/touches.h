@@ -105,6 +105,8 @@ class Touches {
   [[nodiscard]] bool verify() const;
   // So many different places are still to be touched before they can; 0: enough were, wherever they lie.
   [[nodiscard]] int places_to_verify() const;
+  // Different places that were touched after the first so many touches, wherever they lie.
+  [[nodiscard]] int places_since(std::size_t count) const;
   // The newest touch alone lies on the bone, so near that a void registration is confirmed by it.
   [[nodiscard]] bool last_confirms() const;
   [[nodiscard]] const TouchLimits& limits() const { return limits_; }

@@ -175,7 +175,8 @@ void Rerun::play(const SessionEvent& event) {
     operation_.tell_bone_moved(
         operation::seen_drift_from_text(event.text, database_file(session_->folder()).string()));
   } else if (event.kind == kBoneLooksEvent) {
-    operation_.tell_bone_looks(event.text == operation::kLooksOtherwise);
+    operation_.tell_bone_looks(
+        operation::seen_looks_from_text(event.text, database_file(session_->folder()).string()));
   } else if (event.kind == kSourceEndedEvent) {
     operation_.end_source();
   } else if (!has_journal_ && event.kind == kPlanEvent) {

@@ -51,6 +51,22 @@ TEST(Readings, Hazard7TheDrillsSeverityWarnsOfTheFarSide) {
   EXPECT_EQ(severity_of_drill(drill), widgets::Severity::Bad);
 }
 
+// In words, not by a colour and a shape alone; a drill that is too deep is not told by a minus.
+TEST(Readings, Hazard7TheDrillIsWarnedOfInWords) {
+  const auto text_at = [](double remaining_mm) {
+    guidance::DrillDepth drill;
+    drill.remaining_mm = drill.to_exit_mm = remaining_mm;
+    drill.breakout = guidance::breakout_of(remaining_mm, 0.4);
+    const DrillText text = drill_text(drill);
+    return text.name + " " + text.mm;
+  };
+  EXPECT_EQ(text_at(20), "Remaining 20.0");
+  EXPECT_EQ(text_at(5.3), "Exit near 5.3") << "the predicted error counts against the drill";
+  EXPECT_EQ(text_at(2.3), "Stop: exit 2.3");
+  EXPECT_EQ(text_at(0), "Too deep 0.0");
+  EXPECT_EQ(text_at(-1.25), "Too deep 1.2");
+}
+
 // The parts of the offset in the bone's words, of whichever two directions lie across the plan.
 TEST(Readings, Hazard31TheOffsetsPartsAreNamedByTheBonesAxes) {
   guidance::GuidanceNumbers g;

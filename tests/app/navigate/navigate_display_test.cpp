@@ -266,6 +266,58 @@ TEST(NavigateDisplay, NamesTheReasonOfTheMarker) {
   EXPECT_EQ(display.detail, "Glare");
 }
 
+// Over a wire there is no guide: what the drill's own marker tells stays, and goes with all else that may
+// make it wrong.
+TEST(NavigateDisplay, Hazard7TheDrillIsToldOfWithoutAGuide) {
+  const auto drilled = [](GuidanceState state, const auto& change) {
+    return display_after([&](Shown& shown) {
+      shown.operation.frame.guidance.state = state;
+      shown.operation.frame.guidance.drill.emplace();
+      shown.operation.frame.guidance.drill->breakout = guidance::Breakout::Imminent;
+      change(shown);
+    });
+  };
+  const auto nothing = [](Shown&) {};
+  for (const GuidanceState state : {GuidanceState::Valid, GuidanceState::GuideLost, GuidanceState::NoGuide})
+    EXPECT_TRUE(breaks_out(drilled(state, nothing))) << to_text(state);
+  for (const GuidanceState state : {GuidanceState::GuideNotChecked, GuidanceState::WorldMarkerLost,
+                                    GuidanceState::LensStale, GuidanceState::NotConfirmed})
+    EXPECT_FALSE(drilled(state, nothing).drill) << to_text(state);
+  EXPECT_FALSE(drilled(GuidanceState::GuideLost, [](Shown& s) { s.stand(Standing::InDoubt, {"x"}); }).drill);
+  EXPECT_FALSE(drilled(GuidanceState::GuideLost, [](Shown& s) {
+                 s.operation.time_out = operation::TimeOut::Due;
+               }).drill);
+  EXPECT_FALSE(drilled(GuidanceState::GuideLost, [](Shown& s) { s.live.captured_s = kNow_s - 1; }).drill);
+  EXPECT_FALSE(drilled(GuidanceState::GuideLost, [](Shown& s) { s.operation.frame.is_frozen = true; }).drill);
+  const NavigateDisplay beside =
+      drilled(GuidanceState::GuideLost, [](Shown& s) { s.operation.frame.guidance.drill->lateral_mm = 6; });
+  EXPECT_TRUE(beside.drill) << "it is seen";
+  EXPECT_FALSE(breaks_out(beside)) << "and the plan's exit is not its own";
+}
+
+// Numbers that another registration has just taken back were no old poses, and both markers are in view: what
+// is said is true of either.
+TEST(NavigateDisplay, NumbersThatWereTakenBackAreNotCalledOldPoses) {
+  const NavigateDisplay display =
+      display_after([](Shown& shown) { shown.operation.frame.guidance.state = GuidanceState::Stale; });
+  EXPECT_EQ(display.headline, "Nothing guides yet");
+  EXPECT_NE(display.detail.find("next picture"), std::string::npos) << display.detail;
+}
+
+// Nothing is asked of the surgeon before there is a picture to see it in.
+TEST(NavigateDisplay, ASourceThatIsOpenWaitsForItsFirstPicture) {
+  theatre::LiveState live = Shown().whole();
+  EXPECT_FALSE(awaits_picture(live));
+  live.picture = nullptr;
+  EXPECT_TRUE(awaits_picture(live)) << "open, and nothing came yet";
+  live.phase = Phase::Starting;
+  EXPECT_TRUE(awaits_picture(live));
+  for (const Phase phase : {Phase::NoSource, Phase::Failed, Phase::Ended}) {
+    live.phase = phase;
+    EXPECT_FALSE(awaits_picture(live));
+  }
+}
+
 // A tool set without the guide, and a guide whose axis nobody knows, are said as such.
 TEST(NavigateDisplay, Hazard11AMissingGuideIsSaidInItsOwnWords) {
   const auto no_guide = [](Shown& shown) { shown.operation.frame.guidance.state = GuidanceState::NoGuide; };

@@ -69,6 +69,18 @@ std::vector<std::string> all_words() {
                                  "calibrate camera and tools in Set up",
                                  "wait: the case's last operation is looked for",
                                  place_anew_words()};
+  operation::OperationState state;
+  for (const auto due :
+       {operation::ControlPointDue::CheckBeforeDrilling, operation::ControlPointDue::CheckAfterLoss,
+        operation::ControlPointDue::CheckLooks, operation::ControlPointDue::CannotCheckLooks}) {
+    state.control_point_due = due;
+    words.push_back(words_of_checking(state));
+    words.push_back(words_of_verifying(state));
+  }
+  operation::RegistrationState denied;
+  denied.in_force.standing = operation::Standing::Stands;
+  state.registration = std::make_shared<const operation::RegistrationState>(denied);
+  words.push_back(words_of_registering_anew(state));
   for (int i = 0; i <= static_cast<int>(operation::NextAction::Finish); ++i)
     words.push_back(words_of(static_cast<operation::NextAction>(i)));
   for (int i = 0; i <= static_cast<int>(Repeat::NothingNow); ++i)
@@ -172,7 +184,7 @@ TEST(TheatreLayout, WhatGuidesIsReadFromAfar) {
     // Offset with two directions, angle, what remains for a drill: three numbers and two lines.
     const float number = theme.afar->FontSize + theme.number->FontSize;
     EXPECT_GE(l.main.height, 3 * number + 2 * theme.afar->FontSize + theme.px(32));
-    for (const char* word : {"12.3 posterior", "Remaining", "Registration"}) {
+    for (const char* word : {"12.3 posterior", "Remaining", "Stop: exit", "Exit near", "Registration"}) {
       const ImVec2 size = theme.afar->CalcTextSizeA(theme.afar->FontSize, 1e9F, 0, word);
       EXPECT_LE(size.x, l.main.width - theme.px(28)) << word;
     }

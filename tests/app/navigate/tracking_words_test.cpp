@@ -198,6 +198,22 @@ TEST(VerifyingWords, CountDownToTheLastPlace) {
   EXPECT_EQ(words_after({-6, 0, 1.2}), "verify: touch a place that you know") << "enough, and one is off";
 }
 
+// Why it is asked for is said with it: a surgeon who does not know touches anything.
+TEST(CheckingWords, SayWhyTheControlPointIsAskedFor) {
+  using operation::ControlPointDue;
+  operation::OperationState state;
+  EXPECT_EQ(words_of_checking(state), "touch the control point again");
+  state.control_point_due = ControlPointDue::CheckBeforeDrilling;
+  EXPECT_EQ(words_of_checking(state), "before drilling: touch the control point again");
+  state.control_point_due = ControlPointDue::CheckAfterLoss;
+  EXPECT_EQ(words_of_checking(state), "marker was out of sight: touch the control point again");
+  state.control_point_due = ControlPointDue::CheckLooks;
+  EXPECT_EQ(words_of_checking(state), "bone looks otherwise: touch the control point again");
+  state.control_point_due = ControlPointDue::CannotCheckLooks;
+  state.places_in_doubt = 2;
+  EXPECT_EQ(words_of_verifying(state), "bone looks otherwise: touch places that you know, 2 to go");
+}
+
 // Why a touch was refused is told while it can be mended: not for good when the source has ended, whose time
 // stands still then.
 TEST(TouchNotice, EndsWithTheSource) {

@@ -80,6 +80,18 @@ TEST(SoundWatch, ReachedIsHeardWhenItComes) {
   EXPECT_EQ(listener.heard, (Heard{Sound::Reached, Sound::Reached}));
 }
 
+// Heard the moment it is so, whether the guide is seen or not, and once while it stays so.
+TEST(SoundWatch, Hazard7ADrillThatBreaksOutIsHeard) {
+  const Shown breaks_out{.breaks_out = true};
+  Listener listener;
+  listener.see(kNothing, 1);
+  listener.see(breaks_out, 3);
+  EXPECT_EQ(listener.heard, Heard{Sound::Breakout});
+  listener.see(kNothing, 2);
+  listener.see(breaks_out, 1);
+  EXPECT_EQ(listener.heard, (Heard{Sound::Breakout, Sound::Breakout}));
+}
+
 // What trembles about its limit is not a machine gun.
 TEST(SoundWatch, TheSameSoundKeepsApart) {
   Listener listener;

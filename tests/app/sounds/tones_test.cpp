@@ -9,7 +9,7 @@
 namespace arthronaut::sounds {
 namespace {
 
-constexpr Sound kAll[] = {Sound::Lost, Sound::Doubtful, Sound::Reached};
+constexpr Sound kAll[] = {Sound::Lost, Sound::Doubtful, Sound::Reached, Sound::Breakout};
 
 // "." for a tone below a fifth of a second, "-" for a longer one, as heard in the samples alone.
 std::string heard(const std::vector<std::int16_t>& samples) {
@@ -31,11 +31,12 @@ std::string heard(const std::vector<std::int16_t>& samples) {
   return rhythm;
 }
 
-// Who hears no pitch tells the three apart by their rhythm.
+// Who hears no pitch tells them apart by their rhythm.
 TEST(Tones, DifferInRhythm) {
   EXPECT_EQ(heard(samples_of(Sound::Lost)), "...");
   EXPECT_EQ(heard(samples_of(Sound::Doubtful)), "-.");
   EXPECT_EQ(heard(samples_of(Sound::Reached)), ".-");
+  EXPECT_EQ(heard(samples_of(Sound::Breakout)), "--");
 }
 
 // Nothing clicks: no sample is further from the one before than the steepest of the tones is, full scale is

@@ -134,7 +134,12 @@ TEST_F(Theatre, AStreamIsNamedInTheWindowAndIsLive) {
     app.press("Return");
     ASSERT_TRUE(app.wait_for_state("time_out", "due", 60));
     EXPECT_EQ(app.state("source_kind"), "LIVE");
-    EXPECT_EQ(app.state("next"), "time-out: confirm patient, side, plan and tools");
+    ASSERT_TRUE(app.wait_for_state("next", "time-out: confirm patient, side, plan and tools", 60));
+    // A press that was meant for what stood there before confirms nothing: the sheet is to be read first.
+    EXPECT_EQ(app.state("pedal"), "waits");
+    app.press("space");
+    EXPECT_FALSE(app.wait_for_state("time_out", "confirmed", 0.5));
+    ASSERT_TRUE(app.wait_for_state("pedal", "acts", 20));
     app.press("space");
     EXPECT_TRUE(app.wait_for_state("time_out", "confirmed"));
     EXPECT_NE(app.state("guidance"), "valid");
@@ -165,6 +170,12 @@ TEST_F(Theatre, Hazard7TheDepthStopIsTypedAndTheMarkerPlacedAnewIsAKey) {
   app.press("Return");
   ASSERT_TRUE(app.wait_for_state("depth_stop", "21.5"));
   EXPECT_EQ(app.state("picture"), "live");
+  // Opened by a slip, the field lets the pedal go again.
+  app.press("e");
+  ASSERT_TRUE(app.wait_for_state("depth_field", "open"));
+  app.press("Prior");
+  EXPECT_TRUE(app.wait_for_state("depth_field", "closed"));
+  EXPECT_EQ(app.state("back_at"), "");
   app.press("n");
   EXPECT_TRUE(app.wait_for_state("hold", "Hold N to say that the marker was placed anew (let go)"));
   ASSERT_TRUE(becomes([&] { return !app.state("strokes").empty() && app.state("strokes") != "0"; }, 240));

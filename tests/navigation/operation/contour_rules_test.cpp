@@ -35,8 +35,8 @@ class BoneMoved : public ::testing::Test {
     run_.operation().tell_bone_moved({drift_mm, held_until_ns});
     run_.apply(Draw{false});  // any command: the journal is taken
   }
-  void tell_looks(bool otherwise) {
-    run_.operation().tell_bone_looks(otherwise);
+  void tell_looks(bool otherwise, std::int64_t held_until_ns = SeenLooks().held_until_ns) {
+    run_.operation().tell_bone_looks({otherwise, held_until_ns});
     run_.apply(Draw{false});
   }
   PhantomOperation run_;
@@ -120,6 +120,19 @@ TEST(SeenDrift, IsReadAsItWasWritten) {
   for (const char* broken : {"", "far", "nan", "-1", "1.1 mm", "1.1 mm, where it lay until  ns",
                              "1.1 mm, where it lay until 5 ns and on"})
     EXPECT_THROW((void)seen_drift_from_text(broken, "journal"), InvalidInput) << broken;
+}
+
+TEST(SeenLooks, IsReadAsItWasWritten) {
+  const SeenLooks read = seen_looks_from_text(to_text(SeenLooks{true, 4'000'000'017}), "journal");
+  EXPECT_TRUE(read.otherwise);
+  EXPECT_EQ(read.held_until_ns, 4'000'000'017);
+  EXPECT_FALSE(seen_looks_from_text(to_text(SeenLooks{}), "journal").otherwise);
+  const SeenLooks older = seen_looks_from_text("otherwise", "journal");
+  EXPECT_TRUE(older.otherwise);
+  EXPECT_EQ(older.held_until_ns, SeenLooks().held_until_ns) << "of an older version";
+  for (const char* broken : {"", "other", "otherwise, as it did until  ns", "as it did until 5 ns",
+                             "otherwise, as it did until 5 ns and on", "as it did "})
+    EXPECT_THROW((void)seen_looks_from_text(broken, "journal"), InvalidInput) << broken;
 }
 
 // The probe on the control point outranks the picture, as far as it is finer: where it was, it lifts the
@@ -211,6 +224,40 @@ TEST_F(BoneMoved, AControlPointThatIsSetInDoubtDoesNotEndIt) {
   run_.apply(ForgetTouches{});
   EXPECT_NE(run_.state()->control_point_due, ControlPointDue::CannotCheckLooks)
       << "the surgeon's word ends it";
+}
+
+// A knock, then the control point is set, and a second later the bone is told to look otherwise: touched
+// again it is where it was, and says nothing of the knock.
+TEST_F(BoneMoved, Hazard25AControlPointThatWasSetSinceEndsNoDoubt) {
+  run_.apply(ForgetTouches{});
+  run_.apply(SkipVerification{});
+  shown();
+  const std::int64_t held_until_ns = run_.operation().frame().timestamp_ns;
+  run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+  ASSERT_TRUE(run_.state()->registration->touches.has_control_point());
+  tell_looks(true, held_until_ns);
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CannotCheckLooks);
+  run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CannotCheckLooks);
+}
+
+// Where no control point can end the doubt, touches are asked for, and no more of them than verify: the
+// surgeon sees where they lie, and goes on to the tunnel in a doubt that stays said.
+TEST_F(BoneMoved, ADoubtThatNothingEndsIsNoDeadEnd) {
+  run_.apply(ForgetTouches{});
+  run_.apply(SkipVerification{});
+  ASSERT_EQ(shown(), GuidanceState::Valid);
+  tell_looks(true);
+  EXPECT_EQ(run_.state()->places_in_doubt, 3);
+  for (const double dx_mm : {0.0, 0.0, 4.0, 0.5}) run_.touch(test::on_bone(trial(), dx_mm));
+  EXPECT_EQ(run_.state()->places_in_doubt, 1) << "the same place again tells nothing more";
+  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
+  run_.touch(test::on_bone(trial(), -4));
+  EXPECT_EQ(run_.state()->places_in_doubt, 0);
+  EXPECT_EQ(shown(), GuidanceState::Valid);
+  EXPECT_EQ(run_.state()->next_action, NextAction::FollowBullseye);
+  tell_looks(true);
+  EXPECT_EQ(run_.count(JournalKind::BoneLooks), 1) << "it is the same doubt still";
 }
 
 // Strokes that are cleared take the touches with them: what is set after that learns where the bone lies now.

@@ -124,6 +124,26 @@ TEST_F(OperationRules, VerificationIsAskedForAndSkippingItIsRecorded) {
   EXPECT_EQ(run_.count(JournalKind::Verified), 1);
 }
 
+// Enough places were touched, one of them 1.2 mm off the bone: no touch more can verify, and none is asked
+// for. More strokes may, and then all of them are registered.
+TEST_F(OperationRules, TouchesThatDenyARegistrationAskForStrokesAndNotForTouches) {
+  give();
+  run_.apply(Draw{false});
+  for (const double dx_mm : {0.0, 4.0}) run_.touch(on_bone(dx_mm));
+  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
+  run_.touch(on_bone(-4, 1.2));
+  ASSERT_EQ(run_.state()->verification, Verification::NotYet);
+  ASSERT_EQ(run_.state()->registration->in_force.standing, Standing::Stands);
+  EXPECT_EQ(run_.state()->next_action, NextAction::RegisterAnew);
+  run_.apply(Draw{true});
+  EXPECT_EQ(run_.state()->next_action, NextAction::GoOnDrawing) << "nothing was drawn yet";
+  run_.show_tip(on_bone(0));
+  EXPECT_EQ(run_.state()->next_action, NextAction::RegisterStrokes);
+  run_.apply(ForgetTouches{});
+  run_.apply(Draw{false});
+  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch) << "the touches were wrong";
+}
+
 TEST_F(OperationRules, SkippingWithoutARegistrationIsNothing) {
   run_.apply(SkipVerification{});
   EXPECT_EQ(run_.state()->verification, Verification::NotYet);
