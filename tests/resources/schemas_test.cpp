@@ -225,6 +225,15 @@ TEST_F(Schemas, DescribeTheRegistration) {
   }
   registration::write_registration_file(file, found);
   expect_described(file, "registration", [&] { (void)registration::read_registration_file(file); });
+  // And what it is of, as the sessions of an operation and `register` for a case write it.
+  registration::Provenance of;
+  of.mesh_sha256 = of.camera = of.tools = "5f";
+  of.refractive_index = 1.3401;
+  registration::write_registration_file(file, found, &of);
+  json written = read(file);
+  EXPECT_EQ(violations_of(written, "registration"), "");
+  written["of"]["bone"] = "patella";
+  EXPECT_NE(violations_of(written, "registration"), "");
 }
 
 // A tunnel and a bone that were found, and ones that were not.
