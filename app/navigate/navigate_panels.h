@@ -34,6 +34,7 @@ struct NavigateScreen {
   std::string patient = "";                                 // in words; empty: not known
   bool is_muted = false;                                    // no sound, by the user's word
   std::string sound_trouble = "";                           // why none can be heard; empty: it can
+  std::string sharing = "";  // what goes out by OpenIGTLink; empty: nothing is asked for
 
   // Of the newest picture; preconditions: display.has_picture.
   [[nodiscard]] const pipeline::FrameResult& frame() const { return live->operation->frame; }

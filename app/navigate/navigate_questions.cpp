@@ -83,6 +83,7 @@ void NavigateView::note_states(const widgets::Ui& ui, const NavigateScreen& scre
   ui.log.note_state("cameras", !cameras_.is_open() ? "none"
                                : cameras_.chosen() ? cameras_.chosen()->name
                                                    : "address");
+  ui.log.note_state("sharing", screen.sharing.empty() ? "none" : screen.sharing);
   ui.log.note_state("depth_field", depth_.is_open() ? "open" : "closed");
   ui.log.note_state("depth_stop", state.depth_stop_mm ? widgets::fixed(*state.depth_stop_mm, 1) : "none");
   ui.log.note_state("picture", !screen.display.has_picture ? "none"

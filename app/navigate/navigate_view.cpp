@@ -30,11 +30,13 @@ constexpr double kRefusal_s = 6;  // long enough to be read
 }  // namespace
 
 NavigateView::NavigateView(std::function<void()> make_current, std::function<void()> wake,
-                           const sources::DeviceTurns& turns, std::function<void(Elsewhere)> go_elsewhere)
+                           const sources::DeviceTurns& turns, std::function<void(Elsewhere)> go_elsewhere,
+                           int igtl_port)
     : turns_(turns),
       go_elsewhere_(std::move(go_elsewhere)),
       scene_(std::move(make_current)),
-      bones_(wake),
+      sharing_(std::make_shared<PoseSharing>(igtl_port)),
+      bones_(wake, [sharing = sharing_](const theatre::LiveState& live) { sharing->tell(live); }),
       resume_(wake) {
   bones_.keep_pictures_as(load_picture_keeping(picture_keeping_file()));
 }
@@ -314,6 +316,7 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
   screen.reached_for_s = choices_.reached.since(now_s);
   screen.is_muted = player_.is_muted();
   screen.sound_trouble = player_.trouble();
+  screen.sharing = sharing_->words();
   return screen;
 }
 

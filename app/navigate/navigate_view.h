@@ -16,6 +16,7 @@
 #include "app/navigate/navigate_panels.h"
 #include "app/navigate/navigate_scene.h"
 #include "app/navigate/navigate_setup.h"
+#include "app/navigate/pose_sharing.h"
 #include "app/navigate/theatre_bones.h"
 #include "app/navigate/theatre_layout.h"
 #include "app/sounds/player.h"
@@ -29,9 +30,9 @@ enum class Elsewhere { Plan, SetUp };
 class NavigateView : public mode::Mode {
  public:
   // wake: ends the window's wait for input; called from other threads. turns: shared with whatever else opens
-  // cameras. go_elsewhere: shows another mode.
+  // cameras. go_elsewhere: shows another mode. igtl_port: see PoseSharing.
   NavigateView(std::function<void()> make_current, std::function<void()> wake,
-               const sources::DeviceTurns& turns, std::function<void(Elsewhere)> go_elsewhere);
+               const sources::DeviceTurns& turns, std::function<void(Elsewhere)> go_elsewhere, int igtl_port);
   ~NavigateView() override;
 
   [[nodiscard]] mode::ModeTitle title() const override;
@@ -139,6 +140,7 @@ class NavigateView : public mode::Mode {
   std::function<void(Elsewhere)> go_elsewhere_;
   NavigateScene scene_;
   VideoTextures video_;
+  std::shared_ptr<PoseSharing> sharing_;  // also with operations that end behind the screen
   TheatreBones bones_;
   ResumeOffer resume_;
   DepthEntry depth_;

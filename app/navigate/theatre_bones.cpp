@@ -144,6 +144,7 @@ std::unique_ptr<theatre::LiveOperation> TheatreBones::made(bones::BoneKind bone)
       if (!why_not.empty()) throw IoError("the case is open read-only: it " + why_not);
       return cases::create_session_folder(folder);
     };
+  options.tell = tell_;
   options.decorate = [maker =
                           std::make_shared<LineMaker>(options.operation.surface, model_->drawn_mesh(bone))](
                          const OperationState& state) { return (*maker)(state); };

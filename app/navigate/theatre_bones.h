@@ -25,8 +25,10 @@ struct PictureLines : theatre::Decoration {
 
 class TheatreBones {
  public:
-  // wake: called from other threads whenever an operation has news.
-  explicit TheatreBones(std::function<void()> wake) : wake_(std::move(wake)) {}
+  using Tell = std::function<void(const theatre::LiveState&)>;
+
+  // wake: called from other threads whenever an operation has news; tell: with everything that it publishes.
+  TheatreBones(std::function<void()> wake, Tell tell) : wake_(std::move(wake)), tell_(std::move(tell)) {}
 
   // Another case: ends what runs, in threads behind the screen. The model outlives this object's use of it.
   // read_only: why nothing may be written into the case; empty when it may.
@@ -81,6 +83,7 @@ class TheatreBones {
   [[nodiscard]] static bool is_worth_keeping(const theatre::LiveState& state);
 
   std::function<void()> wake_;
+  Tell tell_;
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
   std::string read_only_;

@@ -190,6 +190,7 @@ void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const Navig
     if (screen.is_muted || !screen.sound_trouble.empty())
       widgets::status_row(ui, widgets::Severity::Caution, "Sound",
                           screen.is_muted ? "muted (Y)" : screen.sound_trouble);
+    if (!screen.sharing.empty()) widgets::status_row(ui, Severity::Quiet, "OpenIGTLink", screen.sharing);
     draw_guide_check(ui, screen.live->operation->guide_check);
     draw_touch_row(ui, screen);
     draw_probe(ui, screen);

@@ -142,6 +142,12 @@ TheatreSettings load_theatre_settings(const fs::path& file) {
         settings.screen_stream.find(':', 6) == std::string::npos)
       json.fail("screen_stream", "must be udp://HOST:PORT, is \"" + settings.screen_stream + "\"");
   }
+  if (json.has("igtl_port")) {
+    settings.igtl_port = json.int32("igtl_port");
+    constexpr int kLastPort = 65535;
+    if (settings.igtl_port < 0 || settings.igtl_port > kLastPort)
+      json.fail("igtl_port", "is no port from 0 to 65535");
+  }
   if (json.has("foot_switches"))
     for (const std::string& path : json.texts("foot_switches")) settings.foot_switches.emplace_back(path);
   if (json.has("pedals")) settings.codes = read_map(json.object("pedals"), code_from_name);

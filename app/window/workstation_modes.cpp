@@ -27,10 +27,12 @@ void WorkstationWindow::make_modes() {
                                   navigate::note_stream(navigate::known_streams_file(), address);
                                 }}));
   auto theatre = std::make_unique<navigate::NavigateView>(
-      make_current, wake, camera_turns, [this](navigate::Elsewhere where) {
+      make_current, wake, camera_turns,
+      [this](navigate::Elsewhere where) {
         const bool is_plan = where == navigate::Elsewhere::Plan;
         actions_.run(is_plan ? "mode.plan" : "mode.setup");
-      });
+      },
+      room_.igtl_port());
   navigate::NavigateView* const screen = theatre.get();
   modes_.push_back(std::move(theatre));
   auto review = std::make_unique<review::ReviewView>(make_current, wake);

@@ -37,7 +37,7 @@ struct NamedPoint {
 };
 [[nodiscard]] std::vector<NamedPoint> plan_points(const operation::OperationState& state);
 
-// Why there is no guidance; "OK" while there is.
+// Why there is no guidance; "OK" while there is, "OK, simulation" where nobody is operated on.
 struct Status {
   bool is_ok = false;
   std::string reason;

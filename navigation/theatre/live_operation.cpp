@@ -220,6 +220,7 @@ class Loop {
     const auto published = published_.take();
     *published = live_;
     inbox_.publish(std::shared_ptr<const LiveState>(published));
+    if (options_.tell) options_.tell(*published);
   }
 
   LiveWorker::Inbox& inbox_;

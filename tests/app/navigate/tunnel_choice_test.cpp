@@ -45,7 +45,7 @@ class TunnelChoice : public ::testing::Test {
 
   open_case::PlanModel model_{phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "test")};
   const tunnels::Tunnel whole_ = *model_.tunnel(BoneKind::Femur);
-  TheatreBones bones_{[] {}};
+  TheatreBones bones_{[] {}, {}};
 };
 
 }  // namespace

@@ -55,6 +55,10 @@ TEST_F(Settings, MapEveryPedalAnew) {
 
 TEST_F(Settings, SayWhereTheScreenIsSentTo) {
   EXPECT_EQ(load("").screen_stream, "");
+  EXPECT_EQ(load("").igtl_port, -1) << "nothing goes out unasked";
+  EXPECT_EQ(load(R"(, "igtl_port": 18944)").igtl_port, 18944);
+  for (const char* bad : {"-1", "65536", "\"18944\"", "1.5"})
+    EXPECT_NE(refusal(", \"igtl_port\": " + std::string(bad)).find("igtl_port"), std::string::npos) << bad;
   EXPECT_EQ(load(R"(, "screen_stream": "udp://10.0.0.9:5004")").screen_stream, "udp://10.0.0.9:5004");
   for (const char* bad : {R"("tcp://10.0.0.9:5004")", R"("udp://10.0.0.9")", R"("")"})
     EXPECT_NE(refusal(", \"screen_stream\": " + std::string(bad)).find("screen_stream"), std::string::npos)
