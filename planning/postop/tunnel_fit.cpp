@@ -1,13 +1,13 @@
 #include "planning/postop/tunnel_fit.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
 #include "planning/geometry/quantile.h"
+#include "planning/postop/fit_spread.h"
 
 namespace arthronaut::postop {
 
@@ -27,7 +27,7 @@ constexpr double kFirstBlur_mm = 1.0;
 // A station with more metal than this inside the bore or beside its wall is passed over as a whole: what is
 // left of its wall is seen one-sidedly, and through the metal's blur.
 constexpr double kMetalOfBin = 0.02, kBesideWall_mm = 1.5;
-// Neighbouring voxels share their noise.
+// Neighbouring voxels share their noise, in a level so much.
 constexpr double kCorrelated = 4;
 constexpr double kLeastNoise_hu = 6;
 // Differences that are no chance.
@@ -91,7 +91,7 @@ class Fit {
     constexpr int kRounds = 3;
     for (int round = 0; round < kRounds && !known && wall_ == Wall::Clear; ++round) {
       const bool had_rim = profile_.has_rim();
-      const WallProfile seen = explain_wall(mean_profile(), noise_hu_);
+      const WallProfile seen = explain_wall(mean_profile(), noise_hu_, spread().shared_voxels);
       profile_.wall_sigma_mm = seen.wall_sigma_mm;
       if (!seen.has_rim() && !had_rim) break;
       profile_ = seen.has_rim() ? seen : WallProfile{.wall_sigma_mm = seen.wall_sigma_mm};
@@ -331,17 +331,17 @@ class Fit {
     return result;
   }
 
+  [[nodiscard]] FitSpread spread() const {
+    Eigen::MatrixXd normal, by_eighth;
+    Eigen::VectorXd right;
+    assemble(profile_.blur_mm, normal, right, &by_eighth);
+    return spread_of(normal, by_eighth);
+  }
+
   [[nodiscard]] TunnelFit result() const {
     TunnelFit fit;
-    Eigen::MatrixXd normal;
-    Eigen::VectorXd right;
-    Eigen::MatrixXd by_eighth;
-    assemble(profile_.blur_mm, normal, right, &by_eighth);
-    // By the noise; and by how far eighths of the wall agree, which share neither grain nor faults of the
-    // model.
-    const Eigen::MatrixXd inverse = normal.inverse(), by_noise = kCorrelated * inverse,
-                          by_agreement = inverse * by_eighth * by_eighth.transpose() * inverse;
-    if (!by_noise.allFinite() || !by_agreement.allFinite()) return fit;
+    const FitSpread known = spread();
+    if (!known.by_noise.allFinite() || !known.by_disagreement.allFinite()) return fit;
     fit.is_fitted = true;
     fit.point_mm = axis_.middle;
     fit.direction = axis_.direction;
@@ -349,7 +349,7 @@ class Fit {
     at_entry(0, 0) = at_entry(1, 1) = 1;
     at_entry(0, 2) = at_entry(1, 3) = -from_entry_mm_ / half_mm_;
     const auto the_larger = [&](const auto& sigma_of) {
-      return std::max(sigma_of(by_noise), sigma_of(by_agreement));
+      return std::max(sigma_of(known.by_noise), sigma_of(known.by_disagreement));
     };
     fit.entry_sigma_mm = the_larger([&](const Eigen::MatrixXd& covariance) {
       return std::sqrt((at_entry * covariance.topLeftCorner<4, 4>() * at_entry.transpose()).trace());
@@ -357,9 +357,9 @@ class Fit {
     fit.direction_sigma_rad = the_larger([&](const Eigen::MatrixXd& covariance) {
       return std::sqrt(covariance(2, 2) + covariance(3, 3)) / half_mm_;
     });
-    fit.stretches = described(by_noise);
+    fit.stretches = described(known.by_noise);
     std::vector<double> radii;
-    Eigen::VectorXd share = Eigen::VectorXd::Zero(normal.rows());
+    Eigen::VectorXd share = Eigen::VectorXd::Zero(known.by_noise.rows());
     for (std::size_t s = 0; s < stretches_; ++s) {
       const Stretch& stretch = fit.stretches[s];
       if (stretch.sigma_mm >= 0.5 || stretch.seen_share <= 0.3) continue;

@@ -13,8 +13,8 @@ constexpr std::size_t kLeastPoints = 10;
 constexpr double kFirstBlur_mm = 0.45;
 constexpr double kLeastBlur_mm = 0.2, kMostBlur_mm = 1.0, kLeastRim_mm = 0.3, kMostRim_mm = 2,
                  kMostOff_mm = 1.4;
-// Neighbouring voxels share their noise; points nearer than this share the blur's and the grain's.
-constexpr double kCorrelated = 4, kApart_mm = 0.4;
+// Points nearer than this tell the same.
+constexpr double kApart_mm = 0.25;
 // A rim stands out from both sides by so much, and is no denser than cortex. One thinner than the least
 // leaves nothing of its own in the picture.
 constexpr double kRimStep_hu = 30, kMostRim_hu = 1200;
@@ -34,12 +34,12 @@ struct Explained {
 
 class Explanation {
  public:
-  Explanation(const std::vector<WallPoint>& points, double noise_hu) : points_(points) {
+  Explanation(const std::vector<WallPoint>& points, double noise_hu, double shared) : points_(points) {
     double count = 0;
     for (const WallPoint& point : points) count += point.count / static_cast<double>(points.size());
     for (const WallPoint& point : points) weights_.push_back(point.count / count);
     constexpr double kLeast = 1e-6;  // of a picture without noise, which is explained to the last bit
-    floor_ = kLeast + kCorrelated * noise_hu * noise_hu / count * static_cast<double>(points.size());
+    floor_ = kLeast + shared * noise_hu * noise_hu / count * static_cast<double>(points.size());
   }
 
   // The best wall and blur for a rim of this thickness.
@@ -110,40 +110,48 @@ WallGrey wall_grey(double off_mm, double rim_mm, double blur_mm) {
   return {1 - past_wall, past_wall - past_rim, past_rim, -wall_slope, wall_slope - rim_slope, rim_slope};
 }
 
-WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu) {
+WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu, double shared) {
   if (points.size() < kLeastPoints) return {.wall_sigma_mm = std::numeric_limits<double>::infinity()};
-  const Explanation explanation(points, noise_hu);
+  const Explanation explanation(points, noise_hu, shared);
   const Explained plain = explanation.with_rim(0);
   std::vector<Explained> rimmed;
   for (double rim_mm = kLeastRim_mm; rim_mm < kMostRim_mm + 0.01; rim_mm += 0.1)
     rimmed.push_back(explanation.with_rim(rim_mm));
-  const Explained& best =
-      *std::min_element(rimmed.begin(), rimmed.end(),
-                        [](const Explained& a, const Explained& b) { return a.unexplained < b.unexplained; });
+  const double best = std::min_element(rimmed.begin(), rimmed.end(), [](const auto& a, const auto& b) {
+                        return a.unexplained < b.unexplained;
+                      })->unexplained;
   // As many points tell something of their own: the likelihood goes with the unexplained to minus half of
   // that. A rim takes two numbers more, thickness and density.
   const double told = (points.back().off_mm - points.front().off_mm) / kApart_mm;
-  const double better = told * std::log(plain.unexplained / best.unexplained) - 2 * std::log(told);
-  WallProfile profile;
-  const Explained& taken = better > 0 ? best : plain;
-  profile.wall_mm = taken.shape.wall_mm;
-  profile.blur_mm = taken.shape.blur_mm;
-  if (better > 0) {
+  const bool has_rim = told * std::log(plain.unexplained / best) > 2 * std::log(told);
+  // Where the wall lies by all that would do, weighed by how likely that is; against what a rim's two numbers
+  // cost, none is favoured by so much as above. Of rims that do alike, the best one is off by chance.
+  double share = 0, sum = 0, squares = 0;
+  const auto weigh = [&](const Explained& one, double favour) {
+    if (!std::isfinite(one.unexplained)) return;
+    const double likely = favour * std::pow(best / one.unexplained, 0.5 * told);
+    share += likely;
+    sum += likely * one.shape.wall_mm;
+    squares += likely * one.shape.wall_mm * one.shape.wall_mm;
+  };
+  weigh(plain, told);
+  for (const Explained& one : rimmed) weigh(one, 1.0);
+  const double mean_mm = sum / share, variance = std::max(0.0, squares / share - mean_mm * mean_mm);
+  const auto off_mean = [&](const Explained& one) {
+    return std::isfinite(one.unexplained) ? std::abs(one.shape.wall_mm - mean_mm)
+                                          : std::numeric_limits<double>::infinity();
+  };
+  const Explained& taken =
+      has_rim ? *std::min_element(rimmed.begin(), rimmed.end(),
+                                  [&](const auto& a, const auto& b) { return off_mean(a) < off_mean(b); })
+              : plain;
+  WallProfile profile{.wall_mm = taken.shape.wall_mm,
+                      .blur_mm = taken.shape.blur_mm,
+                      .wall_sigma_mm = std::hypot(std::sqrt(variance), taken.shape.wall_mm - mean_mm)};
+  if (has_rim) {
     profile.rim_mm = taken.shape.rim_mm;
     profile.rim_hu = taken.levels[1];
   }
-  // How far the wall lies from there by what else would do, weighed by how likely that is; against what a
-  // rim's two numbers cost, none is favoured by so much as above.
-  double share = 0, squares = 0;
-  const auto weigh = [&](const Explained& other, double favour) {
-    if (!std::isfinite(other.unexplained)) return;
-    const double likely = favour * std::pow(best.unexplained / other.unexplained, 0.5 * told);
-    share += likely;
-    squares += likely * std::pow(other.shape.wall_mm - taken.shape.wall_mm, 2);
-  };
-  weigh(plain, told);
-  for (const Explained& other : rimmed) weigh(other, 1.0);
-  profile.wall_sigma_mm = std::sqrt(squares / share);
   return profile;
 }
 

@@ -31,9 +31,11 @@ struct WallGrey {
 [[nodiscard]] WallGrey wall_grey(double off_mm, double rim_mm, double blur_mm);
 
 // Explained with a rim where that explains the points clearly better (Schwarz's criterion, the noise from
-// what is left unexplained), else without one. A rim is 0.3 to 2 mm thick, denser than what is inside and
-// beyond, and no denser than cortex. `noise_hu`: of one voxel. Fewer than 10 points explain nothing: no rim,
-// and `wall_sigma_mm` is infinite.
-[[nodiscard]] WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu);
+// what is left unexplained), else without one. Of rims that explain them about as well, the one that has the
+// wall where all of them have it in the mean. A rim is 0.3 to 2 mm thick, denser than what is inside and
+// beyond, and no denser than cortex. `noise_hu`: of one voxel; `shared`: how many of them share it, so that
+// the variance of a mean is so much more. Fewer than 10 points explain nothing: no rim, and `wall_sigma_mm`
+// is infinite.
+[[nodiscard]] WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu, double shared);
 
 }  // namespace arthronaut::postop

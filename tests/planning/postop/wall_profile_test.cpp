@@ -29,11 +29,12 @@ std::vector<WallPoint> points_of(const Wall3& truth) {
 }  // namespace
 
 TEST(WallProfile, ARimIsTakenWhereThereIsOne) {
-  const WallProfile plain = explain_wall(points_of({.wall_mm = 0.1}), 25);
+  const WallProfile plain = explain_wall(points_of({.wall_mm = 0.1}), 25, 4);
   EXPECT_FALSE(plain.has_rim());
   EXPECT_NEAR(plain.wall_mm, 0.1, 0.05);
   for (const double rim_mm : {0.7, 1.0, 1.4}) {
-    const WallProfile rimmed = explain_wall(points_of({.wall_mm = 0.3, .rim_mm = rim_mm, .rim_hu = 400}), 25);
+    const WallProfile rimmed =
+        explain_wall(points_of({.wall_mm = 0.3, .rim_mm = rim_mm, .rim_hu = 400}), 25, 4);
     ASSERT_TRUE(rimmed.has_rim());
     // Half of 0.3 mm of diameter, each.
     EXPECT_NEAR(rimmed.wall_mm, 0.3, 0.15) << rim_mm;
@@ -45,7 +46,7 @@ TEST(WallProfile, ARimIsTakenWhereThereIsOne) {
 // Through more blur the wall is less surely known; and it is no further off than said.
 TEST(WallProfile, AThinRimIsKnownTheLessTheMoreItIsBlurred) {
   const auto seen_through = [](double blur_mm) {
-    return explain_wall(points_of({.wall_mm = 0.2, .rim_mm = 0.5, .rim_hu = 400, .blur_mm = blur_mm}), 25);
+    return explain_wall(points_of({.wall_mm = 0.2, .rim_mm = 0.5, .rim_hu = 400, .blur_mm = blur_mm}), 25, 4);
   };
   const WallProfile sharp = seen_through(0.2), blurred = seen_through(0.5);
   EXPECT_GT(blurred.wall_sigma_mm, 2 * sharp.wall_sigma_mm);
@@ -56,7 +57,7 @@ TEST(WallProfile, AThinRimIsKnownTheLessTheMoreItIsBlurred) {
 TEST(WallProfile, TooFewPointsTellNothing) {
   auto points = points_of({});
   points.resize(5);
-  const WallProfile seen = explain_wall(points, 25);
+  const WallProfile seen = explain_wall(points, 25, 4);
   EXPECT_FALSE(seen.has_rim());
   EXPECT_TRUE(std::isinf(seen.wall_sigma_mm));
 }
