@@ -13,6 +13,7 @@
 #include "planning/images/volume_writer.h"
 #include "planning/import/bone_import.h"
 #include "planning/painting/label_edits.h"
+#include "planning/segmentation/dark_rim.h"
 #include "planning/segmentation/seed_growth.h"
 
 namespace arthronaut::command_line {
@@ -123,7 +124,7 @@ void tidy(const Context& context, const SegmentArguments& arguments, const image
 
 // What an import of the label map will say of it, and the sheet. Returns why a person should look.
 std::vector<std::string> judge(const Context& context, const SegmentArguments& arguments,
-                               const std::map<bones::BoneKind, int>& named, const images::Volume& grid,
+                               const std::map<bones::BoneKind, int>& named, const images::Volume& volume,
                                const segmentation::Labels& labels) {
   Progress progress("Making the surfaces", 0);
   std::vector<report::SegmentedBone> segmented;
@@ -137,8 +138,8 @@ std::vector<std::string> judge(const Context& context, const SegmentArguments& a
     options.labels = {{kind, label}};
     const importing::BoneImport import = importing::import_bones(arguments.output, options);
     const importing::ImportedBone& made = import.bones.front();
-    const double labelled_ml = painting::volume_ml(labels, grid, static_cast<std::uint8_t>(label));
-    segmented.push_back({importing::quality_of(made, labelled_ml), made.bone.mesh});
+    const double labelled_ml = painting::volume_ml(labels, volume, static_cast<std::uint8_t>(label));
+    segmented.push_back({importing::quality_of(made, labelled_ml, volume), made.bone.mesh});
     for (const importing::QualityLine& line : importing::quality_lines(segmented.back().quality)) {
       const std::string words = std::string(bones::to_text(kind)) + ": " + line.name + ": " + line.text;
       if (line.verdict == importing::QualityVerdict::Good)
@@ -148,10 +149,25 @@ std::vector<std::string> judge(const Context& context, const SegmentArguments& a
     }
   }
   if (arguments.report.empty()) return reasons;
-  report::write_segmentation_sheet(arguments.report,
-                                   read(arguments.volume, arguments.series, "Drawing the report"), segmented);
+  report::write_segmentation_sheet(arguments.report, volume, segmented);
   context.say("Wrote " + arguments.report + ".");
   return reasons;
+}
+
+// Cortex is bone, and dark in an MR, so that the growth ends at the marrow.
+void take_in_cortex(const Context& context, const std::map<bones::BoneKind, int>& named,
+                    const images::Volume& volume, const segmentation::Labels& painted,
+                    segmentation::Labels& labels) {
+  std::vector<std::uint8_t> bones;
+  for (const auto& [kind, label] : named) bones.push_back(static_cast<std::uint8_t>(label));
+  for (const std::uint8_t bone : bones) {
+    std::vector<std::uint8_t> others = bones;
+    std::erase(others, bone);
+    const auto rim = segmentation::take_in_dark_rim(labels, volume, bone, others, painted);
+    if (rim.is_seen())
+      context.say(files::format("label %d: %.1f mm of cortex taken in, dark about %.0f %% of it", bone,
+                                rim.thickness_mm, 100 * rim.share));
+  }
 }
 
 // A file of another ending would be no volume to anything that reads it.
@@ -169,15 +185,18 @@ void segment(Context& context, const SegmentArguments& arguments) {
                                              : importing::labels_from_text(arguments.bones);
   refuse_arguments(arguments);
   const images::Volume seeds = read(arguments.seeds, "", "Reading the seeds");
-  images::Volume volume = read(arguments.volume, arguments.series, "Reading");
+  const images::Volume volume = read(arguments.volume, arguments.series, "Reading");
   const segmentation::Labels painted = labels_from(arguments.seeds, seeds, volume);
   const std::vector<std::uint8_t> bones = bone_labels(arguments, named, painted);
   segmentation::Labels labels = grow(volume, painted, arguments.seeds);
+  take_in_cortex(context, named, volume, painted, labels);
   tidy(context, arguments, volume, bones, labels);
-  volume.values.assign(labels.begin(), labels.end());
-  volume.modality.clear();
-  volume.segments = seeds.segments;
-  images::write_volume(arguments.output, volume);
+  images::Volume map;
+  map.size = volume.size;
+  map.lps_from_index = volume.lps_from_index;
+  map.values.assign(labels.begin(), labels.end());
+  map.segments = seeds.segments;
+  images::write_volume(arguments.output, map);
   const Counts counts = counts_of(labels);
   for (std::size_t label = 1; label < counts.size(); ++label) {
     if (counts[label] > 0)

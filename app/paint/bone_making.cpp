@@ -49,6 +49,7 @@ void BoneMaking::start(const cases::Case& knee, const std::filesystem::path& cas
   result_ = {};
   folder_ = case_folder;
   side_ = knee.side;
+  images_ = painting.shared_volume();
   constexpr double kMemory_gib = 4;  // the labels and a CT of 512 x 512 x 800
   importing::ImportRequest request;
   request.source = painting::bones_file(case_folder);
@@ -88,7 +89,8 @@ void BoneMaking::forget() {
 void BoneMaking::judge() {
   for (importing::BoneQuality& quality : qualities_)
     for (const importing::ImportedBone& made : result_.bones)
-      if (made.bone.kind == quality.kind) quality = importing::quality_of(made, quality.labelled_ml);
+      if (made.bone.kind == quality.kind)
+        quality = importing::quality_of(made, quality.labelled_ml, *images_);
 }
 
 void BoneMaking::save() {

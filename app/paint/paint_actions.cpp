@@ -2,9 +2,11 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <array>
 
 #include "app/paint/paint_view.h"
 #include "planning/painting/label_edits.h"
+#include "planning/segmentation/dark_rim.h"
 
 namespace arthronaut::paint {
 
@@ -226,6 +228,13 @@ void PaintView::add_edit_actions(widgets::Actions& actions) {
       [](Labels& labels, const Volume& volume, std::uint8_t label) {
         constexpr double kGap_mm = 2;
         painting::fill_holes(labels, volume, label, kGap_mm);
+      });
+  add("paint.cortex", "Cortex",
+      "In an MR: the dark rim about the chosen bone becomes bone, as its cortex is; growing takes it in by "
+      "itself",
+      GLFW_KEY_C, 0, "Take in the cortex", [](Labels& labels, const Volume& volume, std::uint8_t label) {
+        const std::array others{label == painting::kFemur ? painting::kTibia : painting::kFemur};
+        (void)segmentation::take_in_dark_rim(labels, volume, label, others, {});
       });
   add("paint.smooth", "Smooth", "Rounds the chosen bone off by a millimetre; its volume stays", GLFW_KEY_M, 0,
       "Smooth the border", [](Labels& labels, const Volume& volume, std::uint8_t label) {

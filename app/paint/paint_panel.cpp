@@ -61,7 +61,7 @@ void PaintView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
            "paint.smaller", "paint.larger", "paint.ball"});
   buttons(ui, rest.cut_top(ui.theme.px(44), ui.theme.px(8)),
           {"paint.grow", "paint.threshold", "paint.part", "paint.island", "paint.holes", "paint.gaps",
-           "paint.between", "paint.smooth"});
+           "paint.cortex", "paint.between", "paint.smooth"});
   buttons(
       ui, rest.cut_top(ui.theme.px(44), ui.theme.px(10)),
       {"paint.window", "paint.fit", "paint.hide", "paint.undo", "paint.redo", "paint.make", "paint.leave"});

@@ -1,6 +1,7 @@
 #include "app/paint/paint_view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "planning/landmarks/anatomical_axes.h"
 #include "planning/painting/label_edits.h"
 #include "planning/segmentation/ct_bones.h"
+#include "planning/segmentation/dark_rim.h"
 
 namespace arthronaut::paint {
 
@@ -157,6 +159,9 @@ void PaintView::grow() {
   job_.start("Growing", [volume = painting_->shared_volume(),
                          strokes = painting_->labels(Layer::Strokes)](const LabelJob::Tell& tell) {
     painting::Labels grown = segmentation::grow_from_seeds(*volume, strokes, {.on_progress = tell});
+    for (const auto& [bone, other] :
+         {std::pair{painting::kFemur, painting::kTibia}, std::pair{painting::kTibia, painting::kFemur}})
+      (void)segmentation::take_in_dark_rim(grown, *volume, bone, std::array{other}, strokes);
     std::replace(grown.begin(), grown.end(), painting::kSurroundings, painting::kNothing);
     return grown;
   });

@@ -3,16 +3,19 @@
 #include <cmath>
 
 #include "planning/files/format.h"
+#include "planning/segmentation/dark_rim.h"
 
 namespace arthronaut::importing {
 
-BoneQuality quality_of(const ImportedBone& made, double labelled_ml) {
+BoneQuality quality_of(const ImportedBone& made, double labelled_ml, const images::Volume& images) {
+  const segmentation::DarkRim rim = segmentation::rim_outside(made.bone.mesh, images);
   return {.kind = made.bone.kind,
           .labelled_ml = labelled_ml,
           .surface_ml = made.repair.volume_mm3 / 1000,
           .is_closed = made.repair.is_closed,
           .edges_not_manifold = made.repair.edges_not_manifold,
           .triangles = made.repair.triangles_now,
+          .cortex_outside_mm = rim.is_seen() ? rim.thickness_mm : 0,
           .doubts = made.doubts};
 }
 
@@ -31,6 +34,12 @@ std::vector<QualityLine> quality_lines(const BoneQuality& quality) {
                    quality.edges_not_manifold == 0
                        ? "every edge belongs to two triangles"
                        : std::to_string(quality.edges_not_manifold) + " edges did not, and were mended"});
+  if (quality.cortex_outside_mm > 0)
+    lines.push_back(
+        {Caution, "Cortex",
+         files::format("a rim of %.1f mm, dark as cortex is in an MR, lies outside: the bone is so "
+                       "much larger all about, and walls are thicker than they are said to be",
+                       quality.cortex_outside_mm)});
   if (quality.doubts.empty()) lines.push_back({Good, "Anatomy", "nothing speaks against it"});
   for (const std::string& doubt : quality.doubts) lines.push_back({Caution, "Look", doubt});
   return lines;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "planning/images/volume.h"
 #include "planning/import/bone_import.h"
 
 namespace arthronaut::importing {
@@ -16,10 +17,15 @@ struct BoneQuality {
   bool is_closed = false;
   std::size_t edges_not_manifold = 0;  // that were found, and mended
   std::size_t triangles = 0;
+  // Of an MR: so thick a rim, dark as cortex is, lies outside of the surface (segmentation/dark_rim.h); 0
+  // where none is seen.
+  double cortex_outside_mm = 0;
   std::vector<std::string> doubts;  // of the mesh and of the anatomy; empty: nothing speaks against it
 };
 
-[[nodiscard]] BoneQuality quality_of(const ImportedBone& made, double labelled_ml);
+// images: that it was labelled in.
+[[nodiscard]] BoneQuality quality_of(const ImportedBone& made, double labelled_ml,
+                                     const images::Volume& images);
 
 enum class QualityVerdict { Good, Caution, Bad };  // Bad: it cannot be planned on
 struct QualityLine {
