@@ -21,12 +21,34 @@ constexpr float kReach_mm = 18.0f;  // from the nearest touched point: the same 
 constexpr float kTouchedWithin_mm = 3.0f;
 constexpr float kStrokeRadius_mm = 4.0f;   // a stroke of 15 mm stays within this
 constexpr double kStrokeMeasurements = 3;  // independent ones, that it makes
+constexpr float kSpare_mm = 0.1f;          // beyond a bound, so that rounding drops nothing
 
 double target_error_mm(const Matrix6d& information, const Eigen::Vector3d& arm_mm) {
   Eigen::Matrix<double, 3, 6> move;
   move << Eigen::Matrix3d::Identity(), -cross_matrix(arm_mm);
   return std::sqrt((move * information.ldlt().solve(move.transpose())).trace());
 }
+
+class TouchedBox {
+ public:
+  explicit TouchedBox(const std::vector<Eigen::Vector3f>& points) {
+    for (const Eigen::Vector3f& p : points) {
+      low_ = low_.cwiseMin(p);
+      high_ = high_.cwiseMax(p);
+    }
+  }
+  [[nodiscard]] float distance_mm(const Eigen::Vector3f& p) const {
+    return (p - p.cwiseMax(low_).cwiseMin(high_)).norm();
+  }
+
+ private:
+  Eigen::Vector3f low_ = Eigen::Vector3f::Constant(1e9f), high_ = Eigen::Vector3f::Constant(-1e9f);
+};
+
+struct NearSample {
+  const SurfaceSample* sample;
+  bool may_be_reached;
+};
 
 // The parts of the bone within reach of what was touched, each with what a stroke of 15 mm there would do for
 // the predicted error at the target.
@@ -43,17 +65,26 @@ std::vector<BonePatch> find_patches(const CoachFacts& facts) {
       covariance_about(pose, points, bone, facts.pool.prior(), pivot).ldlt().solve(Matrix6d::Identity());
   const double before_mm = target_error_mm(information, target_mm - pivot);
 
-  std::vector<const SurfaceSample*> near;
+  // What a stroke within reach may touch, and a little more: most of the bone is further off.
+  const Eigen::Vector3f pivot_mm = pivot.cast<float>();
+  const TouchedBox touched_box(touched);
+  std::vector<NearSample> near;
   for (const SurfaceSample& sample : bone.pairs.samples()) {
-    const float far = kReach_mm + 30;
-    if ((sample.point_mm - pivot.cast<float>()).squaredNorm() < far * far) near.push_back(&sample);
+    const float far = kReach_mm + 30, away = touched_box.distance_mm(sample.point_mm);
+    if (away > kReach_mm + kStrokeRadius_mm + kSpare_mm) continue;
+    if ((sample.point_mm - pivot_mm).squaredNorm() < far * far)
+      near.push_back({&sample, away < kReach_mm + kSpare_mm});
   }
   std::vector<BonePatch> patches;
-  for (const SurfaceSample* sample : near) {
-    const bool is_new = std::none_of(patches.begin(), patches.end(), [&](const BonePatch& patch) {
-      return (patch.point_in_bone_mm.cast<float>() - sample->point_mm).norm() < kPatchSpacing_mm &&
-             patch.normal.cast<float>().dot(sample->normal) > 0;
-    });
+  std::vector<const SurfaceSample*> patch_samples;
+  for (const NearSample& place : near) {
+    if (!place.may_be_reached) continue;
+    const SurfaceSample* const sample = place.sample;
+    const bool is_new =
+        std::none_of(patch_samples.begin(), patch_samples.end(), [&](const SurfaceSample* patch) {
+          return (patch->point_mm - sample->point_mm).squaredNorm() < kPatchSpacing_mm * kPatchSpacing_mm &&
+                 patch->normal.dot(sample->normal) > 0;
+        });
     if (!is_new) continue;
     float nearest = kReach_mm * kReach_mm;
     for (const Eigen::Vector3f& p : touched)
@@ -66,8 +97,9 @@ std::vector<BonePatch> find_patches(const CoachFacts& facts) {
     patch.is_touched = nearest < kTouchedWithin_mm * kTouchedWithin_mm;
     Matrix6d stroke = Matrix6d::Zero();
     int count = 0;
-    for (const SurfaceSample* other : near) {
-      if ((other->point_mm - sample->point_mm).norm() > kStrokeRadius_mm) continue;
+    for (const NearSample& beside : near) {
+      const SurfaceSample* const other = beside.sample;
+      if ((other->point_mm - sample->point_mm).squaredNorm() > kStrokeRadius_mm * kStrokeRadius_mm) continue;
       Vector6d row;
       row << other->normal.cast<double>(),
           (other->point_mm.cast<double>() - pivot).cross(other->normal.cast<double>());
@@ -78,6 +110,7 @@ std::vector<BonePatch> find_patches(const CoachFacts& facts) {
     const Matrix6d with_stroke = information + stroke * (kStrokeMeasurements / (count * sigma_mm * sigma_mm));
     patch.gain = std::clamp(1 - target_error_mm(with_stroke, target_mm - pivot) / before_mm, 0.0, 1.0);
     patches.push_back(patch);
+    patch_samples.push_back(sample);
   }
   return patches;
 }

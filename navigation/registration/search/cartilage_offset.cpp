@@ -109,8 +109,7 @@ class Fit {
     for (std::size_t i = 0; i < points.offsets_mm.size(); ++i) {
       if (assignment.is_on_cartilage[i]) points.offsets_mm[i] = thickness_mm;
     }
-    return refine([this](const Eigen::Vector3d& p) { return bone_.field.sample(p); }, points,
-                  start.bone_from_marker, start.model, prior_, iterations);
+    return refine(bone_.field, points, start.bone_from_marker, start.model, prior_, iterations);
   }
 
   // On a part of the points; from 0 outwards, each from the one before: the pose moves along with the

@@ -14,10 +14,6 @@ constexpr std::size_t kFewPoints = 60, kCoarsePointCount = 120, kPolishPointCoun
 constexpr std::size_t kPoolSize = 8;
 constexpr int kPolishIterations = 3, kIterationsToJudge = 2;
 
-DistanceFunction distance_in(const DistanceField& field) {
-  return [&field](const Eigen::Vector3d& p) { return field.sample(p); };
-}
-
 // The mesh itself, where the field knows the sign; the two agree about it but within the grid's rounding.
 DistanceFunction distance_to(const SurfaceIndex::Data& bone) {
   return [&bone](const Eigen::Vector3d& p) {
@@ -53,7 +49,7 @@ void PosePool::add(const std::vector<Hypothesis>& hypotheses, const WeightedPoin
   }
   for (const RigidTransform& hypothesis : most_promising(hypotheses, draw_points(points, kFewPoints, seed))) {
     const RigidTransform near = approach(bone_.field, coarse_points, hypothesis).bone_from_marker;
-    poses_.push_back(refine(distance_in(bone_.field), coarse_points, near, start_, prior_, 6));
+    poses_.push_back(refine(bone_.field, coarse_points, near, start_, prior_, 6));
     poses_.back().searches = search_bit_;
   }
   search_bit_ <<= 1;
@@ -93,7 +89,7 @@ void PosePool::refine_all(const WeightedPoints& points, int iterations) {
 
 void PosePool::refine_again(RefinedPose& pose, const WeightedPoints& points, int iterations) const {
   const std::uint32_t searches = pose.searches;
-  pose = refine(distance_in(bone_.field), points, pose.bone_from_marker, pose.model, prior_, iterations);
+  pose = refine(bone_.field, points, pose.bone_from_marker, pose.model, prior_, iterations);
   pose.searches = searches;
 }
 

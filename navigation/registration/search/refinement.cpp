@@ -23,12 +23,16 @@ struct NormalEquations {
     Vector6d row;
     row.head<3>() = gradient;
     row.tail<3>() = arm_mm.cross(gradient);
-    // By hand, since these few products are most of the time of a fit.
-    for (int j = 0; j < 6; ++j) {
-      const double weighted = weight * row[j];
-      for (int i = j; i < 6; ++i) matrix(i, j) += weighted * row[i];
-      right[j] -= weighted * residual_mm;
-    }
+    // By pairs of rows, since these few products are most of the time of a fit; what lies above the diagonal
+    // is not looked at.
+    const Vector6d weighted = weight * row;
+    matrix.col(0) += weighted[0] * row;
+    matrix.col(1) += weighted[1] * row;
+    matrix.col(2).tail<4>() += weighted[2] * row.tail<4>();
+    matrix.col(3).tail<4>() += weighted[3] * row.tail<4>();
+    matrix.col(4).tail<2>() += weighted[4] * row.tail<2>();
+    matrix.col(5).tail<2>() += weighted[5] * row.tail<2>();
+    right -= weighted * residual_mm;
   }
 
   // Slightly damped, so that a motion which nothing holds stays where it is; steps are kept within reason.
@@ -65,9 +69,14 @@ constexpr double kSoftHeight_mm = 0.9, kSoftSigma_mm = 0.37;
 constexpr double kLiftedDensity_per_mm = 0.2, kLiftOnset_mm = 0.15;
 constexpr double kMinSigma_mm = 0.06, kMaxSigma_mm = 0.6;
 
-double normal_density(double x, double sigma) {
-  return std::exp(-0.5 * x * x / (sigma * sigma)) / (sigma * 2.5066282746310002);
-}
+class NormalDensity {
+ public:
+  explicit NormalDensity(double sigma) : variance_(sigma * sigma), area_(sigma * 2.5066282746310002) {}
+  [[nodiscard]] double at(double x) const { return std::exp(-0.5 * x * x / variance_) / area_; }
+
+ private:
+  double variance_, area_;
+};
 
 double lifted_density_per_mm(double residual_mm, double buried_density_per_mm) {
   const double share_above = 1 / (1 + std::exp(-residual_mm / kLiftOnset_mm));
@@ -79,35 +88,53 @@ struct Explanation {
   double negative_log_density;
 };
 
-Explanation explain(double residual_mm, const NoiseModel& model) {
-  const double soft_sigma = std::hypot(kSoftSigma_mm, model.contact_sigma_mm);
-  const double contact =
-      (1 - model.soft_share - model.lifted_share) * normal_density(residual_mm, model.contact_sigma_mm);
-  const double soft = model.soft_share * normal_density(residual_mm - kSoftHeight_mm, soft_sigma);
-  const double lifted = model.lifted_share * lifted_density_per_mm(residual_mm, model.buried_density_per_mm);
-  const double sum = contact + soft + lifted;
-  return {contact / sum, soft / sum, lifted / sum, -std::log(sum)};
-}
+// By one noise model, of which all that many residuals share is worked out once.
+class Explainer {
+ public:
+  explicit Explainer(const NoiseModel& model)
+      : model_(model),
+        contact_share_(1 - model.soft_share - model.lifted_share),
+        contact_(model.contact_sigma_mm),
+        soft_(std::hypot(kSoftSigma_mm, model.contact_sigma_mm)) {}
 
-// The M step for the noise model. The shares lean on a prior of a few mm of path, so that none dies out.
-NoiseModel updated_model(const WeightedPoints& points, const std::vector<double>& residuals_mm,
-                         const NoiseModel& model) {
-  constexpr double kPriorWeight = 4.0;
-  double contact = kPriorWeight, soft = 0.1 * kPriorWeight, lifted = 0.1 * kPriorWeight;
-  double square_sum = 0.2 * 0.2 * kPriorWeight;
-  for (std::size_t i = 0; i < residuals_mm.size(); ++i) {
-    const Explanation explanation = explain(residuals_mm[i], model);
-    contact += points.weights[i] * explanation.contact;
-    soft += points.weights[i] * explanation.soft;
-    lifted += points.weights[i] * explanation.lifted;
-    square_sum += points.weights[i] * explanation.contact * residuals_mm[i] * residuals_mm[i];
+  [[nodiscard]] Explanation explain(double residual_mm) const {
+    const double contact = contact_share_ * contact_.at(residual_mm);
+    const double soft = model_.soft_share * soft_.at(residual_mm - kSoftHeight_mm);
+    const double lifted =
+        model_.lifted_share * lifted_density_per_mm(residual_mm, model_.buried_density_per_mm);
+    const double sum = contact + soft + lifted;
+    return {contact / sum, soft / sum, lifted / sum, -std::log(sum)};
   }
-  NoiseModel updated = model;
-  updated.contact_sigma_mm = std::clamp(std::sqrt(square_sum / contact), kMinSigma_mm, kMaxSigma_mm);
-  updated.soft_share = soft / (contact + soft + lifted);
-  updated.lifted_share = lifted / (contact + soft + lifted);
-  return updated;
-}
+
+ private:
+  NoiseModel model_;
+  double contact_share_;
+  NormalDensity contact_, soft_;
+};
+
+// The M step for the noise model, from how each residual is explained by the one before. The shares lean on a
+// prior of a few mm of path, so that none dies out.
+class ModelUpdate {
+ public:
+  void add(const Explanation& explanation, double residual_mm, double weight) {
+    contact_ += weight * explanation.contact;
+    soft_ += weight * explanation.soft;
+    lifted_ += weight * explanation.lifted;
+    square_sum_ += weight * explanation.contact * residual_mm * residual_mm;
+  }
+  [[nodiscard]] NoiseModel updated(const NoiseModel& model) const {
+    NoiseModel updated = model;
+    updated.contact_sigma_mm = std::clamp(std::sqrt(square_sum_ / contact_), kMinSigma_mm, kMaxSigma_mm);
+    updated.soft_share = soft_ / (contact_ + soft_ + lifted_);
+    updated.lifted_share = lifted_ / (contact_ + soft_ + lifted_);
+    return updated;
+  }
+
+ private:
+  static constexpr double kPriorWeight = 4.0;
+  double contact_ = kPriorWeight, soft_ = 0.1 * kPriorWeight, lifted_ = 0.1 * kPriorWeight;
+  double square_sum_ = 0.2 * 0.2 * kPriorWeight;
+};
 
 struct MarkerObjection {
   double cost, weight;  // weight: of the height's miss in the normal equations
@@ -127,10 +154,61 @@ MarkerObjection object_to(const Eigen::Matrix3d& bone_from_marker, const Distanc
           kCorrelationLength_mm * ratio * ratio / (prior.sigma_mm * prior.sigma_mm)};
 }
 
+// See refine() in the header. Distance: gives the sample at a point of the bone frame.
+template <typename Distance>
+RefinedPose refine_by(const Distance& distance, const WeightedPoints& points, const RigidTransform& start,
+                      const NoiseModel& model, const MarkerPrior& prior, int iterations) {
+  RefinedPose refined;
+  refined.bone_from_marker = start;
+  refined.model = model;
+  refined.residuals_mm.resize(points.positions_mm.size());
+  for (int iteration = 0;; ++iteration) {
+    const bool is_last = iteration >= iterations;  // where the pose stays: its cost and residuals alone
+    const Eigen::Vector3d pivot = refined.bone_from_marker * points.centroid_mm;
+    const Eigen::Matrix3d rotation = refined.bone_from_marker.matrix();
+    const double contact_information = 1 / (refined.model.contact_sigma_mm * refined.model.contact_sigma_mm);
+    const double soft_information = 1 / (kSoftSigma_mm * kSoftSigma_mm + 1 / contact_information);
+    const Explainer explainer(refined.model);
+    NormalEquations equations;
+    ModelUpdate model_update;
+    double cost = 0;
+    for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
+      const Eigen::Vector3d p = rotation * points.positions_mm[i] + refined.bone_from_marker.translation_mm;
+      const DistanceField::Sample sample = distance(p);
+      const double residual_mm = sample.distance_mm - points.offset_mm(i);
+      refined.residuals_mm[i] = residual_mm;
+      const Explanation explanation = explainer.explain(residual_mm);
+      cost += points.weights[i] * explanation.negative_log_density;
+      if (is_last) continue;
+      model_update.add(explanation, residual_mm, points.weights[i]);
+      const double contact = explanation.contact * contact_information,
+                   soft = explanation.soft * soft_information;
+      const double weight = contact + soft;
+      if (weight < 1e-9) continue;
+      equations.add(p - pivot, sample.gradient, residual_mm - kSoftHeight_mm * soft / weight,
+                    points.weights[i] * weight);
+    }
+    if (prior.use) {
+      const Eigen::Vector3d& marker = refined.bone_from_marker.translation_mm;
+      const DistanceField::Sample sample = distance(marker);
+      const MarkerObjection objection = object_to(rotation, sample, prior);
+      equations.add(marker - pivot, sample.gradient, sample.distance_mm - prior.height_mm, objection.weight);
+      cost += objection.cost;
+    }
+    refined.cost = cost / std::max(points.weight_sum, 1e-9);
+    if (is_last) break;
+    const Vector6d twist = equations.solve();
+    move(refined.bone_from_marker, twist, pivot);
+    refined.model = model_update.updated(refined.model);
+    if (is_small(twist) && iteration > 3) iterations = iteration + 1;
+  }
+  return refined;
+}
+
 }  // namespace
 
 ResidualEvidence evidence_of(double residual_mm, const NoiseModel& model) {
-  const Explanation explanation = explain(residual_mm, model);
+  const Explanation explanation = Explainer(model).explain(residual_mm);
   const double contact_information = 1 / (model.contact_sigma_mm * model.contact_sigma_mm);
   const double soft_information = 1 / (kSoftSigma_mm * kSoftSigma_mm + 1 / contact_information);
   const double contact_slope = residual_mm * contact_information;
@@ -173,49 +251,16 @@ ApproachedPose approach(const DistanceField& field, const WeightedPoints& points
   return approached;
 }
 
+RefinedPose refine(const DistanceField& field, const WeightedPoints& points, const RigidTransform& start,
+                   const NoiseModel& model, const MarkerPrior& prior, int iterations) {
+  const auto distance = [&field](const Eigen::Vector3d& p) { return field.sample(p); };
+  return refine_by(distance, points, start, model, prior, iterations);
+}
+
 RefinedPose refine(const DistanceFunction& distance, const WeightedPoints& points,
                    const RigidTransform& start, const NoiseModel& model, const MarkerPrior& prior,
                    int iterations) {
-  RefinedPose refined;
-  refined.bone_from_marker = start;
-  refined.model = model;
-  refined.residuals_mm.resize(points.positions_mm.size());
-  for (int iteration = 0;; ++iteration) {
-    const Eigen::Vector3d pivot = refined.bone_from_marker * points.centroid_mm;
-    const Eigen::Matrix3d rotation = refined.bone_from_marker.matrix();
-    const double contact_information = 1 / (refined.model.contact_sigma_mm * refined.model.contact_sigma_mm);
-    const double soft_information = 1 / (kSoftSigma_mm * kSoftSigma_mm + 1 / contact_information);
-    NormalEquations equations;
-    double cost = 0;
-    for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
-      const Eigen::Vector3d p = rotation * points.positions_mm[i] + refined.bone_from_marker.translation_mm;
-      const DistanceField::Sample sample = distance(p);
-      const double residual_mm = sample.distance_mm - points.offset_mm(i);
-      refined.residuals_mm[i] = residual_mm;
-      const Explanation explanation = explain(residual_mm, refined.model);
-      cost += points.weights[i] * explanation.negative_log_density;
-      const double contact = explanation.contact * contact_information,
-                   soft = explanation.soft * soft_information;
-      const double weight = contact + soft;
-      if (weight < 1e-9) continue;
-      equations.add(p - pivot, sample.gradient, residual_mm - kSoftHeight_mm * soft / weight,
-                    points.weights[i] * weight);
-    }
-    if (prior.use) {
-      const Eigen::Vector3d& marker = refined.bone_from_marker.translation_mm;
-      const DistanceField::Sample sample = distance(marker);
-      const MarkerObjection objection = object_to(rotation, sample, prior);
-      equations.add(marker - pivot, sample.gradient, sample.distance_mm - prior.height_mm, objection.weight);
-      cost += objection.cost;
-    }
-    refined.cost = cost / std::max(points.weight_sum, 1e-9);
-    if (iteration >= iterations) break;
-    const Vector6d twist = equations.solve();
-    move(refined.bone_from_marker, twist, pivot);
-    refined.model = updated_model(points, refined.residuals_mm, refined.model);
-    if (is_small(twist) && iteration > 3) iterations = iteration + 1;
-  }
-  return refined;
+  return refine_by(distance, points, start, model, prior, iterations);
 }
 
 }  // namespace arthronaut::registration

@@ -20,7 +20,7 @@
 
 namespace arthronaut::registration {
 
-// Signed distance and its gradient at a point of the bone frame: the grid's, or the exact mesh's.
+// Signed distance and its gradient at a point of the bone frame, such as the exact mesh's.
 using DistanceFunction = std::function<DistanceField::Sample(const Eigen::Vector3d&)>;
 
 struct NoiseModel {
@@ -75,7 +75,10 @@ struct ApproachedPose {
                                       const geometry::RigidTransform& bone_from_marker,
                                       const ApproachOptions& options = {});
 
-// EM from a pose within about 1 mm.
+// EM from a pose within about 1 mm; by the grid, or by any other distance, which takes longer.
+[[nodiscard]] RefinedPose refine(const DistanceField& field, const WeightedPoints& points,
+                                 const geometry::RigidTransform& bone_from_marker, const NoiseModel& model,
+                                 const MarkerPrior& prior, int iterations);
 [[nodiscard]] RefinedPose refine(const DistanceFunction& distance, const WeightedPoints& points,
                                  const geometry::RigidTransform& bone_from_marker, const NoiseModel& model,
                                  const MarkerPrior& prior, int iterations);
