@@ -38,7 +38,7 @@ const std::vector<float>& deviates() {
     constexpr std::size_t kDeviates = 1 << 18;
     static_assert(kDeviates > 4 * 3 * Sensor::kWidestPx);
     const auto& quantiles = normal_quantiles();
-    std::vector<float> deviates(kDeviates);
+    std::vector<float> deviates(kDeviates + kTogether);  // a row's last packet may read beyond it
     Random random(977);
     for (float& deviate : deviates) deviate = quantiles[random.bits() >> 54];
     return deviates;
@@ -185,7 +185,7 @@ void Sensor::expose(const std::vector<float>& light, const PixelArea& area, cons
                     std::uint64_t noise_seed, camera::Frame& frame) {
   const auto stride = static_cast<std::size_t>(3) * static_cast<std::size_t>(frame.width);
   frame.bgr.resize(stride * static_cast<std::size_t>(frame.height));
-  const std::size_t places = deviates().size() - stride - kTogether;
+  const std::size_t places = deviates().size() - kTogether - stride;
   parallel_bands(frame.height, [&](int first, int end, int thread) {
     for (int y = first; y < end; ++y) {
       const std::uint64_t draw = Random(noise_seed * 0x100000001B3ULL + static_cast<std::uint64_t>(y)).bits();

@@ -98,8 +98,8 @@ class OnlineRegistration {
   // Forgets everything.
   void clear();
 
-  // Solves again when enough was drawn or anything changed; otherwise returns what is known. About 6 ms once
-  // a candidate is there, more while collecting, and some 200 ms when the side is checked: before the first
+  // Solves again when enough was drawn or anything changed; otherwise returns what is known. About 5 ms once
+  // a candidate is there, more while collecting, and some 100 ms when the side is checked: before the first
   // confirmation, again when half as much again was drawn, and with each update while the side is in doubt.
   // With cartilage about twice as long, and 30 to 60 ms when all thicknesses are tried: while
   // collecting, and when a quarter more was drawn.
