@@ -16,11 +16,11 @@ namespace {
 using geometry::RigidTransform;
 using geometry::Vector6d;
 
-// The unknowns: pose (6), velocity and its change over the exposure (x, y, about the normal), smear, gamma,
-// and the light: bias and gain as polynomials of the place.
-constexpr int kVelocity = 6, kChange = 9, kSmear = 12, kGamma = 13, kLight = 14;
-constexpr int kBiasTerms = 10, kGainTerms = 6, kLightTerms = kBiasTerms + kGainTerms;  // cubic, quadratic
-constexpr int kCount = kLight + kLightTerms;
+constexpr int kVelocity = DirectUnknowns::kVelocity, kChange = DirectUnknowns::kChange,
+              kSmear = DirectUnknowns::kSmear, kGamma = DirectUnknowns::kGamma,
+              kLight = DirectUnknowns::kLight;
+constexpr int kBiasTerms = DirectUnknowns::kBiasTerms, kGainTerms = DirectUnknowns::kGainTerms,
+              kLightTerms = DirectUnknowns::kLightTerms, kCount = DirectUnknowns::kCount;
 using Vector = Eigen::Matrix<double, kCount, 1>;
 using Matrix = Eigen::Matrix<double, kCount, kCount>;
 using Light = Eigen::Matrix<float, kLightTerms, 1>;
@@ -36,8 +36,7 @@ constexpr double kMinNoiseGrey = 1.5, kMaxNoiseGrey = 6, kMinNoiseLight = 2;
 // Neighbouring pixels share what is wrong with them: so many count as one beside what is known beforehand.
 constexpr double kCorrelatedPixels = 6;
 constexpr double kSmearSigmaPx = 0.15, kGammaSigma = 0.15;
-constexpr double kPixelSigmaPx = 0.29;  // of a pixel's own square
-constexpr float kMinLight = 0.3F;
+constexpr double kPixelSigmaPx = 0.29;    // of a pixel's own square
 constexpr double kMomentsPerSigma = 1.6;  // moments of the exposure lie so many sigma apart, at most
 constexpr double kSettledPx = 0.04, kSettledEnoughPx = 0.4;
 constexpr int kCoarseIterations = 2, kMinIterations = 3;
@@ -84,11 +83,9 @@ struct CodeShare {
 
 }  // namespace
 
-DirectFit::DirectFit() {
-  pixels_.reserve(kLikelyPixels);
+DirectFit::DirectFit() : pixels_(kLikelyPixels) {
   residuals_.reserve(kLikelyPixels);
-  weights_.reserve(kLikelyPixels);
-  levels_.reserve(kLikelyPixels);
+  levels_.reserve(kLikelyPixels / kPixelsTogether + 1);
   light_.reserve(kLikelyPixels);
   sorted_.reserve(kLikelyPixels);
   edge_gradients_.resize(2 * (kMaxCells + 1) * kMaxCells);
@@ -134,13 +131,11 @@ void DirectFit::take_pixels(const camera::GrayView& frame, const camera::CameraM
           pixel - row_delay(start.delays, pixel.y(), center->y(), frame.height) * moves;
       const auto ray = camera.ray(there);
       if (!ray) continue;
-      Pixel& added = pixels_.emplace_back();
-      added.ray = ray->cast<float>();
-      added.grey = grey;
-      added.sigma_x = static_cast<float>(sigma_cells * back.row(0).norm());
-      added.sigma_y = static_cast<float>(sigma_cells * back.row(1).norm());
-      added.place = (2 / size_mm * (place.head<2>() + back * (there - *point))).cast<float>();
-      added.edge = (sample.axis * (cells + 1) + line) * cells + lane;
+      pixels_.add({ray->cast<float>(), static_cast<float>(grey),
+                   static_cast<float>(sigma_cells * back.row(0).norm()),
+                   static_cast<float>(sigma_cells * back.row(1).norm()),
+                   (2 / size_mm * (place.head<2>() + back * (there - *point))).cast<float>(),
+                   (sample.axis * (cells + 1) + line) * cells + lane});
     }
   }
 }
@@ -155,23 +150,18 @@ struct DirectFit::State {
   float coarse = 0;  // smear on purpose, in cells
   double noise = kMinNoiseGrey;
 
-  void find_levels(std::span<const Pixel> pixels, std::span<ExposedCode::Level> levels) const {
+  void find_levels(std::span<const PixelBlocks::Block> blocks, std::span<SeenLevels> levels) const {
     const auto wider = [this](float sigma) {
       const float smeared = smear_factor * sigma;
       return coarse > 0 ? std::sqrt(smeared * smeared + coarse * coarse) : smeared;
     };
-    LookedAt at;
-    for (std::size_t first = 0; first < pixels.size(); first += kPixelsTogether) {
-      const std::size_t count = std::min<std::size_t>(kPixelsTogether, pixels.size() - first);
-      for (std::size_t i = 0; i < kPixelsTogether; ++i) {
-        const Pixel& pixel = pixels[first + std::min(i, count - 1)];
-        at.ray_x[i] = pixel.ray.x();
-        at.ray_y[i] = pixel.ray.y();
-        at.ray_z[i] = pixel.ray.z();
-        at.sigma_x[i] = wider(pixel.sigma_x);
-        at.sigma_y[i] = wider(pixel.sigma_y);
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      LookedAt at = blocks[b].at;
+      for (int lane = 0; lane < kPixelsTogether; ++lane) {
+        at.sigma_x[lane] = wider(at.sigma_x[lane]);
+        at.sigma_y[lane] = wider(at.sigma_y[lane]);
       }
-      exposed.look(at, static_cast<int>(count), &levels[first]);
+      exposed.look(at, levels[b]);
     }
   }
   bool apply(const Vector& step) {
@@ -211,33 +201,38 @@ struct DirectFit::Linearised {
 
 // What light the start asks for is linear, in light; three times over, so that what is covered drops out.
 void DirectFit::guess_light(State& state) {
-  const std::size_t count = pixels_.size();
   const auto gamma = static_cast<float>(state.gamma);
-  const auto row_of = [&](std::size_t i) {
-    const Terms terms = terms_at(pixels_[i].place);
+  const auto row_of = [&](int i) {
+    const SeenPixels& seen = pixels_.seen(i);
+    const int lane = i % kPixelsTogether;
+    const Terms terms = terms_at({seen.place_x[lane], seen.place_y[lane]});
     Light row;
-    row << terms.head<kBiasTerms>(), levels_[i].level * terms.head<kGainTerms>();
+    row << terms.head<kBiasTerms>(), levels_[i / kPixelsTogether].level[lane] * terms.head<kGainTerms>();
     return row;
   };
-  for (std::size_t i = 0; i < count; ++i) light_[i] = 255 * std::pow(pixels_[i].grey / 255, gamma);
+  const int count = pixels_.count();
+  residuals_.resize(count);
+  light_.resize(count);
+  for (int i = 0; i < count; ++i)
+    light_[i] = 255 * std::pow(pixels_.seen(i).grey[i % kPixelsTogether] / 255, gamma);
   for (int pass = 0; pass < 3; ++pass) {
     using Square = Eigen::Matrix<float, kLightTerms, kLightTerms>;
     Square normal = 1e-2F * Square::Identity();
     Light right = Light::Zero();
-    for (std::size_t i = 0; i < count; ++i) {
+    for (int i = 0; i < count; ++i) {
       const Light row = row_of(i);
-      normal.noalias() += (weights_[i] * row) * row.transpose();
-      right += weights_[i] * light_[i] * row;
+      normal.noalias() += (pixels_.weight(i) * row) * row.transpose();
+      right += pixels_.weight(i) * light_[i] * row;
     }
     state.light = normal.ldlt().solve(right);
     sorted_.clear();
-    for (std::size_t i = 0; i < count; ++i) {
+    for (int i = 0; i < count; ++i) {
       residuals_[i] = light_[i] - state.light.dot(row_of(i));
       sorted_.push_back(std::abs(residuals_[i]));
     }
     const auto scale =
         static_cast<float>(std::max(kMinNoiseLight, 1.8 * geometry::median_in_place(std::span(sorted_))));
-    for (std::size_t i = 0; i < count; ++i) weights_[i] = tukey_weight(residuals_[i] / scale);
+    for (int i = 0; i < count; ++i) pixels_.weight(i) = tukey_weight(residuals_[i] / scale);
   }
 }
 
@@ -247,35 +242,31 @@ void DirectFit::linearise(const State& state, bool is_first, Linearised& result)
   ProductSum products;
   for (Row& gradient : edge_gradients_) gradient.setZero();
   sorted_.clear();
-  const auto gamma = static_cast<float>(state.gamma);
-  const auto noise = static_cast<float>(state.noise);
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    const Pixel& pixel = pixels_[i];
-    const ExposedCode::Level& level = levels_[i];
-    const Terms terms = terms_at(pixel.place);
-    const float gain = state.light.tail<kGainTerms>().dot(terms.head<kGainTerms>());
-    const float bias = state.light.head<kBiasTerms>().dot(terms.head<kBiasTerms>());
-    const float light = std::max(kMinLight, bias + gain * level.level);
-    const float logarithm = std::log(light / 255);
-    const float modelled = 255 * std::exp(logarithm / gamma);
-    const float slope = modelled / (gamma * light);
-    const float residual = pixel.grey - modelled;
-    sorted_.push_back(std::abs(residual));
-    const float weight = is_first ? weights_[i] : tukey_weight(residual / noise);
-    if (weight <= 0) continue;
-    ++result.used;
-    result.code_share.add(weight, slope * gain * (level.level - 0.5F), residual);
-    Row row = Row::Zero();
-    row.head<6>() = slope * gain * level.by_pose;
-    row.segment<3>(kVelocity) = slope * gain * level.by_velocity;
-    row.segment<3>(kChange) = slope * gain * level.by_change;
-    row[kSmear] = slope * gain * level.by_smear;
-    row[kGamma] = -modelled * logarithm / (gamma * gamma);
-    row.segment<kBiasTerms>(kLight) = slope * terms.head<kBiasTerms>();
-    row.segment<kGainTerms>(kLight + kBiasTerms) = slope * level.level * terms.head<kGainTerms>();
-    products.next() = std::sqrt(weight) * row;
-    products.add();
-    edge_gradients_[pixel.edge] += weight * residual * row;
+  FittedLight light;
+  Eigen::Map<Light>(light.terms) = state.light;
+  light.gamma = static_cast<float>(state.gamma);
+  light.noise = static_cast<float>(state.noise);
+  light.has_weights = is_first;
+  const auto explain = processor_has_avx2() ? explain_pixels_avx2 : explain_pixels;
+  ExplainedPixels explained;
+  int left = pixels_.count();
+  for (std::size_t b = 0; b < levels_.size(); ++b, left -= kPixelsTogether) {
+    const PixelBlocks::Block& block = pixels_.blocks()[b];
+    explain(light, block.seen, levels_[b], explained);
+    for (int lane = 0; lane < kPixelsTogether; ++lane) {
+      Eigen::Map<Row> row(explained.rows[lane]);
+      const float weight = explained.weight[lane], residual = explained.residual[lane];
+      if (lane >= left) {
+        row.setZero();
+        continue;
+      }
+      sorted_.push_back(std::abs(residual));
+      if (weight <= 0) continue;
+      ++result.used;
+      result.code_share.add(weight, explained.code[lane], residual);
+      edge_gradients_[block.edge[lane]] += std::sqrt(weight) * residual * row;
+    }
+    products.add(explained.rows);
   }
   result.scale = 1.4826 * geometry::median_in_place(std::span(sorted_));
   result.products = products.take().topLeftCorner<kCount, kCount>().cast<double>();
@@ -309,12 +300,8 @@ DirectPose DirectFit::refine(const camera::GrayView& frame, const camera::Camera
   pixels_.clear();
   const auto take_more = [&](std::size_t first, std::size_t every) {
     take_pixels(frame, camera, code.cells, samples, size_mm, start, options, first, every);
-    residuals_.resize(pixels_.size());
-    levels_.resize(pixels_.size());
-    light_.resize(pixels_.size());
-    weights_.resize(pixels_.size(), 1.0F);
+    levels_.resize(pixels_.blocks().size());
   };
-  weights_.clear();
   // The way to the result takes a part of the pixels, the last iterations all of them.
   bool is_rough = options.max_pixels > kRoughPixels;
   take_more(0, is_rough ? kRoughStride : 1);
@@ -322,8 +309,8 @@ DirectPose DirectFit::refine(const camera::GrayView& frame, const camera::Camera
     for (int first = 1; is_rough && first < kRoughStride; ++first) take_more(first, kRoughStride);
     is_rough = false;
   };
-  if (pixels_.size() < kMinPixels) take_all();
-  if (pixels_.size() < kMinPixels) return result;
+  if (pixels_.count() < kMinPixels) take_all();
+  if (pixels_.count() < kMinPixels) return result;
 
   const double px_per_mm = camera.central_focal_px() / start.pose.camera_from_marker.translation_mm.z();
   const double cell_px = px_per_mm * size_mm / code.cells;
@@ -345,7 +332,7 @@ DirectPose DirectFit::refine(const camera::GrayView& frame, const camera::Camera
     state.exposed.move(
         state.pose,
         static_cast<int>(std::ceil(motion_px(state.pose.velocity, size_mm, px_per_mm) / moment_px)));
-    state.find_levels(pixels_, levels_);
+    state.find_levels(pixels_.blocks(), levels_);
     if (iteration == 0) guess_light(state);
     linearise(state, iteration == 0, at);
     at.prior = prior;
@@ -386,7 +373,7 @@ DirectPose DirectFit::refine(const camera::GrayView& frame, const camera::Camera
   result.sigma_px = start.sigma_px * std::exp(state.smear);
   result.gamma = state.gamma;
   result.noise_grey = state.noise;
-  result.inlier_share = static_cast<double>(at.used) / static_cast<double>(pixels_.size());
+  result.inlier_share = static_cast<double>(at.used) / pixels_.count();
   result.likeness = at.code_share.likeness();
   result.outcome =
       result.likeness > options.min_likeness ? DirectPose::Outcome::Converged : DirectPose::Outcome::Unlike;

@@ -16,6 +16,7 @@
 #include "navigation/camera/frame.h"
 #include "navigation/markers/exposed_code.h"
 #include "navigation/markers/marker_pattern.h"
+#include "navigation/markers/pixel_blocks.h"
 
 namespace arthronaut::markers {
 
@@ -79,13 +80,6 @@ class DirectFit {
                                   const DirectStart& start, const DirectOptions& options = {});
 
  private:
-  struct Pixel {
-    Eigen::Vector3f ray;
-    float grey = 0;
-    float sigma_x = 1, sigma_y = 1;  // of the optics' smear along the marker's axes, in cells
-    Eigen::Vector2f place;           // on the marker, -1 to 1
-    int edge = 0;                    // the edge of one cell that it belongs to
-  };
   struct State;       // where the fit stands
   struct Linearised;  // the least squares there
   void take_pixels(const camera::GrayView& frame, const camera::CameraModel& camera, int cells,
@@ -98,9 +92,9 @@ class DirectFit {
 
   static constexpr int kRow = 32;  // the unknowns, padded
   using Row = Eigen::Matrix<float, kRow, 1>;
-  std::vector<Pixel> pixels_;
-  std::vector<ExposedCode::Level> levels_;  // of the pixels, as the fit stands
-  std::vector<float> residuals_, weights_, light_, sorted_;
+  PixelBlocks pixels_;
+  std::vector<SeenLevels> levels_;  // of the pixels, as the fit stands
+  std::vector<float> residuals_, light_, sorted_;
   std::vector<Row> edge_gradients_;  // by edge
 };
 

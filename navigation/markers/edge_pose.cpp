@@ -17,6 +17,8 @@ using geometry::Vector6d;
 constexpr int kIterations = 10;
 constexpr int kMinEdges = 12;
 constexpr int kMaxEdges = 1024;
+// A step that moves every edge by less than this changes their distances as its derivatives say.
+constexpr double kLinearPx = 0.1;
 constexpr double kMinTellingShare = 0.5;
 constexpr double kTukey = 4.685;
 // Neighbouring profiles share pixels and what is wrong with them: so many of them count as one.
@@ -78,20 +80,23 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
   double scale = 1, squares = 0, weights = 0, px_squares = 0;
   std::array<Row, kMaxEdges> rows;
   std::array<int, kMaxEdges> of_row;  // its measurement
+  int count = 0;
+  bool is_linear = false;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    const Eigen::Matrix3d rotation = pose.matrix();
-    int count = 0;
-    for (std::size_t i = 0; i < measurements.size(); ++i) {
-      is_inlier[i] = 0;
-      const EdgeMeasurement& measurement = measurements[i];
-      if (measurement.state != EdgeState::Found || count == kMaxEdges) continue;
-      if (!find_row(camera, size_mm, samples[measurement.sample], measurement, pose, rotation, bloom,
-                    rows[count]))
-        return result;
-      of_row[count] = static_cast<int>(i);
-      ratios[count] = std::abs(rows[count].residual_px) / measurement.sigma_px;
-      ++count;
+    if (!is_linear) {
+      const Eigen::Matrix3d rotation = pose.matrix();
+      count = 0;
+      for (std::size_t i = 0; i < measurements.size(); ++i) {
+        const EdgeMeasurement& measurement = measurements[i];
+        if (measurement.state != EdgeState::Found || count == kMaxEdges) continue;
+        if (!find_row(camera, size_mm, samples[measurement.sample], measurement, pose, rotation, bloom,
+                      rows[count]))
+          return result;
+        of_row[count++] = static_cast<int>(i);
+      }
     }
+    for (int r = 0; r < count; ++r)
+      ratios[r] = std::abs(rows[r].residual_px) / measurements[of_row[r]].sigma_px;
     if (count < kMinEdges) return result;
     scale = std::max(
         1.0, 1.4826 * geometry::median_in_place(std::span(ratios).first(static_cast<std::size_t>(count))));
@@ -108,6 +113,7 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
       const double sigma_px = measurements[of_row[r]].sigma_px;
       const double ratio = row.residual_px / sigma_px;
       const double robust = tukey_weight(ratio / scale);
+      is_inlier[of_row[r]] = robust > 0;
       if (robust <= 0) continue;
       const double weight = robust / (sigma_px * sigma_px);
       normal.noalias() += weight * row.jacobian * row.jacobian.transpose();
@@ -115,7 +121,6 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
       squares += robust * ratio * ratio;
       weights += robust;
       px_squares += row.residual_px * row.residual_px;
-      is_inlier[of_row[r]] = 1;
       ++result.inliers;
     }
     if (result.inliers < kMinEdges) return result;
@@ -126,6 +131,13 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
     pose = pose * geometry::exp(step.head<6>());
     bloom += step[6];
     if (!(pose.translation_mm.z() > 0)) return result;
+    double most_px = 0;
+    for (int r = 0; r < count; ++r) {
+      const double moved_px = rows[r].jacobian.dot(step);
+      rows[r].residual_px -= moved_px;
+      most_px = std::max(most_px, std::abs(moved_px));
+    }
+    is_linear = most_px < kLinearPx;
     if (iteration >= 2 && step.head<3>().norm() < 1e-5 && step.segment<3>(3).norm() < 1e-6) break;
   }
 

@@ -40,19 +40,8 @@ void ExposedCode::move(const ExposedPose& pose, int moment_count) {
   }
 }
 
-void ExposedCode::look(const LookedAt& at, int count, Level* levels) const {
-  SeenLevels seen;
-  processor_has_avx2() ? look_at_code_avx2(code_, at, seen) : look_at_code(code_, at, seen);
-  for (int i = 0; i < count; ++i) {
-    Level& level = levels[i];
-    level.level = seen.level[i];
-    level.by_smear = seen.by_smear[i];
-    for (int k = 0; k < 6; ++k) level.by_pose[k] = seen.by_pose[k][i];
-    for (int k = 0; k < 3; ++k) {
-      level.by_velocity[k] = seen.by_velocity[k][i];
-      level.by_change[k] = seen.by_change[k][i];
-    }
-  }
+void ExposedCode::look(const LookedAt& at, SeenLevels& levels) const {
+  processor_has_avx2() ? look_at_code_avx2(code_, at, levels) : look_at_code(code_, at, levels);
 }
 
 }  // namespace arthronaut::markers

@@ -26,17 +26,9 @@ class ExposedCode {
   void move(const ExposedPose& pose, int moment_count);
   static constexpr int kMaxMoments = ExposedMoments::kMost;
 
-  struct Level {
-    float level = 0;  // 0 dark, 1 bright; the margin of one cell around the square is bright
-    // Derivatives: by the pose's body twist; by velocity and change along x and y and about the normal; by
-    // the logarithm of the smear.
-    Eigen::Matrix<float, 6, 1> by_pose = Eigen::Matrix<float, 6, 1>::Zero();
-    Eigen::Vector3f by_velocity = Eigen::Vector3f::Zero(), by_change = Eigen::Vector3f::Zero();
-    float by_smear = 0;
-  };
-  // Along eight rays at once, smeared by sigmas in cells along the marker's x and y; gives the first `count`
-  // of them. A cell must be at least two and a half sigma wide.
-  void look(const LookedAt& at, int count, Level* levels) const;
+  // Along eight rays at once, smeared by sigmas in cells along the marker's x and y: 0 dark, 1 bright; the
+  // margin of one cell around the square is bright. A cell must be at least two and a half sigma wide.
+  void look(const LookedAt& at, SeenLevels& levels) const;
 
  private:
   ExposedMoments code_;

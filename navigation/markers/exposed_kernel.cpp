@@ -15,6 +15,11 @@ bool processor_has_avx2() {
 
 void look_at_code(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen) { look(code, at, seen); }
 
+void explain_pixels(const FittedLight& light, const SeenPixels& pixels, const SeenLevels& levels,
+                    ExplainedPixels& explained) {
+  explain(light, pixels, levels, explained);
+}
+
 void add_products(const float (&rows)[kPixelsTogether][kProductSize],
                   float (&sum)[kProductSize][kProductSize]) {
   add_up(rows, sum);

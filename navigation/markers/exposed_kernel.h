@@ -31,11 +31,43 @@ struct LookedAt {
   alignas(32) float sigma_x[kPixelsTogether], sigma_y[kPixelsTogether];  // of the smear, in cells
 };
 
-// As ExposedCode::Level.
+// Of the code at each pixel, with its derivatives: by the pose's body twist; by velocity and change along x
+// and y and about the normal; by the logarithm of the smear.
 struct SeenLevels {
   alignas(32) float level[kPixelsTogether], by_smear[kPixelsTogether];
   alignas(32) float by_pose[6][kPixelsTogether],
       by_velocity[3][kPixelsTogether], by_change[3][kPixelsTogether];
+};
+
+// Pixels beside what the direct fit takes them for.
+struct SeenPixels {
+  alignas(32) float grey[kPixelsTogether], place_x[kPixelsTogether], place_y[kPixelsTogether];
+  alignas(32) float weight[kPixelsTogether];
+};
+
+// The unknowns of the direct fit: pose (6), velocity and its change over the exposure (x, y, about the
+// normal), smear, gamma, and the light: bias (cubic) and gain (quadratic) as polynomials of the place.
+struct DirectUnknowns {
+  static constexpr int kVelocity = 6, kChange = 9, kSmear = 12, kGamma = 13, kLight = 14;
+  static constexpr int kBiasTerms = 10, kGainTerms = 6, kLightTerms = kBiasTerms + kGainTerms;
+  static constexpr int kCount = kLight + kLightTerms;
+};
+
+// The light as the fit has it.
+struct FittedLight {
+  float terms[DirectUnknowns::kLightTerms];  // of the bias, and of the gain
+  float gamma = 1;
+  float noise = 1;          // grey levels: what is off by some of it weighs less
+  bool has_weights = true;  // those of the pixels are taken instead
+};
+
+// The unknowns are padded to kProductSize.
+inline constexpr int kProductSize = 32;
+struct ExplainedPixels {
+  alignas(32) float residual[kPixelsTogether], weight[kPixelsTogether];
+  alignas(32) float code[kPixelsTogether];  // the code's part of the grey level, about the middle
+  // The derivatives of the grey level by the unknowns, times the root of the weight.
+  alignas(32) float rows[kPixelsTogether][kProductSize];
 };
 
 [[nodiscard]] bool processor_has_avx2();
@@ -43,9 +75,12 @@ struct SeenLevels {
 void look_at_code(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen);
 void look_at_code_avx2(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen);
 
-// Adds row * row^T of eight rows to the sum, of which the half below the diagonal counts: the unknowns are
-// padded to kProductSize.
-inline constexpr int kProductSize = 32;
+void explain_pixels(const FittedLight& light, const SeenPixels& pixels, const SeenLevels& levels,
+                    ExplainedPixels& explained);
+void explain_pixels_avx2(const FittedLight& light, const SeenPixels& pixels, const SeenLevels& levels,
+                         ExplainedPixels& explained);
+
+// Adds row * row^T of eight rows to the sum, of which the half below the diagonal counts.
 void add_products(const float (&rows)[kPixelsTogether][kProductSize],
                   float (&sum)[kProductSize][kProductSize]);
 void add_products_avx2(const float (&rows)[kPixelsTogether][kProductSize],

@@ -7,6 +7,11 @@ void look_at_code_avx2(const ExposedMoments& code, const LookedAt& at, SeenLevel
   look(code, at, seen);
 }
 
+void explain_pixels_avx2(const FittedLight& light, const SeenPixels& pixels, const SeenLevels& levels,
+                         ExplainedPixels& explained) {
+  explain(light, pixels, levels, explained);
+}
+
 void add_products_avx2(const float (&rows)[kPixelsTogether][kProductSize],
                        float (&sum)[kProductSize][kProductSize]) {
   add_up(rows, sum);

@@ -1,42 +1,12 @@
 // What exposed_kernel.h declares, to be compiled once for each kind of processor: of no use to anyone else.
-// Everything here is in the anonymous namespace and calls nothing that is shared with other files, so that no
-// instruction of one kind gets into the code of the other.
+// Only what lanes.h says may stand here.
 #pragma once
 
 #include "navigation/markers/exposed_kernel.h"
+#include "navigation/markers/lanes.h"
 
 namespace arthronaut::markers {
 namespace {
-
-using Floats = float __attribute__((vector_size(32)));
-using Ints = int __attribute__((vector_size(32)));
-
-inline void load(const float* from, Floats& to) { __builtin_memcpy(&to, from, sizeof to); }
-inline void store(const Floats& from, float* to) { __builtin_memcpy(to, &from, sizeof from); }
-
-// Of the normal distribution: e^(-z^2 / 2) by a power of two, the integral by Abramowitz and Stegun 7.1.26;
-// both to 1e-6.
-inline void normal_at(const Floats& z, Floats& density, Floats& cumulative) {
-  constexpr float kFar = 6;
-  Floats away = z < 0 ? -z : z;
-  away = away > kFar ? Floats{} + kFar : away;
-  const Floats power = -0.72134752F * away * away;
-  const Ints whole = __builtin_convertvector(power - 0.5F, Ints);
-  const Floats part = power - __builtin_convertvector(whole, Floats);
-  const Floats factor =
-      1.0F + part * (0.69314718F +
-                     part * (0.24022651F + part * (0.05550411F + part * (0.00961813F + part * 0.00133336F))));
-  const Ints exponent = (whole + 127) << 23;
-  Floats scale;
-  __builtin_memcpy(&scale, &exponent, sizeof scale);
-  const Floats bell = factor * scale;
-  density = 0.39894228F * bell;
-  const Floats t = 1.0F / (1.0F + 0.23164190F * away);
-  const Floats tail =
-      0.5F * bell * t *
-      (0.254829592F + t * (-0.284496736F + t * (1.421413741F + t * (-1.453152027F + t * 1.061405429F))));
-  cumulative = z < 0 ? tail : 1.0F - tail;
-}
 
 // What the two lines at the ends of a cell make of the three cells along one axis: each line lets the next
 // cell in by the share of the smear that reaches over it. `place` counts cells from the first line.
@@ -149,6 +119,63 @@ inline void look(const ExposedMoments& code, const LookedAt& at, SeenLevels& see
     store(share * out_of_plane[i], seen.by_pose[2 + i]);
     store(share * by_velocity[i], seen.by_velocity[i]);
     store(share * by_change[i], seen.by_change[i]);
+  }
+}
+
+// grey = 255 (light / 255)^(1 / gamma), and light = bias + gain * level of the code.
+inline void explain(const FittedLight& light, const SeenPixels& pixels, const SeenLevels& levels,
+                    ExplainedPixels& explained) {
+  using At = DirectUnknowns;
+  constexpr float kMinLight = 0.3F, kTukey = 4.685F, kFull = 255;
+  Floats grey, x, y, level;
+  load(pixels.grey, grey);
+  load(pixels.place_x, x);
+  load(pixels.place_y, y);
+  load(levels.level, level);
+  const Floats terms[At::kBiasTerms] = {Floats{} + 1.0F, x,         y,         x * x,     x * y,
+                                        y * y,           x * x * x, x * x * y, x * y * y, y * y * y};
+  Floats bias{}, gain{};
+  for (int i = 0; i < At::kBiasTerms; ++i) bias += light.terms[i] * terms[i];
+  for (int i = 0; i < At::kGainTerms; ++i) gain += light.terms[At::kBiasTerms + i] * terms[i];
+  Floats there = bias + gain * level, logarithm, part;
+  there = there > kMinLight ? there : Floats{} + kMinLight;
+  logarithm_of(there / kFull, logarithm);
+  power_of_two(1.44269504F / light.gamma * logarithm, part);
+  const Floats modelled = kFull * part, slope = modelled / (light.gamma * there);
+  const Floats residual = grey - modelled;
+  Floats weight;
+  if (light.has_weights) {
+    load(pixels.weight, weight);
+  } else {
+    const Floats ratio = residual / (kTukey * light.noise), left = 1.0F - ratio * ratio;
+    weight = left > 0.0F ? left * left : Floats{};
+  }
+  Floats root;
+  for (int k = 0; k < kPixelsTogether; ++k) root[k] = weight[k] > 0 ? __builtin_sqrtf(weight[k]) : 0;
+  store(residual, explained.residual);
+  store(weight, explained.weight);
+  store(slope * gain * (level - 0.5F), explained.code);
+  const Floats by_code = root * slope * gain;
+  Floats columns[kProductSize];
+  const auto take = [&](const float* from, int column) {
+    Floats value;
+    load(from, value);
+    columns[column] = by_code * value;
+  };
+  for (int i = 0; i < At::kVelocity; ++i) take(levels.by_pose[i], i);
+  for (int i = 0; i < 3; ++i) take(levels.by_velocity[i], At::kVelocity + i);
+  for (int i = 0; i < 3; ++i) take(levels.by_change[i], At::kChange + i);
+  take(levels.by_smear, At::kSmear);
+  columns[At::kGamma] = -root * modelled * logarithm / (light.gamma * light.gamma);
+  for (int i = 0; i < At::kBiasTerms; ++i) columns[At::kLight + i] = root * slope * terms[i];
+  for (int i = 0; i < At::kGainTerms; ++i)
+    columns[At::kLight + At::kBiasTerms + i] = root * slope * level * terms[i];
+  for (int i = At::kCount; i < kProductSize; ++i) columns[i] = Floats{};
+  for (int first = 0; first < kProductSize; first += kPixelsTogether) {
+    Floats square[kPixelsTogether];
+    for (int i = 0; i < kPixelsTogether; ++i) square[i] = columns[first + i];
+    transpose(square);
+    for (int k = 0; k < kPixelsTogether; ++k) store(square[k], &explained.rows[k][first]);
   }
 }
 

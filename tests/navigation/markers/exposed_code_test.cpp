@@ -86,8 +86,8 @@ TEST(ExposedCode, LooksAsItsDefinitionSays) {
     const LookedAt at = some_rays(pose.camera_from_marker, seed);
     ExposedCode exposed(code, kSize_mm);
     exposed.move(pose, kMoments);
-    std::array<ExposedCode::Level, kPixelsTogether> levels;
-    exposed.look(at, kPixelsTogether, levels.data());
+    SeenLevels levels;
+    exposed.look(at, levels);
     const auto numeric = [&](int i, const auto& changed) {
       constexpr double kStep = 1e-4;
       ExposedPose more = pose, less = pose;
@@ -98,9 +98,9 @@ TEST(ExposedCode, LooksAsItsDefinitionSays) {
              (2 * kStep);
     };
     for (int i = 0; i < kPixelsTogether; ++i) {
-      EXPECT_NEAR(levels[i].level, level_by_definition(code, pose, kMoments, at, i), 0.001);
+      EXPECT_NEAR(levels.level[i], level_by_definition(code, pose, kMoments, at, i), 0.001);
       for (int k = 0; k < 6; ++k) {
-        EXPECT_NEAR(levels[i].by_pose[k],
+        EXPECT_NEAR(levels.by_pose[k][i],
                     numeric(i,
                             [k](ExposedPose& p, double step) {
                               p.camera_from_marker =
@@ -111,15 +111,15 @@ TEST(ExposedCode, LooksAsItsDefinitionSays) {
       }
       for (int k = 0; k < 3; ++k) {
         const int axis = k < 2 ? k : 5;
-        EXPECT_NEAR(levels[i].by_velocity[k],
+        EXPECT_NEAR(levels.by_velocity[k][i],
                     numeric(i, [axis](ExposedPose& p, double step) { p.velocity[axis] += step; }), 0.03);
-        EXPECT_NEAR(levels[i].by_change[k],
+        EXPECT_NEAR(levels.by_change[k][i],
                     numeric(i, [axis](ExposedPose& p, double step) { p.change[axis] += step; }), 0.03);
       }
       const double by_smear = (level_by_definition(code, pose, kMoments, at, i, 1.001) -
                                level_by_definition(code, pose, kMoments, at, i, 0.999)) /
                               0.002;
-      EXPECT_NEAR(levels[i].by_smear, by_smear, 0.03);
+      EXPECT_NEAR(levels.by_smear[i], by_smear, 0.03);
     }
   }
 }
@@ -161,17 +161,96 @@ TEST(ExposedKernel, GivesTheSameBitsOnEveryProcessor) {
   EXPECT_EQ(std::memcmp(plain, wide, sizeof plain), 0);
 }
 
-// 21 rows: two times eight and some. To what single precision leaves of sums of 21.
+struct Fitted {
+  FittedLight light;
+  SeenPixels pixels;
+  SeenLevels levels;
+};
+
+Fitted some_fit(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> share(0, 1);
+  Fitted fit;
+  for (float& term : fit.light.terms) term = 20 * (share(random) - 0.5F);
+  fit.light.terms[0] = 40 + 100 * share(random);
+  fit.light.terms[DirectUnknowns::kBiasTerms] = 80;
+  fit.light.gamma = 1 + share(random);
+  fit.light.noise = 60;
+  fit.light.has_weights = false;
+  for (int i = 0; i < kPixelsTogether; ++i) {
+    fit.pixels.grey[i] = 255 * share(random);
+    fit.pixels.place_x[i] = 2 * share(random) - 1;
+    fit.pixels.place_y[i] = 2 * share(random) - 1;
+    fit.pixels.weight[i] = share(random);
+    fit.levels.level[i] = share(random);
+    fit.levels.by_smear[i] = share(random) - 0.5F;
+    for (auto& part : fit.levels.by_pose) part[i] = share(random) - 0.5F;
+    for (auto& part : fit.levels.by_velocity) part[i] = share(random) - 0.5F;
+    for (auto& part : fit.levels.by_change) part[i] = share(random) - 0.5F;
+  }
+  return fit;
+}
+
+// The grey level is the tone curve of the light; its derivatives by what is put in.
+TEST(ExposedKernel, ExplainsPixelsAsTheToneCurveSays) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    Fitted fit = some_fit(seed);
+    fit.light.has_weights = true;
+    ExplainedPixels explained;
+    explain_pixels(fit.light, fit.pixels, fit.levels, explained);
+    const auto grey = [&](int i, double level, double gamma, double more_bias) {
+      const double x = fit.pixels.place_x[i], y = fit.pixels.place_y[i];
+      const double terms[] = {1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y};
+      double bias = more_bias, gain = 0;
+      for (int k = 0; k < DirectUnknowns::kBiasTerms; ++k) bias += fit.light.terms[k] * terms[k];
+      for (int k = 0; k < DirectUnknowns::kGainTerms; ++k)
+        gain += fit.light.terms[DirectUnknowns::kBiasTerms + k] * terms[k];
+      return 255 * std::pow(std::max(0.3, bias + gain * level) / 255, 1 / gamma);
+    };
+    for (int i = 0; i < kPixelsTogether; ++i) {
+      const double level = fit.levels.level[i], gamma = fit.light.gamma,
+                   root = std::sqrt(fit.pixels.weight[i]);
+      if (grey(i, level, gamma, 0) < 20) continue;  // where the light ends
+      EXPECT_NEAR(explained.residual[i], fit.pixels.grey[i] - grey(i, level, gamma, 0), 1e-3);
+      EXPECT_EQ(explained.weight[i], fit.pixels.weight[i]);
+      const double by_level = (grey(i, level + 1e-4, gamma, 0) - grey(i, level - 1e-4, gamma, 0)) / 2e-4;
+      EXPECT_NEAR(explained.code[i], by_level * (level - 0.5), 0.02);
+      for (int k = 0; k < 6; ++k)
+        EXPECT_NEAR(explained.rows[i][k], root * by_level * fit.levels.by_pose[k][i], 0.02);
+      const double by_gamma = (grey(i, level, gamma + 1e-4, 0) - grey(i, level, gamma - 1e-4, 0)) / 2e-4;
+      EXPECT_NEAR(explained.rows[i][DirectUnknowns::kGamma], root * by_gamma, 0.02);
+      const double by_bias = (grey(i, level, gamma, 1e-3) - grey(i, level, gamma, -1e-3)) / 2e-3;
+      EXPECT_NEAR(explained.rows[i][DirectUnknowns::kLight], root * by_bias, 0.002);
+      EXPECT_EQ(explained.rows[i][DirectUnknowns::kCount], 0);
+    }
+  }
+}
+
+TEST(ExposedKernel, ExplainsPixelsWithTheSameBitsOnEveryProcessor) {
+  if (!processor_has_avx2()) GTEST_SKIP() << "no AVX2 here";
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Fitted fit = some_fit(seed);
+    ExplainedPixels plain, wide;
+    explain_pixels(fit.light, fit.pixels, fit.levels, plain);
+    explain_pixels_avx2(fit.light, fit.pixels, fit.levels, wide);
+    EXPECT_EQ(std::memcmp(&plain, &wide, sizeof plain), 0);
+  }
+}
+
+// To what single precision leaves of sums of 24.
 TEST(ProductSum, AddsProductsOfRows) {
   std::mt19937 random(9);
   std::normal_distribution<float> normal;
   ProductSum products;
   ProductSum::Square expected = ProductSum::Square::Zero();
-  for (int i = 0; i < 21; ++i) {
-    const ProductSum::Row row = ProductSum::Row::NullaryExpr([&] { return normal(random); });
-    products.next() = row;
-    products.add();
-    expected += row * row.transpose();
+  for (int eight = 0; eight < 3; ++eight) {
+    float rows[kPixelsTogether][kProductSize];
+    for (auto& row : rows) {
+      for (float& value : row) value = normal(random);
+      const Eigen::Map<const Eigen::Matrix<float, kProductSize, 1>> column(row);
+      expected += column * column.transpose();
+    }
+    products.add(rows);
   }
   EXPECT_LT((products.take() - expected).cwiseAbs().maxCoeff(), 1e-4F);
   EXPECT_EQ(products.take().cwiseAbs().maxCoeff(), 0);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <random>
 
-#include "navigation/markers/blurred_step.h"
 #include "navigation/markers/code_reader.h"
 #include "tests/navigation/markers/rendered_marker.h"
 
@@ -68,33 +67,6 @@ TEST(EdgeSamples, StandOnTheStepsOfTheCode) {
     const double outermost = std::max(std::abs(sample.x), std::abs(sample.y));
     EXPECT_EQ(sample.side >= 0,
               std::abs(outermost - 0.5) < 1e-12 && std::abs(sample.axis == 0 ? sample.x : sample.y) > 0.49);
-  }
-}
-
-// The tables agree with the integral they stand for, and the derivatives with differences.
-TEST(BlurredStep, MatchesItsDefinition) {
-  const double box = 5, sigma = 1.3;
-  const BlurredStep step(box, sigma);
-  for (double x = -8; x <= 8; x += 0.37) {
-    double level = 0;
-    for (int i = 0; i < 2000; ++i) {
-      const double t = x + box * ((i + 0.5) / 2000 - 0.5);
-      level += 0.5 * std::erfc(-t / sigma / std::sqrt(2.0)) / 2000;
-    }
-    const auto value = step.at(static_cast<float>(x));
-    EXPECT_NEAR(value.level, level, 2e-4) << x;
-    const auto numeric = [&](const BlurredStep& a, const BlurredStep& b, double h) {
-      return (a.at(static_cast<float>(x)).level - b.at(static_cast<float>(x)).level) / (2 * h);
-    };
-    EXPECT_NEAR(
-        value.slope,
-        (step.at(static_cast<float>(x + 0.1)).level - step.at(static_cast<float>(x - 0.1)).level) / 0.2,
-        2e-3);
-    const auto trend = step.trend_at(static_cast<float>(x));
-    EXPECT_NEAR(trend.d_sigma, numeric(BlurredStep(box, sigma + 0.05), BlurredStep(box, sigma - 0.05), 0.05),
-                2e-3);
-    EXPECT_NEAR(trend.d_box, numeric(BlurredStep(box + 0.1, sigma), BlurredStep(box - 0.1, sigma), 0.1),
-                2e-3);
   }
 }
 
