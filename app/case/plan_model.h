@@ -80,9 +80,12 @@ class PlanModel {
   [[nodiscard]] const std::optional<landmarks::Proposal>& proposal(bones::BoneKind kind) const {
     return bones_.at(kind).proposal;
   }
-  // Where the ligament is expected by the norm; nullopt where the landmarks give no grid.
-  [[nodiscard]] const std::optional<norms::ExpectedFootprint>& footprint(bones::BoneKind kind) const {
-    return bones_.at(kind).review.footprint;
+  // Where the ligament, or the bundle, is expected by the norm; null where the landmarks give no grid.
+  // Precondition: has_bone(key.bone).
+  [[nodiscard]] const norms::ExpectedFootprint* footprint(const tunnels::TunnelKey& key) const {
+    const auto& footprints = bones_.at(key.bone).review.footprints;
+    const auto found = footprints.find(key.bundle);
+    return found == footprints.end() ? nullptr : &found->second;
   }
   // A tunnel by norms and landmarks; read the outcome. Takes a moment.
   [[nodiscard]] default_plan::DefaultTunnel default_tunnel(const tunnels::TunnelKey& key,

@@ -25,6 +25,18 @@ std::optional<BoneKind> only_bone_of(scene::ViewDirection view) {
   return std::nullopt;
 }
 
+// Whether the point lies in a closed line, by how often a ray from it crosses.
+bool holds(const std::vector<Eigen::Vector2d>& line, const Eigen::Vector2d& point) {
+  bool is_inside = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const Eigen::Vector2d &a = line[i], &b = line[(i + 1) % line.size()];
+    if ((a.y() > point.y()) != (b.y() > point.y()) &&
+        point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      is_inside = !is_inside;
+  }
+  return is_inside;
+}
+
 }  // namespace
 
 BonePane::BonePane(std::function<void()> make_current) : pane_(std::move(make_current)) {}
@@ -187,6 +199,14 @@ PaneEvent BonePane::draw(const widgets::Ui& ui, const widgets::Rect& area,
   return event;
 }
 
+std::vector<Eigen::Vector2d> BonePane::outline_on_screen(const std::vector<Eigen::Vector3d>& outline_mm,
+                                                         const Eigen::Vector2d& size_px) const {
+  std::vector<Eigen::Vector2d> outline;
+  for (const Eigen::Vector3d& point : outline_mm)
+    if (const auto pixel = scene::project(pane_.camera(), point, size_px)) outline.push_back(*pixel);
+  return outline;
+}
+
 void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
                           const std::vector<PaneMark>& marks, bool is_hovered) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -246,7 +266,11 @@ void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
       draw.AddText(font, font->FontSize, place, is_behind ? kHidden : widgets::kText, word.c_str());
     }
     const bool is_near = std::abs(mouse.x - at.x) < r * 1.4F && std::abs(mouse.y - at.y) < r * 1.4F;
-    if (is_hovered && is_near && !mark.tooltip.empty()) under_mouse = &mark;
+    const bool is_within = !is_near && !is_behind && !mark.area_mm.empty() &&
+                           holds(outline_on_screen(mark.area_mm, size), {mouse.x - area.x, mouse.y - area.y});
+    // What is nearer than an area tells more.
+    if (is_hovered && !mark.tooltip.empty() && (is_near || (is_within && under_mouse == nullptr)))
+      under_mouse = &mark;
     if (!is_one_of_many)
       ui.log.note("plan." + mark.id + "_handle", {at.x - r, at.y - r}, {at.x + r, at.y + r});
   }

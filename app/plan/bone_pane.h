@@ -31,6 +31,7 @@ struct PaneMark {
   ImU32 color = widgets::kText;
   bool can_be_dragged = false;
   std::string tooltip = {};
+  std::vector<Eigen::Vector3d> area_mm = {};  // closed: within it the tooltip is shown, too
 };
 
 struct PaneEvent {
@@ -75,6 +76,8 @@ class BonePane {
   void show();
   [[nodiscard]] std::optional<scene::CutPlane> cut_of_other_bone() const;
   [[nodiscard]] bool is_out_of_sight(const PaneMark& mark) const;
+  [[nodiscard]] std::vector<Eigen::Vector2d> outline_on_screen(const std::vector<Eigen::Vector3d>& outline_mm,
+                                                               const Eigen::Vector2d& size_px) const;
   void draw_marks(const widgets::Ui& ui, const widgets::Rect& area, const std::vector<PaneMark>& marks,
                   bool is_hovered) const;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/plan/plan_view.h"
+#include "app/plan/roof_line.h"
 
 namespace arthronaut::plan {
 
@@ -147,6 +148,27 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
                  history_.apply_landmarks(state_.key.bone, marks, states, "As proposed: " + landmark_title(),
                                           false, widgets::GraphicsWindow::now_s());
                }});
+  actions.add(
+      {"plan.roof",
+       "Lay Blumensaat's line the other way",
+       "From end to end of the roof, as Bernard and Hertel's grid is defined, or along the flat of it "
+       "without "
+       "the hill that stands in two roofs of three (Yahagi 2018): the grid's percentages follow",
+       GLFW_KEY_U,
+       0,
+       false,
+       [this, here] {
+         return here() && state_.key.bone == bones::BoneKind::Femur && with_other_roof(*model_).has_value();
+       },
+       {},
+       [this] {
+         const auto laid = with_other_roof(*model_);
+         history_.apply_landmarks(bones::BoneKind::Femur, laid->landmarks, laid->states,
+                                  laid->line == RoofLine::Flat ? "Lay Blumensaat's line along the flat roof"
+                                                               : "Lay Blumensaat's line from end to end",
+                                  false, widgets::GraphicsWindow::now_s());
+         history_.settle_now();
+       }});
 }
 
 }  // namespace arthronaut::plan

@@ -37,7 +37,8 @@ std::optional<std::size_t> next_proposed(const std::vector<LandmarkRow>& rows, s
 }
 
 std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_case::PlanModel& model,
-                                              bones::BoneKind bone, std::size_t selected) {
+                                              bones::BoneKind bone, std::size_t selected,
+                                              float room_below_px) {
   std::optional<std::size_t> clicked;
   const std::vector<LandmarkRow> rows = landmark_rows(model, bone);
   if (rows.empty()) return clicked;
@@ -49,7 +50,7 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
       ui.theme.body
           ->CalcTextSizeA(ui.theme.body->FontSize, 1e9F, ImGui::GetContentRegionAvail().x, about.c_str())
           .y;
-  ImGui::BeginChild("landmarks", {0, ImGui::GetContentRegionAvail().y - lines - ui.theme.px(252)});
+  ImGui::BeginChild("landmarks", {0, ImGui::GetContentRegionAvail().y - lines - room_below_px});
   const float height = ui.theme.px(34);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ImVec2 at = ImGui::GetCursorScreenPos();

@@ -25,9 +25,10 @@ struct LandmarkRow {
 [[nodiscard]] std::optional<std::size_t> next_proposed(const std::vector<LandmarkRow>& rows,
                                                        std::size_t from);
 
-// Returns the row that was clicked.
+// Leaves so much room below what it says of the selected one. Returns the row that was clicked.
 [[nodiscard]] std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui,
                                                             const open_case::PlanModel& model,
-                                                            bones::BoneKind bone, std::size_t selected);
+                                                            bones::BoneKind bone, std::size_t selected,
+                                                            float room_below_px);
 
 }  // namespace arthronaut::plan

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/plan/edge_words.h"
+#include "app/plan/roof_line.h"
 #include "app/scene/grid_lines.h"
 #include "app/scene/lateral_plane.h"
 #include "app/scene/radiograph.h"
@@ -16,10 +17,15 @@ namespace {
 
 using bones::BoneKind;
 
-constexpr const char* kNormSource =
-    "Yellow: where 13 studies found the ligament's centre, mean and one standard deviation: 28.4 \u00B1 5.1 "
-    "% deep to "
-    "shallow, 35.7 \u00B1 6.9 % high to low (Arthroscopy 2016). Means of studies, no limits of safety.";
+// Of the femur's tunnels; of the whole ligament where none is planned.
+std::vector<scene::NormEllipse> norms_of(const open_case::PlanModel& model,
+                                         const landmarks::FemoralQuadrant& quadrant) {
+  std::vector<scene::NormEllipse> norms;
+  for (const tunnels::TunnelKey& key : model.knee().plan.of(BoneKind::Femur))
+    norms.push_back(scene::norm_ellipse(quadrant, key.bundle));
+  if (norms.empty()) norms.push_back(scene::norm_ellipse(quadrant, norms::Bundle::Whole));
+  return norms;
+}
 
 std::string percent_text(const landmarks::FemoralQuadrant::Percent& percent) {
   return widgets::fixed(percent.deep_shallow, 1) + " % deep to shallow, " +
@@ -69,8 +75,13 @@ void LateralView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
         quadrant->percent_of(plane_.point_at({mouse.x - area.x, mouse.y - area.y}, size_px_));
     // Elsewhere the percentages mean nothing.
     if (percent.deep_shallow >= 0 && percent.deep_shallow <= 100 && percent.high_low >= 0 &&
-        percent.high_low <= 100)
-      widgets::tooltip(ui.theme, percent_text(percent) + "\n" + kNormSource);
+        percent.high_low <= 100) {
+      std::string words =
+          percent_text(percent) +
+          "\nYellow: where studies found it, mean and one standard deviation; no limits of safety.";
+      for (const scene::NormEllipse& norm : norms_of(*model_, *quadrant)) words += "\n" + norm.words;
+      widgets::tooltip(ui.theme, words);
+    }
   }
 }
 
@@ -96,10 +107,17 @@ void LateralView::draw_grid(const widgets::Ui& ui, const widgets::Rect& area) co
     for (const auto& line : lines.rims) draw.AddLine(at(line.front()), at(line.back()), grid, ui.theme.px(3));
     for (const auto& line : lines.divisions)
       draw.AddLine(at(line.front()), at(line.back()), grid, ui.theme.px(1.2F));
-    std::vector<ImVec2> ellipse;
-    for (const Eigen::Vector3d& point : lines.norm) ellipse.push_back(at(point));
-    draw.AddPolyline(ellipse.data(), static_cast<int>(ellipse.size()), norm, ImDrawFlags_Closed,
-                     ui.theme.px(2.5F));
+    for (const scene::NormEllipse& of : norms_of(*model_, *quadrant)) {
+      std::vector<ImVec2> ellipse;
+      for (const Eigen::Vector3d& point : of.outline_mm) ellipse.push_back(at(point));
+      draw.AddPolyline(ellipse.data(), static_cast<int>(ellipse.size()), norm, ImDrawFlags_Closed,
+                       ui.theme.px(2.5F));
+      if (of.bundle == norms::Bundle::Whole) continue;
+      const char* const name = of.bundle == norms::Bundle::Anteromedial ? "AM" : "PL";
+      const ImVec2 center = at(of.center_mm);
+      draw.AddText(ui.theme.body, ui.theme.body->FontSize,
+                   {center.x + ui.theme.px(6), center.y - ui.theme.body->FontSize}, norm, name);
+    }
     // Beside the line's shallow end, away from the grid: which side that is, is the knee's.
     constexpr const char* kLine = "Blumensaat's line";
     const ImVec2 shallow = at(quadrant->point_at({100, 0})), deep = at(quadrant->point_at({0, 0}));
@@ -128,6 +146,7 @@ void LateralView::draw_grid(const widgets::Ui& ui, const widgets::Rect& area) co
       ui.log.note_state("lateral_percent", percents);
     }
   }
+  if (quadrant) text += "\n" + roof_line_in_words(*model_);
   widgets::caption(ui, area, widgets::kText, text);
 }
 

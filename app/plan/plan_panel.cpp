@@ -4,6 +4,7 @@
 
 #include "app/plan/anatomical_text.h"
 #include "app/plan/plan_view.h"
+#include "app/plan/roof_line.h"
 #include "app/widgets/tooltip.h"
 #include "planning/files/utc_clock.h"
 
@@ -248,11 +249,20 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
       draw_tools(ui, panel.key);
       ImGui::Separator();
       break;
-    case PanelPage::Landmarks:
-      clicked.landmark = draw_landmark_list(ui, panel.model, panel.key.bone, panel.landmark);
+    case PanelPage::Landmarks: {
+      // The femur's roof has two lines of words and a button of its own.
+      const bool has_roof =
+          panel.key.bone == bones::BoneKind::Femur && panel.model.has_bone(bones::BoneKind::Femur);
+      clicked.landmark = draw_landmark_list(ui, panel.model, panel.key.bone, panel.landmark,
+                                            ui.theme.px(has_roof ? 378 : 252));
+      if (has_roof) {
+        widgets::text_in(ui.theme.body, widgets::kText, roof_line_in_words(panel.model));
+        widgets::action_button(ui, "plan.roof", ImGui::GetContentRegionAvail().x);
+      }
       button_pair(ui, "plan.landmark_confirm", "plan.landmark_place");
       button_pair(ui, "plan.landmark_reset", "plan.landmark_confirm_all");
       break;
+    }
     case PanelPage::Steps:
       clicked.step = draw_steps(ui, panel.history);
       clicked.version = draw_versions(ui, panel);

@@ -234,7 +234,10 @@ void PlanView::show_content() {
         add_aims(content, *state_.survey, tunnel, model_->drawn_length_mm(key));
     }
     if (!state_.shows_grid) continue;
-    if (const auto& footprint = model_->footprint(kind)) {
+    const std::vector<norms::Bundle> bundles = bundles_shown(kind);
+    for (const norms::Bundle bundle : bundles) {
+      const norms::ExpectedFootprint* footprint = model_->footprint({kind, bundle});
+      if (footprint == nullptr) continue;
       content.lines.push_back({footprint->outline_mm, 0.9, true, kFootprintColor, true});
       content.lines.push_back({footprint->spread_mm, 0.4, true, kFootprintColor, true});
     }
@@ -242,11 +245,16 @@ void PlanView::show_content() {
     const std::optional<scene::ViewDirection> view = bones_.looked_from();
     const bool is_sagittal = view == scene::ViewDirection::Medial || view == scene::ViewDirection::Lateral ||
                              view == scene::ViewDirection::Notch;
+    const auto add_grid = [&](const auto& grid) {
+      std::vector<scene::NormEllipse> norms;
+      for (const norms::Bundle bundle : bundles) norms.push_back(scene::norm_ellipse(grid, bundle));
+      scene::add_grid(content, scene::grid_lines(grid), norms);
+    };
     if (const auto& quadrant = model_->surroundings(kind).quadrant; quadrant && is_sagittal)
-      scene::add_grid(content, scene::grid_lines(*quadrant));
+      add_grid(*quadrant);
     if (const auto& plateau = model_->surroundings(kind).plateau;
         plateau && view == scene::ViewDirection::Plateau)
-      scene::add_grid(content, scene::grid_lines(*plateau));
+      add_grid(*plateau);
   }
   bones_.set_content(std::move(content));
   state_.shown_revision = model_->revision();
@@ -256,7 +264,7 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   if (state_.shows_lateral) {
     lateral_.draw(ui, area);
     widgets::Rect rest = area;
-    rest.cut_top(ui.theme.px(100));  // below its caption, which has a line for each bundle
+    rest.cut_top(ui.theme.px(130));  // below its caption, which has a line for each bundle
     return draw_hint(ui, rest);
   }
   if (auto survey = wanted_survey(); survey != state_.survey) {
@@ -267,6 +275,38 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   follow(bones_.draw(ui, area, marks()));
   draw_survey_legend(ui, area);
   draw_hint(ui, area);
+}
+
+// Whose norms are drawn: those of the bone's tunnels; of what is worked on where none is planned.
+std::vector<norms::Bundle> PlanView::bundles_shown(BoneKind kind) const {
+  std::vector<norms::Bundle> bundles;
+  for (const tunnels::TunnelKey& key : model_->knee().plan.of(kind)) bundles.push_back(key.bundle);
+  if (bundles.empty()) bundles.push_back(key_in(kind).bundle);
+  return bundles;
+}
+
+// What is said of a norm where the mouse stands on it.
+void PlanView::add_norm_marks(std::vector<PaneMark>& marks) const {
+  const BoneKind kind = state_.key.bone;
+  for (const norms::Bundle bundle : bundles_shown(kind)) {
+    const norms::ExpectedFootprint* footprint = model_->footprint({kind, bundle});
+    if (footprint == nullptr) continue;
+    const bool is_whole = bundle == norms::Bundle::Whole;
+    const auto& surroundings = model_->surroundings(kind);
+    marks.push_back(
+        {PaneMark::Shape::Cross, is_whole ? "footprint" : "footprint_" + std::string(norms::to_text(bundle)),
+         "", footprint->center_mm, widgets::color_of(kFootprintColor), false,
+         "Green: the expected footprint" +
+             std::string(is_whole                                ? ""
+                         : bundle == norms::Bundle::Anteromedial ? " of the AM bundle"
+                                                                 : " of the PL bundle") +
+             ", and where its centre lies in two knees of three: " + norms::cited(footprint->norm) +
+             ".\nYellow, in the grid: " +
+             (surroundings.quadrant ? scene::norm_ellipse(*surroundings.quadrant, bundle)
+                                    : scene::norm_ellipse(*surroundings.plateau, bundle))
+                 .words,
+         footprint->outline_mm});
+  }
 }
 
 std::optional<Eigen::Vector3d> PlanView::aim_handle() const {
@@ -282,11 +322,7 @@ std::vector<PaneMark> PlanView::marks() const {
     add_landmark_marks(marks);
     return marks;
   }
-  if (const auto& footprint = model_->footprint(state_.key.bone); footprint && state_.shows_grid)
-    marks.push_back({PaneMark::Shape::Cross, "footprint", "", footprint->center_mm,
-                     widgets::color_of(kFootprintColor), false,
-                     "The expected footprint, and where its centre lies in two knees of three: " +
-                         std::string(footprint->norm.source)});
+  if (state_.shows_grid) add_norm_marks(marks);
   add_map_marks(marks);
   const auto tunnel = model_->tunnel(state_.key);
   if (!tunnel) return marks;

@@ -134,6 +134,8 @@ class PlanView : public mode::Mode {
 
   void show_content();
   [[nodiscard]] std::vector<PaneMark> marks() const;
+  void add_norm_marks(std::vector<PaneMark>& marks) const;
+  [[nodiscard]] std::vector<norms::Bundle> bundles_shown(bones::BoneKind kind) const;
   void follow(const PaneEvent& event);
   [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle() const;
   [[nodiscard]] const geometry::TriangleMesh& tunnel_mesh(const tunnels::TunnelKey& key);

@@ -133,8 +133,12 @@ double Sheet::lateral(double x_mm, double y_mm, double width_mm) {
     const scene::GridLines grid = scene::grid_lines(*quadrant);
     for (const auto& rim : grid.rims) line(picture, rim.front(), rim.back(), 0.35, kGrid);
     for (const auto& division : grid.divisions) line(picture, division.front(), division.back(), 0.15, kGrid);
-    for (std::size_t i = 0; i < grid.norm.size(); ++i)
-      line(picture, grid.norm[i], grid.norm[(i + 1) % grid.norm.size()], 0.3, kNorm);
+    const norms::Bundle bundle =
+        planned(BoneKind::Femur) != nullptr ? planned(BoneKind::Femur)->tunnel.bundle : norms::Bundle::Whole;
+    const scene::NormEllipse norm = scene::norm_ellipse(*quadrant, bundle);
+    for (std::size_t i = 0; i < norm.outline_mm.size(); ++i)
+      line(picture, norm.outline_mm[i], norm.outline_mm[(i + 1) % norm.outline_mm.size()], 0.3, kNorm);
+    caption += ". Yellow: mean and one standard deviation. " + norm.words;
   } else {
     caption += "; no grid, since Blumensaat's line is not marked";
   }
@@ -142,10 +146,8 @@ double Sheet::lateral(double x_mm, double y_mm, double width_mm) {
   if (const auto* femoral = planned(BoneKind::Femur); femoral != nullptr) {
     if (quadrant) {
       const auto percent = quadrant->percent_of(femoral->tunnel.entry_mm);
-      caption += files::format(
-          ". Entry at %.1f %% deep to shallow, %.1f %% high to low; yellow: mean and one "
-          "standard deviation of 13 studies (Arthroscopy 2016)",
-          percent.deep_shallow, percent.high_low);
+      caption += files::format(". Entry at %.1f %% deep to shallow, %.1f %% high to low",
+                               percent.deep_shallow, percent.high_low);
     }
   }
   return picture.height_mm +

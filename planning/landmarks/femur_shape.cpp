@@ -202,6 +202,19 @@ std::optional<Vector3d> extent(const Shape& shape, double sign, const Vector3d& 
   return furthest(found, direction, shape.each_mm2, kExtent_mm);
 }
 
+// Blumensaat's line, and how far the lateral condyle reaches along it and away from it. lateral: 1 where that
+// is +x.
+void put_roof(const Shape& shape, double lateral, Landmarks& marks) {
+  marks["blumensaat_anterior"] = shape.notch.anterior_mm;
+  marks["blumensaat_posterior"] = shape.notch.posterior_mm;
+  const auto put = [&](const char* name, const std::optional<Vector3d>& at) {
+    if (at) marks[name] = *at;
+  };
+  put("lateral_condyle_deep", extent(shape, lateral, -shape.notch.forward));
+  put("lateral_condyle_shallow", extent(shape, lateral, shape.notch.forward));
+  put("lateral_condyle_low", extent(shape, lateral, -shape.notch.into_bone));
+}
+
 }  // namespace
 
 Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions& options) {
@@ -227,8 +240,7 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
   const bool is_plus = lateral > 0;
   const Condyles& condyles = shape->condyles;
   Landmarks& marks = proposal.landmarks;
-  marks["blumensaat_anterior"] = shape->notch.anterior_mm;
-  marks["blumensaat_posterior"] = shape->notch.posterior_mm;
+  put_roof(*shape, lateral, marks);
   marks["notch_apex"] = shape->notch.apex_mm;
   marks["lateral_condyle_posterior"] = is_plus ? condyles.posterior_plus : condyles.posterior_minus;
   marks["medial_condyle_posterior"] = is_plus ? condyles.posterior_minus : condyles.posterior_plus;
@@ -243,15 +255,18 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
   };
   put("lateral_epicondyle", epicondyle(*shape, lateral));
   put("medial_epicondyle", epicondyle(*shape, -lateral));
-  put("lateral_condyle_deep", extent(*shape, lateral, -shape->notch.forward));
-  put("lateral_condyle_shallow", extent(*shape, lateral, shape->notch.forward));
-  put("lateral_condyle_low", extent(*shape, lateral, -shape->notch.into_bone));
   if (shape->shaft) {
     marks["shaft_distal"] = shape->shaft->joint_end_mm;
     marks["shaft_proximal"] = shape->shaft->far_end_mm;
   }
   proposal.roof = shape->notch.shape;
   proposal.hill_mm = shape->notch.hill_mm;
+  const RoofConvention other =
+      options.roof == RoofConvention::Ends ? RoofConvention::Flat : RoofConvention::Ends;
+  if (const auto notch = find_notch(surface, condyles, other)) {
+    shape->notch = *notch;
+    put_roof(*shape, lateral, proposal.by_other_roof);
+  }
   return proposal;
 }
 

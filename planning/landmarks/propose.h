@@ -56,7 +56,9 @@ struct Proposal {
   AnatomicalAxes axes;                       // Origin::FromLandmarks, when Proposed
   RoofShape roof = RoofShape::Straight;      // femur
   double hill_mm = 0;                        // femur: how far the hill stands into the notch
-  std::vector<std::string> doubts;           // why a person should look closer, in sentences
+  // Femur: Blumensaat's line and the extents that follow from it by the convention that was not asked for.
+  Landmarks by_other_roof;
+  std::vector<std::string> doubts;  // why a person should look closer, in sentences
 
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Proposed; }
 };

@@ -19,7 +19,7 @@ ReviewedBone review_bone(const geometry::TriangleMesh& mesh, BoneKind kind, bone
         norms::expected_footprint(mesh, *surface, kind, side, landmarks, norms::default_norm(kind, bundle));
     if (!footprint) continue;
     reviewed.surroundings.footprint_outlines_mm[bundle] = footprint->outline_mm;
-    if (bundle == norms::Bundle::Whole) reviewed.footprint = std::move(footprint);
+    reviewed.footprints.emplace(bundle, std::move(*footprint));
   }
   reviewed.surface = std::move(surface);
   return reviewed;

@@ -19,8 +19,8 @@ namespace arthronaut::plan_review {
 struct ReviewedBone {
   std::shared_ptr<const geometry::Surface> surface;  // never null
   tunnels::PlanSurroundings surroundings;
-  // Of the whole ligament, by the default norm; nullopt where the landmarks give no grid.
-  std::optional<norms::ExpectedFootprint> footprint;
+  // Of the whole ligament and of its bundles, by the default norms; missing where the landmarks give no grid.
+  std::map<norms::Bundle, norms::ExpectedFootprint> footprints;
 };
 // surface: of that mesh, not null.
 [[nodiscard]] ReviewedBone review_bone(const geometry::TriangleMesh& mesh, bones::BoneKind kind,

@@ -20,19 +20,32 @@ TEST(GridLines, OfTheFemurLieAtTheirPercentages) {
   const auto quadrant = landmarks::femoral_quadrant(knee().bones.at(BoneKind::Femur).mesh,
                                                     knee().landmarks.at(BoneKind::Femur), knee().side);
   ASSERT_TRUE(quadrant);
-  const tunnels::PlanNorms norms;
-  const GridLines lines = grid_lines(*quadrant, norms);
+  const GridLines lines = grid_lines(*quadrant);
   EXPECT_EQ(lines.rims.size(), 4U);
   EXPECT_EQ(lines.divisions.size(), 6U);
-  const auto center = quadrant->percent_of(lines.norm_center_mm);
-  EXPECT_NEAR(center.deep_shallow, norms.femur_deep_shallow_percent.center, 1e-9);
-  EXPECT_NEAR(center.high_low, norms.femur_high_low_percent.center, 1e-9);
-  for (const Eigen::Vector3d& point : lines.norm) {
-    const auto percent = quadrant->percent_of(point);
-    EXPECT_NEAR(
-        std::hypot((percent.deep_shallow - center.deep_shallow) / norms.femur_deep_shallow_percent.radius,
-                   (percent.high_low - center.high_low) / norms.femur_high_low_percent.radius),
-        1, 1e-9);
+  // Of the whole ligament and of its bundles, as the studies have them (docs/plan_checks.md names them).
+  struct Study {
+    norms::Bundle bundle;
+    double deep, deep_sd, high, high_sd;
+    std::string words;
+  };
+  for (const Study& study :
+       {Study{norms::Bundle::Whole, 28.4, 5.1, 35.7, 6.9,
+              "Ligament: 28.4 ± 5.1 % deep to shallow, 35.7 ± 6.9 %"},
+        Study{norms::Bundle::Anteromedial, 24.2, 4.0, 21.6, 5.2, "AM bundle: 24.2 ± 4.0 % deep"},
+        Study{norms::Bundle::Posterolateral, 32.8, 4.7, 46.7, 4.9, "PL bundle: 32.8 ± 4.7 % deep"}}) {
+    const NormEllipse norm = norm_ellipse(*quadrant, study.bundle);
+    EXPECT_EQ(norm.words.rfind(study.words, 0), 0U) << norm.words;
+    const auto center = quadrant->percent_of(norm.center_mm);
+    EXPECT_NEAR(center.deep_shallow, study.deep, 1e-9);
+    EXPECT_NEAR(center.high_low, study.high, 1e-9);
+    EXPECT_EQ(norm.outline_mm.size(), 48U);
+    for (const Eigen::Vector3d& point : norm.outline_mm) {
+      const auto percent = quadrant->percent_of(point);
+      EXPECT_NEAR(std::hypot((percent.deep_shallow - study.deep) / study.deep_sd,
+                             (percent.high_low - study.high) / study.high_sd),
+                  1, 1e-9);
+    }
   }
 }
 
@@ -45,7 +58,10 @@ TEST(GridLines, OfTheTibiaLieAtTheirPercentages) {
     EXPECT_NEAR(percent.anterior_posterior, wanted.anterior_posterior, 1e-9);
     EXPECT_NEAR(percent.medial_lateral, wanted.medial_lateral, 1e-9);
   }
-  EXPECT_EQ(grid_lines(*grid).norm.size(), 48U);
+  EXPECT_EQ(grid_lines(*grid).rims.size(), 4U);
+  const NormEllipse posterolateral = norm_ellipse(*grid, norms::Bundle::Posterolateral);
+  EXPECT_NEAR(grid->percent_of(posterolateral.center_mm).anterior_posterior, 48.9, 1e-9);
+  EXPECT_NE(posterolateral.words.find("customary"), std::string::npos) << posterolateral.words;
 }
 
 }  // namespace
