@@ -329,10 +329,11 @@ void PlanView::add_measuring_actions(widgets::Actions& actions) {
   const auto switch_to = [this](MeasuringTool tool) {
     slices_.use(slices_.tool() == tool ? MeasuringTool::None : tool);
   };
-  actions.add({"plan.distance", "Distance", "Click on two points of the slices", GLFW_KEY_D, 0, false,
-               has_slices, [this] { return slices_.tool() == MeasuringTool::Distance; },
+  actions.add({"plan.distance", "Distance", "Drag from one point of the slices to another, or click on both",
+               GLFW_KEY_D, 0, false, has_slices, [this] { return slices_.tool() == MeasuringTool::Distance; },
                [switch_to] { switch_to(MeasuringTool::Distance); }});
-  actions.add({"plan.angle", "Angle", "Click on three points of the slices; the angle is at the second",
+  actions.add({"plan.angle", "Angle",
+               "Click on three points of the slices, or drag along one side; the angle is at the second",
                GLFW_KEY_A, 0, false, has_slices, [this] { return slices_.tool() == MeasuringTool::Angle; },
                [switch_to] { switch_to(MeasuringTool::Angle); }});
   actions.add({"plan.unmeasure",

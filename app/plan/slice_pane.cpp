@@ -158,7 +158,14 @@ SliceEvent SlicePane::follow_mouse(const widgets::Rect& rect, const SliceContent
       event.cross_mm = under_mouse;
     }
   }
-  if (ImGui::IsItemDeactivated() && press_measures_ && press_travel_px_ < 5) event.measured_mm = pressed_mm_;
+  constexpr float kDrag_px = 5;
+  if (ImGui::IsItemDeactivated() && press_measures_) {
+    event.measured_mm = {pressed_mm_};
+    if (press_travel_px_ >= kDrag_px) event.measured_mm.push_back(under_mouse);
+  } else if (content.measures && event.is_hovered) {
+    if (ImGui::IsItemActive() && press_measures_) event.reaching_mm.push_back(pressed_mm_);
+    event.reaching_mm.push_back(under_mouse);
+  }
   if (event.is_hovered && io.MouseWheel != 0) {
     if (content.brush_mm && io.KeyShift) {
       event.brush_steps = io.MouseWheel;

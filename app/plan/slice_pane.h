@@ -50,16 +50,19 @@ struct SliceContent {
   std::vector<SliceLine> lines;
   Eigen::Vector3d cross_mm = Eigen::Vector3d::Zero();
   scene::GreyWindow window;
-  bool measures = false;  // a click sets a point instead of the cross-hair
+  bool measures = false;  // a click sets a point instead of the cross-hair, a drag two
   const SliceLabels* labels = nullptr;
   std::optional<double> brush_mm =
       {};  // radius; the left button then paints instead of moving the cross-hair
 };
 
 struct SliceEvent {
-  std::optional<Eigen::Vector3d> cross_mm;     // where the cross-hair is wanted
-  std::optional<scene::GreyWindow> window;     // while it is dragged
-  std::optional<Eigen::Vector3d> measured_mm;  // a point that was clicked
+  std::optional<Eigen::Vector3d> cross_mm;  // where the cross-hair is wanted
+  std::optional<scene::GreyWindow> window;  // while it is dragged
+  // Set just now: the point that was clicked, or both ends of what was dragged.
+  std::vector<Eigen::Vector3d> measured_mm;
+  // While one measures: where the button was pressed and is held, and where the mouse is.
+  std::vector<Eigen::Vector3d> reaching_mm;
   // How far the brush was drawn over the slice, and whether the button was pressed just now.
   struct Painted {
     Eigen::Vector3d from_mm = Eigen::Vector3d::Zero(), to_mm = Eigen::Vector3d::Zero();

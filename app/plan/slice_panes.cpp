@@ -98,8 +98,7 @@ void SlicePanes::use(MeasuringTool tool) {
 }
 
 std::optional<std::vector<Eigen::Vector3d>> SlicePanes::take_measured() {
-  const std::size_t wanted = tool_ == MeasuringTool::Angle ? 3 : 2;
-  if (tool_ == MeasuringTool::None || points_mm_.size() < wanted) return std::nullopt;
+  if (tool_ == MeasuringTool::None || points_mm_.size() < points_asked()) return std::nullopt;
   return std::exchange(points_mm_, {});
 }
 
@@ -110,14 +109,20 @@ void SlicePanes::draw(const widgets::Ui& ui, const std::array<widgets::Rect, 3>&
   content.cross_mm = cross_mm_;
   content.window = window_;
   content.measures = tool_ != MeasuringTool::None;
-  if (!points_mm_.empty()) content.lines.push_back({points_mm_, ""});
+  std::vector<Eigen::Vector3d> line = points_mm_;
+  line.insert(line.end(), reaching_mm_.begin(), reaching_mm_.end());
+  if (!line.empty()) content.lines.push_back({line, ""});
+  reaching_mm_.clear();
   constexpr std::array<const char*, 3> kNames{"plan.axial_slice", "plan.coronal_slice",
                                               "plan.sagittal_slice"};
   for (std::size_t i = 0; i < 3; ++i) {
     const SliceEvent event = panes_[i].draw(ui, kNames[i], areas[i], content);
     if (event.cross_mm) cross_mm_ = *event.cross_mm;
     if (event.window) window_ = *event.window;
-    if (event.measured_mm) points_mm_.push_back(*event.measured_mm);
+    // A drag that does not fit what was begun is a measurement of its own.
+    if (points_mm_.size() + event.measured_mm.size() > points_asked()) points_mm_.clear();
+    points_mm_.insert(points_mm_.end(), event.measured_mm.begin(), event.measured_mm.end());
+    if (!event.reaching_mm.empty()) reaching_mm_ = event.reaching_mm;
     if (event.value) {
       const std::string text = widgets::fixed(*event.value, 0) + (volume_->modality == "CT" ? " HU" : "");
       ImFont* font = ui.theme.body;

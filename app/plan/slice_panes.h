@@ -62,6 +62,7 @@ class SlicePanes {
     std::string failure;
   };
   void stop_loading();
+  [[nodiscard]] std::size_t points_asked() const { return tool_ == MeasuringTool::Angle ? 3 : 2; }
 
   std::function<void()> wake_;
   std::vector<cases::CaseImage> images_;
@@ -75,7 +76,8 @@ class SlicePanes {
   geometry::Bounds joint_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   Eigen::Vector3d cross_mm_ = Eigen::Vector3d::Zero();
   MeasuringTool tool_ = MeasuringTool::None;
-  std::vector<Eigen::Vector3d> points_mm_;  // of the measurement that is being made
+  std::vector<Eigen::Vector3d> points_mm_;    // of the measurement that is being made
+  std::vector<Eigen::Vector3d> reaching_mm_;  // from there to the mouse
   std::array<SlicePane, 3> panes_;
 };
 

@@ -218,6 +218,13 @@ TEST_F(PlanWindow, SlicesAreScrolledWindowedAndMeasuredIn) {
   app.press("ctrl+z");
   ASSERT_TRUE(app.wait_for_state("measured", ""));
   EXPECT_TRUE(cases::load_measurements(folder).empty());
+  // The same by a drag.
+  app.drag(slice.x + slice.width / 4, slice.y + slice.height / 2, slice.x + slice.width / 2,
+           slice.y + slice.height / 2);
+  ASSERT_TRUE(app.wait_for_state("undo", "Measure a distance"));
+  const auto dragged = cases::load_measurements(folder);
+  ASSERT_EQ(dragged.size(), 1U);
+  EXPECT_NEAR(dragged[0].distance_mm(), measured[0].distance_mm(), 0.1);
 }
 
 // One key puts the images in the bones' place, another moves the threshold; the next presses show the soft
