@@ -233,6 +233,7 @@ void refuse_export(const std::string& folder) {
   if (cases::is_own_file(std::filesystem::path(folder) / "plan.json"))
     throw InvalidInput(folder, "", "is a case's own folder: the export needs another one");
   files::refuse_unwritable(folder);
+  plan_export::refuse_foreign(folder);
 }
 
 void export_to(const PlanArguments& arguments, Context& context, const cases::Case& knee) {
@@ -291,8 +292,8 @@ void add_plan_command(CLI::App& app, Context& context) {
           ->excludes(remove);
   sub->add_option(
          "--export", arguments->export_folder,
-         "Folder for plan.json, plan.csv, plan.mrk.json and the drilled bones, in place of an earlier "
-         "export; no case's")
+         "Folder for plan.json, plan.csv, plan.mrk.json and the drilled bones (STL and PLY), in place of an "
+         "earlier export; no case's, and nothing that another program changed or wrote")
       ->check(a_file());
   auto* json =
       sub->add_flag("--json", arguments->as_json, "Print the tunnel as JSON, without --bone every tunnel");

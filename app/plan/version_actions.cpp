@@ -69,7 +69,7 @@ void PlanView::add_version_actions(widgets::Actions& actions) {
       {"plan.export",
        "Export",
        "For other programs, into the folder \"export\" of the case: the plan as JSON, CSV and markups of 3D "
-       "Slicer, the drilled bones as STL",
+       "Slicer, the drilled bones as STL and PLY",
        GLFW_KEY_E,
        GLFW_MOD_CONTROL,
        false,

@@ -1,4 +1,4 @@
-// Inner header: plan.json as a part of the case, between the files of this room.
+// plan.json by itself, as a part of a case and of an export. For cases case.h has what is needed.
 #pragma once
 
 #include <filesystem>

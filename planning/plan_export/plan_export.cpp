@@ -1,11 +1,13 @@
 #include "planning/plan_export/plan_export.h"
 
-#include <cerrno>
-#include <cstring>
+#include <algorithm>
+#include <array>
 #include <map>
+#include <string_view>
 #include <system_error>
 
 #include "planning/bones/mesh_file.h"
+#include "planning/cases/plan_file.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
 #include "planning/files/remove_file.h"
@@ -21,16 +23,33 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path drilled_file(const fs::path& folder, bones::BoneKind kind) {
-  return folder / (std::string(bones::to_text(kind)) + "_drilled.stl");
+constexpr std::string_view kColumns =
+    "bone,entry_x_mm,entry_y_mm,entry_z_mm,direction_x,direction_y,direction_z,diameter_mm,"
+    "exit_x_mm,exit_y_mm,exit_z_mm,length_mm,wall_mm,bundle\n";
+
+std::array<fs::path, 2> drilled_files(const fs::path& folder, bones::BoneKind kind) {
+  const std::string name = std::string(bones::to_text(kind)) + "_drilled";
+  return {folder / (name + ".stl"), folder / (name + ".ply")};
+}
+
+// As far as a file rounds them.
+bool are_the_same(const std::map<tunnels::TunnelKey, tunnels::Tunnel>& a,
+                  const std::map<tunnels::TunnelKey, tunnels::Tunnel>& b) {
+  constexpr double kRounding_mm = 1e-3, kRounding = 1e-5;
+  return a.size() == b.size() && std::ranges::all_of(a, [&](const auto& planned) {
+           const auto other = b.find(planned.first);
+           if (other == b.end()) return false;
+           const tunnels::Tunnel &one = planned.second, &two = other->second;
+           return (one.entry_mm - two.entry_mm).norm() < kRounding_mm &&
+                  (one.direction - two.direction).norm() < kRounding &&
+                  std::abs(one.diameter_mm - two.diameter_mm) < kRounding_mm;
+         });
 }
 
 }  // namespace
 
 std::string plan_csv(const cases::Case& knee) {
-  std::string text =
-      "bone,entry_x_mm,entry_y_mm,entry_z_mm,direction_x,direction_y,direction_z,diameter_mm,"
-      "exit_x_mm,exit_y_mm,exit_z_mm,length_mm,wall_mm,bundle\n";
+  std::string text(kColumns);
   for (const auto& [key, tunnel] : knee.plan.tunnels) {
     const auto& e = tunnel.entry_mm;
     const auto& d = tunnel.direction;
@@ -53,10 +72,23 @@ std::string plan_csv(const cases::Case& knee) {
   return text;
 }
 
+void refuse_foreign(const fs::path& folder) {
+  const fs::path plan_file = folder / "plan.json", csv = folder / "plan.csv",
+                 markups = folder / "plan.mrk.json";
+  cases::Plan plan;
+  if (fs::exists(plan_file)) plan = cases::plan_from(files::read_text(plan_file), plan_file);
+  if (fs::exists(csv) && !files::read_text(csv).starts_with(kColumns))
+    throw InvalidInput(csv, "", "is another program's: export into another folder");
+  if (fs::exists(markups) && !are_the_same(read_markups(markups).tunnels, plan.tunnels))
+    throw InvalidInput(markups, "",
+                       "was changed by another program since it was exported: read it back, or move it away");
+}
+
 ExportSummary export_plan(const cases::Case& knee, const fs::path& folder) {
   if (knee.plan.tunnels.empty())
     throw InvalidInput("plan: nothing is planned, so there is nothing to export");
   files::refuse_unwritable(folder);  // drilling takes half a minute
+  refuse_foreign(folder);
   ExportSummary summary;
   std::map<bones::BoneKind, geometry::TriangleMesh> drilled;
   for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
@@ -86,14 +118,17 @@ ExportSummary export_plan(const cases::Case& knee, const fs::path& folder) {
   if (error || !fs::is_directory(folder)) throw IoError(folder, "cannot make the folder: " + error.message());
   // What an earlier plan left drilled would pass for this one's.
   for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
-    if (!drilled.contains(kind)) files::remove_file(drilled_file(folder, kind));
+    if (!drilled.contains(kind))
+      for (const fs::path& file : drilled_files(folder, kind)) files::remove_file(file);
   cases::save_plan(folder, knee.plan);
   files::write_atomically(folder / "plan.csv", csv);
   files::write_atomically(folder / "plan.mrk.json", markups);
   summary.files = {folder / "plan.json", folder / "plan.csv", folder / "plan.mrk.json"};
   for (const auto& [kind, mesh] : drilled) {
-    summary.files.push_back(drilled_file(folder, kind));
-    bones::write_mesh_stl(summary.files.back(), mesh);
+    const auto [stl, ply] = drilled_files(folder, kind);
+    bones::write_mesh_stl(stl, mesh);
+    bones::write_mesh_ply(ply, mesh);
+    summary.files.insert(summary.files.end(), {stl, ply});
   }
   return summary;
 }

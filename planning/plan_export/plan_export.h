@@ -1,5 +1,5 @@
-// The plan for other programs, in a folder: plan.json as in the case, plan.csv, the drilled bones as STL, and
-// 3D Slicer's markups.
+// The plan for other programs, in a folder: plan.json as in the case, plan.csv, the drilled bones as STL and
+// PLY, and 3D Slicer's markups.
 #pragma once
 
 #include <filesystem>
@@ -16,11 +16,16 @@ struct ExportSummary {
   std::vector<std::string> doubts;  // a tunnel that is not of this mesh, a bone that could not be drilled
 };
 
-// Writes plan.json, plan.csv, plan.mrk.json and, of every bone that is planned on, femur_drilled.stl or
-// tibia_drilled.stl (LPS, mm); one of an earlier plan that this one does not drill is removed. Everything is
-// computed before anything is written, each file whole or not at all; the folder is made where needed. Throws
-// InvalidInput when nothing is planned, IoError.
+// Writes plan.json, plan.csv, plan.mrk.json and, of every bone that is planned on, femur_drilled.stl and .ply
+// or tibia_drilled.stl and .ply (LPS, mm); one of an earlier plan that this one does not drill is removed.
+// Everything is computed before anything is written, each file whole or not at all; the folder is made where
+// needed. Throws InvalidInput when nothing is planned, and as refuse_foreign() does; IoError.
 [[nodiscard]] ExportSummary export_plan(const cases::Case& knee, const std::filesystem::path& folder);
+
+// An earlier export is written over, nothing else. Throws InvalidInput, which names the file, where one of
+// these names is another program's: a plan.json that is no plan, a plan.csv of other columns, and a
+// plan.mrk.json whose tunnels were moved since, which somebody may still want to read back.
+void refuse_foreign(const std::filesystem::path& folder);
 
 // One row a tunnel, header first: bone, entry, direction, diameter, exit, length, wall (empty where the
 // tunnel misses), bundle (single, am, pl).

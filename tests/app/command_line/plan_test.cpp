@@ -151,8 +151,8 @@ TEST_F(PlanCommand, Hazard46SaysWhatSpokeAgainstTheBone) {
 TEST_F(PlanCommand, ExportsPlanAndDrilledBones) {
   const auto result = run({"plan", "--export", folder_ / "out"});
   EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
-  for (const char* file :
-       {"plan.json", "plan.csv", "plan.mrk.json", "femur_drilled.stl", "tibia_drilled.stl"})
+  for (const char* file : {"plan.json", "plan.csv", "plan.mrk.json", "femur_drilled.stl", "femur_drilled.ply",
+                           "tibia_drilled.stl", "tibia_drilled.ply"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
   // What another program reads is the document alone.
   const auto json = run({"plan", "--bone", "femur", "--json", "--export", folder_ / "again"});

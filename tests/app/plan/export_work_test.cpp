@@ -33,9 +33,9 @@ TEST(ExportWork, WritesThePlanAndSaysWhere) {
   const cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "export");
   const ExportOutcome outcome = outcome_of(knee, folder / "Knee.arthro");
   EXPECT_TRUE(outcome.is_written);
-  EXPECT_THAT(outcome.in_words(7),
-              StartsWith("Exported into " + (folder / "Knee.arthro/export").string() +
-                         ": plan.json plan.csv plan.mrk.json femur_drilled.stl tibia_drilled.stl"));
+  EXPECT_THAT(outcome.in_words(7), StartsWith("Exported into " + (folder / "Knee.arthro/export").string() +
+                                              ": plan.json plan.csv plan.mrk.json femur_drilled.stl "
+                                              "femur_drilled.ply tibia_drilled.stl tibia_drilled.ply"));
   EXPECT_TRUE(std::filesystem::exists(folder / "Knee.arthro/export/plan.mrk.json"));
 }
 

@@ -1,5 +1,6 @@
 #include "planning/plan_export/plan_export.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,6 +16,7 @@
 #include "planning/phantom/phantom_knee.h"
 #include "planning/plan_export/drilled_bone.h"
 #include "planning/plan_export/markups_file.h"
+#include "tests/message_of.h"
 #include "tests/planning/geometry/shapes.h"
 #include "tests/temporary_folder.h"
 
@@ -57,7 +59,7 @@ TEST(PlanExport, WritesWhatIsReadBackTheSame) {
   const auto knee = knee_case();
   const auto summary = export_plan(knee, folder.path() / "out");
   EXPECT_TRUE(summary.doubts.empty()) << summary.doubts[0];
-  ASSERT_EQ(summary.files.size(), 5u);
+  ASSERT_EQ(summary.files.size(), 7u);
   for (const auto& file : summary.files) EXPECT_TRUE(std::filesystem::exists(file)) << file;
   const auto table = files::CsvTable::read(summary.files[1], {"bone", "entry_x_mm", "length_mm", "wall_mm"});
   EXPECT_EQ(table.row_count(), 2u);
@@ -71,6 +73,10 @@ TEST(PlanExport, WritesWhatIsReadBackTheSame) {
   }
   // Less bone than before, by about the tunnel.
   const auto femur = bones::read_mesh(folder.path() / "out" / "femur_drilled.stl");
+  const auto as_ply = bones::read_mesh(folder.path() / "out" / "femur_drilled.ply");
+  EXPECT_EQ(as_ply.triangles.size(), femur.triangles.size());
+  EXPECT_NEAR(geometry::signed_volume_mm3(as_ply), geometry::signed_volume_mm3(femur), 0.1);
+  EXPECT_TRUE(bones::mend_mesh(as_ply).report.is_closed);
   const auto& tunnel = knee.plan.tunnels.at(BoneKind::Femur);
   const double length =
       tunnels::measure(tunnel, geometry::Surface(knee.bones.at(BoneKind::Femur).mesh)).length_mm;
@@ -90,8 +96,37 @@ TEST(PlanExport, LeavesNoBoneDrilledByAnEarlierPlan) {
   const auto summary = export_plan(knee, folder.path());
   EXPECT_EQ(summary.files.size(), 3U);
   EXPECT_FALSE(summary.doubts.empty());
-  for (const char* name : {"femur_drilled.stl", "tibia_drilled.stl"})
+  for (const char* name :
+       {"femur_drilled.stl", "tibia_drilled.stl", "femur_drilled.ply", "tibia_drilled.ply"})
     EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+}
+
+// What another program wrote or moved in that folder is not lost to an export.
+TEST(PlanExport, WritesOverNothingOfAnotherProgram) {
+  const test::TemporaryFolder folder;
+  auto knee = knee_case();
+  const auto refusal = [&] {
+    return test::message_of<InvalidInput>([&] { (void)export_plan(knee, folder.path()); });
+  };
+  (void)export_plan(knee, folder.path());
+  // Its own export may be replaced, also by another plan.
+  knee.plan.tunnels.at(BoneKind::Femur).diameter_mm += 1;
+  EXPECT_NO_THROW((void)export_plan(knee, folder.path()));
+  // The femoral entry was dragged in 3D Slicer and saved in the same place.
+  auto moved = knee;
+  moved.plan.tunnels.at(BoneKind::Femur).entry_mm.x() += 2;
+  const std::string of_slicer = markups_of(moved);
+  files::write_atomically(folder / "plan.mrk.json", of_slicer);
+  EXPECT_THAT(refusal(), testing::HasSubstr("plan.mrk.json: was changed by another program"));
+  EXPECT_EQ(files::read_text(folder / "plan.mrk.json"), of_slicer);
+  std::filesystem::remove(folder / "plan.mrk.json");
+  EXPECT_NO_THROW((void)export_plan(knee, folder.path()));
+  files::write_atomically(folder / "plan.csv", "date,drug\n");
+  EXPECT_THAT(refusal(), testing::HasSubstr("plan.csv: is another program's"));
+  std::filesystem::remove(folder / "plan.csv");
+  files::write_atomically(folder / "plan.json", "{}");
+  EXPECT_THAT(refusal(), testing::HasSubstr("plan.json"));
+  EXPECT_EQ(files::read_text(folder / "plan.json"), "{}");
 }
 
 TEST(PlanExport, RefusesAnEmptyPlan) {
