@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace arthronaut::importing {
 namespace {
 
@@ -32,6 +34,19 @@ TEST(BoneQuality, IsGoodOnlyWhereNothingSpeaksAgainstIt) {
   quality.doubts = {"it has one condyle"};
   EXPECT_EQ(quality_lines(quality).back().text, "it has one condyle");
   EXPECT_EQ(verdicts().back(), QualityVerdict::Caution);
+}
+
+// Of an MR: what is dark about the surface, and how thick.
+TEST(BoneQuality, SaysHowMuchCortexLiesOutside) {
+  BoneQuality quality;
+  EXPECT_THAT(quality_lines(quality),
+              testing::Not(testing::Contains(testing::Field(&QualityLine::name, "Cortex"))));
+  quality.cortex_outside_mm = 1.24;
+  const auto lines = quality_lines(quality);
+  const auto cortex = std::ranges::find(lines, "Cortex", &QualityLine::name);
+  ASSERT_NE(cortex, lines.end());
+  EXPECT_EQ(cortex->verdict, QualityVerdict::Caution);
+  EXPECT_THAT(cortex->text, HasSubstr("1.2 mm"));
 }
 
 }  // namespace
