@@ -52,6 +52,9 @@ class Mode {
   virtual void leave() {}                 // another mode comes to the front, or the program ends
   virtual void tick(double /*now_s*/) {}  // once a frame, shown or not, before anything is drawn
   virtual void draw(const widgets::Ui& ui, const widgets::Rect& area) = 0;
+  // What draw() made last stands on the screen now. Called after every frame while the mode is in front, also
+  // where a page of the window covered it.
+  virtual void on_screen() {}
 
   // Where in the window this mode wants what every screen must say (where the pictures come from, whose knee
   // it is): it takes the whole window then, and there are no bars. nullopt: it is content with what the bars

@@ -67,6 +67,7 @@ void NavigateView::note_states(const widgets::Ui& ui, const NavigateScreen& scre
   ui.log.note_state("plan", live_->operation->plan_was_edited ? "edited" : "in force");
   ui.log.note_state("registrations", std::to_string(registration().history->size()));
   ui.log.note_state("strokes", std::to_string(words_.strokes.size()));
+  ui.log.note_state("draws", live_->operation->draws ? "yes" : "no");
   ui.log.note_state("recording", live_->keeps_video ? "on" : "off");
   ui.log.note_state("pictures", std::string(recording::to_option(bones_.pictures_as())));
   ui.log.note_state("journal", live_->record_trouble.empty() ? live_->session_folder.filename().string()

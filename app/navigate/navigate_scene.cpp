@@ -23,10 +23,8 @@ std::string caption_of(const NavigateScreen& screen, bool asks) {
   return bone + (has_strokes ? ": plan, and what was touched" : ": plan; what is touched will show here");
 }
 
-}  // namespace
-
-NavigateScene::Shown NavigateScene::shown_of(const NavigateScreen& screen) {
-  Shown shown;
+ShownScene shown_of(const NavigateScreen& screen) {
+  ShownScene shown;
   shown.drawn_bone = screen.drawn_bone;
   if (screen.plan) {
     const Eigen::Vector3d &entry = screen.plan->entry_mm, &direction = screen.plan->direction;
@@ -49,27 +47,28 @@ NavigateScene::Shown NavigateScene::shown_of(const NavigateScreen& screen) {
   return shown;
 }
 
-void NavigateScene::show(const NavigateScreen& screen) {
-  Shown shown = shown_of(screen);
-  if (shown == shown_) return;
-  shown_ = std::move(shown);
+}  // namespace
+
+void NavigateScene::show(const widgets::Ui& ui, const NavigateScreen& screen) {
+  if (!renewal_.is_due(shown_of(screen), ui.now_s, ui.by_processor)) return;
+  const ShownScene& shown = renewal_.shown();
   scene::SceneContent content;
   content.bones.push_back({screen.drawn_bone, scene::kBoneColor, 1.0});
   if (screen.plan) scene::add_planned_tunnel(content, *screen.plan, screen.planned_length_mm);
-  if (shown_.registration != nullptr) {
-    const operation::RegistrationState& bone = *shown_.registration;
-    touched_.add_strokes(content, bone, *screen.surface, shown_.selected_stroke);
-    if (shown_.tip_frame >= 0)
+  if (shown.registration != nullptr) {
+    const operation::RegistrationState& bone = *shown.registration;
+    touched_.add_strokes(content, bone, *screen.surface, shown.selected_stroke);
+    if (shown.tip_frame >= 0)
       content.balls.push_back(
           {bone.in_force.registration->marker_from_bone.inverse() * screen.frame().tip_in_world_mm, 2.5,
            scene::kGuideColor, false});
-    if (asks_for_strokes(shown_.layout, &bone)) {
+    if (asks_for_strokes(shown.layout, &bone)) {
       add_patches(content, bone.online->coach);
       if (bone.online->coach.next_patch_in_bone_mm)
         content.balls.push_back({*bone.online->coach.next_patch_in_bone_mm, 5, scene::kAchievedColor, false});
     }
   }
-  if (shown_.guide_frame >= 0) {
+  if (shown.guide_frame >= 0) {
     const guidance::GuidanceNumbers& g = screen.display.guidance;
     scene::add_guide(content, g.guide_point_mm, g.guide_direction, std::max(screen.planned_length_mm, 5.0));
   }
@@ -78,12 +77,15 @@ void NavigateScene::show(const NavigateScreen& screen) {
 
 void NavigateScene::draw(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
   if (screen.drawn_bone == nullptr) return;
-  show(screen);
+  show(ui, screen);
+  // Beside pictures that come, a key would wait for the large one.
+  pane_.smooth_at_rest(!ui.by_processor || screen.live == nullptr || !is_under_way(*screen.live));
   pane_.draw(ui, "navigate.view", area);
+  const ShownScene& shown = renewal_.shown();
   // A guide that is not known is amiss only while it is to be followed.
-  const bool is_missed = shown_.layout == NavigateLayout::Guide && !screen.display.guidance_is_valid;
+  const bool is_missed = shown.layout == NavigateLayout::Guide && !screen.display.guidance_is_valid;
   // In a pane too narrow for all of it, which bone it is.
-  std::string caption = caption_of(screen, asks_for_strokes(shown_.layout, shown_.registration.get()));
+  std::string caption = caption_of(screen, asks_for_strokes(shown.layout, shown.registration.get()));
   ImFont* const font = ui.theme.strong;
   if (font->CalcTextSizeA(font->FontSize, 1e9F, 0, caption.c_str()).x > area.width - ui.theme.px(28))
     caption = caption.substr(0, caption.find_first_of(":."));

@@ -345,11 +345,14 @@ void NavigateView::tick(double /*now_s*/) {
   sound(theatre::LiveOperation::now_s());
 }
 
+void NavigateView::on_screen() {
+  const theatre::LiveStatePtr seen = std::exchange(drawn_, nullptr);
+  if (auto* const shows = bones_.known(choices_.bone); shows != nullptr && seen) shows->shown(*seen);
+}
+
 void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   // The bone is made ready for registration as soon as this mode is looked at.
   if (model_ != nullptr && model_->has_bone(choices_.bone)) (void)bones_.operation(choices_.bone);
-  // What was drawn last is on the screen by now.
-  if (auto* const shows = bones_.known(choices_.bone); shows != nullptr && drawn_) shows->shown(*drawn_);
   read_live();
   drawn_ = live_;
   const double now = theatre::LiveOperation::now_s();

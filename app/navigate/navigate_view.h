@@ -43,6 +43,7 @@ class NavigateView : public mode::Mode {
   void add_actions(widgets::Actions& actions) override;
   void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
+  void on_screen() override;
   // While pictures come, or have come, nothing but them and what belongs to them is on the screen.
   [[nodiscard]] std::optional<widgets::Rect> header_in(const widgets::Ui& ui,
                                                        const widgets::Rect& window) const override;
@@ -149,7 +150,7 @@ class NavigateView : public mode::Mode {
   bool stream_is_new_ = false;               // that, and it gave no picture yet
   std::string patient_;                      // in words; empty: not known
   NavigateChoices choices_;
-  theatre::LiveStatePtr drawn_;                           // in the frame before; null before the first
+  theatre::LiveStatePtr drawn_;                           // and not told to be on the screen yet; else null
   theatre::LiveStatePtr live_ = TheatreBones::nothing();  // of this frame, of the chosen bone; never null
   RegistrationWords words_;                               // of its registration
   std::optional<SimulatedPart> part_;                     // of the simulation that was started last

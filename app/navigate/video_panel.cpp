@@ -9,13 +9,26 @@ namespace arthronaut::navigate {
 
 namespace {
 
+constexpr ImU32 kBlack = IM_COL32(0, 0, 0, 255);
+
+// Black between picture and edge, and not under the picture: what is covered costs as much.
+void fill_around(ImDrawList& draw, const widgets::Rect& area, const widgets::Rect& picture) {
+  const ImVec2 a = area.min(), b = area.max(), p = picture.min(), q = picture.max();
+  draw.AddRectFilled(a, {b.x, p.y}, kBlack);
+  draw.AddRectFilled({a.x, q.y}, b, kBlack);
+  draw.AddRectFilled({a.x, p.y}, {p.x, q.y}, kBlack);
+  draw.AddRectFilled({q.x, p.y}, {b.x, q.y}, kBlack);
+}
+
 // The picture fills as much of the area as its shape allows; returns where its pixels stand.
 struct DrawnPicture {
   widgets::Rect area;
   widgets::PicturePlacement placement;
 };
 
-DrawnPicture draw_picture(const widgets::Rect& area, const NavigateScreen& screen, VideoTextures& textures) {
+DrawnPicture draw_picture(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen,
+                          VideoTextures& textures) {
+  const widgets::WidgetLog::Timed timed(ui.log, "video_ms");
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const theatre::LiveState& live = *screen.live;
   const ImU32 tint =
@@ -25,7 +38,11 @@ DrawnPicture draw_picture(const widgets::Rect& area, const NavigateScreen& scree
     draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), at.min(), at.max(),
                   uv_min, uv_max, tint);
   };
-  textures.raw.upload(live.picture);
+  const widgets::Rect part =
+      widgets::shown_part(screen.options().calibration.boundary, live.picture->width, live.picture->height);
+  ui.log.add("uploaded_bytes", static_cast<double>(textures.raw.upload(live.picture, part)));
+  ui.log.add("picture", static_cast<double>(live.picture->index));
+  ui.log.add("captured_s", live.captured_s);
   if (screen.undistorts) {
     // Whole pixels: the texture is drawn one to one.
     widgets::Rect square = widgets::fitted(area, 1);
@@ -35,12 +52,8 @@ DrawnPicture draw_picture(const widgets::Rect& area, const NavigateScreen& scree
     put(textures.undistorted.texture(), square, {0, 0}, {1, 1});
     return {square, {square, screen.frame().camera, textures.undistorted.view()}};
   }
-  const float w = static_cast<float>(textures.raw.width()), h = static_cast<float>(textures.raw.height());
-  const widgets::Rect part =
-      widgets::shown_part(screen.options().calibration.boundary, textures.raw.width(), textures.raw.height());
   const widgets::Rect picture = widgets::fitted(area, part.width / part.height);
-  put(textures.raw.texture(), picture, {part.x / w, part.y / h},
-      {(part.x + part.width) / w, (part.y + part.height) / h});
+  put(textures.raw.texture(), picture, textures.raw.place_of(part.min()), textures.raw.place_of(part.max()));
   return {picture, {picture, part}};
 }
 
@@ -55,10 +68,10 @@ const PictureLines& NavigateScreen::lines() const {
 void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen,
                 VideoTextures& textures) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.AddRectFilled(area.min(), area.max(), IM_COL32(0, 0, 0, 255), ui.theme.px(6));
   ui.log.note("navigate.video_panel", area.min(), area.max());
   const NavigateDisplay& display = screen.display;
   if (!display.has_picture) {
+    draw.AddRectFilled(area.min(), area.max(), kBlack, ui.theme.px(6));
     const float middle = area.center().y, height = ui.theme.px(60);
     widgets::text_centered(ui, {area.x, middle - height, area.width, height}, ui.theme.afar, widgets::kText,
                            display.headline);
@@ -66,7 +79,9 @@ void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
                            display.detail);
     return;
   }
-  const DrawnPicture picture = draw_picture(area, screen, textures);
+  const DrawnPicture picture = draw_picture(ui, area, screen, textures);
+  fill_around(draw, area, picture.area);
+  const widgets::WidgetLog::Timed timed(ui.log, "overlay_ms");
   draw.PushClipRect(picture.area.min(), picture.area.max(), true);
   const auto draw_lines = [&](const scene::PlanOverlay& lines) {
     // Strokes have done their work once the guide is aimed: the plan is what counts then.

@@ -8,6 +8,7 @@
 #include <vtkNew.h>
 #include <vtkOpenGLFramebufferObject.h>
 #include <vtkPlane.h>
+#include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
@@ -118,7 +119,10 @@ struct SceneView::State {
   vtkNew<vtkRenderer> scene, ghost;
   vtkNew<vtkCamera> camera;
   std::vector<BoneActor> bones;
-  vtkSmartPointer<vtkActor> solids, ghost_solids;
+  // Kept with their mappers, whose data alone are replaced: a new mapper puts its shaders together anew,
+  // which takes longer than drawing.
+  vtkNew<vtkPolyData> solid_data, ghost_data;
+  vtkSmartPointer<vtkActor> solids = actor_of(solid_data), ghost_solids = actor_of(ghost_data);
   vtkSmartPointer<vtkVolume> volume;
   std::shared_ptr<const VolumeItem> volume_item;
   VolumeCost volume_cost;
@@ -157,6 +161,15 @@ SceneView::SceneView(std::function<void()> make_current) : state_(std::make_uniq
     add_lights(*renderer);
     s.window->AddRenderer(renderer);
   }
+  s.solids->GetProperty()->SetAmbient(0.42);
+  s.solids->GetProperty()->SetDiffuse(0.65);
+  s.solids->GetProperty()->SetSpecular(0.15);
+  s.scene->AddActor(s.solids);
+  s.ghost_solids->GetProperty()->SetAmbient(0.45);
+  s.ghost_solids->GetProperty()->SetOpacity(0.45);
+  s.ghost_solids->GetProperty()->BackfaceCullingOn();
+  s.ghost_solids->ForceOpaqueOn();
+  s.ghost->AddActor(s.ghost_solids);
   s.scene->GradientBackgroundOn();
   set_background({0.045F, 0.055F, 0.070F}, {0.085F, 0.105F, 0.130F});
 }
@@ -221,19 +234,8 @@ void SceneView::show(const SceneContent& content) {
   add(content.rods);
   add(content.lines);
   add(content.balls);
-  if (s.solids != nullptr) s.scene->RemoveActor(s.solids);
-  if (s.ghost_solids != nullptr) s.ghost->RemoveActor(s.ghost_solids);
-  s.solids = actor_of(vtk_from_solid(solid));
-  s.solids->GetProperty()->SetAmbient(0.42);
-  s.solids->GetProperty()->SetDiffuse(0.65);
-  s.solids->GetProperty()->SetSpecular(0.15);
-  s.scene->AddActor(s.solids);
-  s.ghost_solids = actor_of(vtk_from_solid(ghost));
-  s.ghost_solids->GetProperty()->SetAmbient(0.45);
-  s.ghost_solids->GetProperty()->SetOpacity(0.45);
-  s.ghost_solids->GetProperty()->BackfaceCullingOn();
-  s.ghost_solids->ForceOpaqueOn();
-  s.ghost->AddActor(s.ghost_solids);
+  s.solid_data->ShallowCopy(vtk_from_solid(solid));
+  s.ghost_data->ShallowCopy(vtk_from_solid(ghost));
   s.dirty = true;
 }
 

@@ -17,6 +17,7 @@ struct Ui {
   Actions& actions;
   WidgetLog& log;
   double now_s = 0;
+  bool by_processor = false;  // the processor draws: what moves is drawn less often (MotionPace)
 };
 
 enum class Severity {

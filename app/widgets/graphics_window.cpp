@@ -6,12 +6,16 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 
+#include <atomic>
 #include <cmath>
+#include <future>
 #include <optional>
 #include <utility>
 
+#include "app/widgets/draw_pace.h"
 #include "app/widgets/key_labels.h"
 #include "app/widgets/key_queue.h"
+#include "app/widgets/software_drawing.h"
 #include "app/widgets/two_screens.h"
 #include "planning/geometry/error.h"
 
@@ -34,6 +38,9 @@ std::vector<ScreenArea> connected_screens() {
   return screens;
 }
 
+// Set by whatever thread reads a hand or a foot; the window is one.
+std::atomic<bool> woken_by_hand{false};
+
 void put_window(GLFWwindow* window, const ScreenArea& area) {
   glfwSetWindowPos(window, area.x, area.y);
   glfwSetWindowSize(window, area.width, area.height);
@@ -43,6 +50,7 @@ void put_window(GLFWwindow* window, const ScreenArea& area) {
 
 struct GraphicsWindow::State {
   GLFWwindow* window = nullptr;
+  ImFontAtlas fonts;
   Theme theme;
   KeyQueue queue;
   std::vector<KeyEvent> dealt;
@@ -51,6 +59,9 @@ struct GraphicsWindow::State {
   std::vector<std::filesystem::path> dropped;
   double diagonal_mm = 0;
   int frames_to_hold = 0;
+  bool has_input = false, by_processor = false;
+  double begun_s = 0;
+  DrawPace pace{false};
   std::optional<ScreenArea> on_one_screen;  // where it was, while it covers two
 
   static State& of(GLFWwindow* window) { return *static_cast<State*>(glfwGetWindowUserPointer(window)); }
@@ -58,8 +69,11 @@ struct GraphicsWindow::State {
     const auto kind = action == GLFW_RELEASE  ? KeyEvent::Kind::Release
                       : action == GLFW_REPEAT ? KeyEvent::Kind::Repeat
                                               : KeyEvent::Kind::Press;
+    of(window).has_input = true;
     of(window).queue.add({kind, key, scancode, mods, 0});
   }
+  static void on_mouse(GLFWwindow* window, double, double) { of(window).has_input = true; }
+  static void on_button(GLFWwindow* window, int, int, int) { of(window).has_input = true; }
   static void on_letter(GLFWwindow* window, unsigned codepoint) {
     of(window).queue.add({KeyEvent::Kind::Text, 0, 0, 0, codepoint});
   }
@@ -70,7 +84,7 @@ struct GraphicsWindow::State {
   // no screen in a theatre has is one that nobody measured.
   [[nodiscard]] Screen screen() const {
     Screen screen;
-    glfwGetFramebufferSize(window, &screen.width_px, &screen.height_px);
+    if (window != nullptr) glfwGetFramebufferSize(window, &screen.width_px, &screen.height_px);
     screen.diagonal_mm = diagonal_mm;
     GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
     const GLFWvidmode* const mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
@@ -84,7 +98,28 @@ struct GraphicsWindow::State {
     if (diagonal_mm <= 0 && said_mm >= kSmallest_mm && said_mm <= kLargest_mm) screen.diagonal_mm = said_mm;
     return screen;
   }
-  void build(float scale) { theme = build_theme(scale, afar_px(screen(), scale)); }
+  // True: something came before the time was up.
+  bool wait(double timeout_s) {
+    has_input = !queue.is_empty();
+    const double until_s = glfwGetTime() + timeout_s;
+    if (timeout_s > 0 && !has_input)
+      glfwWaitEventsTimeout(timeout_s);
+    else
+      glfwPollEvents();
+    const auto is_asked_for = [this] {
+      has_input = woken_by_hand.exchange(false) || has_input;
+      return has_input;
+    };
+    const bool came = is_asked_for() || glfwGetTime() < until_s;
+    for (double left_s = 0; !is_asked_for() && (left_s = pace.due_s() - glfwGetTime()) > 0;)
+      glfwWaitEventsTimeout(left_s);
+    begun_s = glfwGetTime();
+    return came;
+  }
+  void build(float scale) {
+    theme = build_theme(fonts, scale, afar_px(screen(), scale));
+    build_style(scale);
+  }
   void deal_keys() {
     keys.clear();
     released.clear();
@@ -140,6 +175,12 @@ GraphicsWindow::GraphicsWindow(const std::string& title, double diagonal_mm)
     width = mode->width;
     height = mode->height;
   }
+  // Letters take as long as the window: they are drawn beside it, for the size that it is likely to have.
+  const float scale = scale_for(width, height);
+  std::future<Theme> letters = std::async(
+      std::launch::async, [&fonts = state_->fonts, scale, afar = afar_px(state_->screen(), scale)] {
+        return build_theme(fonts, scale, afar);
+      });
   state_->window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (state_->window == nullptr) {
     const char* reason = nullptr;
@@ -154,8 +195,16 @@ GraphicsWindow::GraphicsWindow(const std::string& title, double diagonal_mm)
   glewInit();
   glfwSetWindowSizeLimits(state_->window, 960, 540, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwSetWindowUserPointer(state_->window, state_.get());
+  state_->by_processor = widgets::draws_by_processor();
+  state_->pace = DrawPace(state_->by_processor);
+  // ImGui's own, which follow, call these.
+  glfwSetCursorPosCallback(state_->window, &State::on_mouse);
+  glfwSetScrollCallback(state_->window, &State::on_mouse);
+  glfwSetMouseButtonCallback(state_->window, &State::on_button);
+  state_->theme = letters.get();  // before there is a context
   IMGUI_CHECKVERSION();
-  ImGui::CreateContext();
+  ImGui::CreateContext(&state_->fonts);
+  build_style(scale);
   ImGui::GetIO().IniFilename = nullptr;  // the layout is ours: nothing to remember
   ImGui_ImplGlfw_InitForOpenGL(state_->window, true);
   // In the place of ImGui's own, which are called when a key's frame has come.
@@ -163,25 +212,20 @@ GraphicsWindow::GraphicsWindow(const std::string& title, double diagonal_mm)
   glfwSetCharCallback(state_->window, &State::on_letter);
   glfwSetDropCallback(state_->window, &State::on_drop);
   ImGui_ImplOpenGL3_Init("#version 330 core");
-  int frame_width = 0, frame_height = 0;
-  glfwGetFramebufferSize(state_->window, &frame_width, &frame_height);
-  state_->build(scale_for(frame_width, frame_height));
 }
 
 GraphicsWindow::~GraphicsWindow() {
   ImGui_ImplOpenGL3_Shutdown();
   ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
+  state_->fonts.Locked = false;  // where a frame was broken off
   glfwDestroyWindow(state_->window);
   glfwTerminate();
 }
 
-void GraphicsWindow::begin_frame(double timeout_s) {
+bool GraphicsWindow::begin_frame(double timeout_s) {
   State& s = *state_;
-  if (timeout_s > 0 && s.queue.is_empty())
-    glfwWaitEventsTimeout(timeout_s);
-  else
-    glfwPollEvents();
+  const bool came = s.wait(timeout_s);
   int width = 0, height = 0;
   glfwGetFramebufferSize(s.window, &width, &height);
   const float scale = scale_for(width, height);
@@ -195,9 +239,10 @@ void GraphicsWindow::begin_frame(double timeout_s) {
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
   if (ImGui::GetIO().WantTextInput) s.keys.clear();
+  return came;
 }
 
-void GraphicsWindow::end_frame() {
+void GraphicsWindow::draw_frame() {
   ImGui::Render();
   int width = 0, height = 0;
   glfwGetFramebufferSize(state_->window, &width, &height);
@@ -209,7 +254,11 @@ void GraphicsWindow::end_frame() {
   glClearColor(background.x, background.y, background.z, 1);
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void GraphicsWindow::show_frame() {
   glfwSwapBuffers(state_->window);
+  state_->pace.drawn(state_->begun_s, glfwGetTime());
 }
 
 bool GraphicsWindow::can_cover_two() { return across_two(connected_screens()).has_value(); }
@@ -251,6 +300,11 @@ void GraphicsWindow::make_current() const { glfwMakeContextCurrent(state_->windo
 Screen GraphicsWindow::screen() const { return state_->screen(); }
 const Theme& GraphicsWindow::theme() const { return state_->theme; }
 double GraphicsWindow::now_s() { return glfwGetTime(); }
+bool GraphicsWindow::draws_by_processor() const { return state_->by_processor; }
 void GraphicsWindow::wake() { glfwPostEmptyEvent(); }
+void GraphicsWindow::wake_by_hand() {
+  woken_by_hand = true;
+  glfwPostEmptyEvent();
+}
 
 }  // namespace arthronaut::widgets

@@ -1,7 +1,7 @@
 // The one window, its OpenGL context and ImGui. One thread owns all of it: the one that made it.
 //
 // Frame order: poll -> drain queues and actions (logic) -> build UI -> render the scenes that are dirty ->
-// draw UI -> swap. begin_frame() is the first step, end_frame() the last two.
+// draw UI -> swap. begin_frame() is the first step, draw_frame() and show_frame() the last two.
 #pragma once
 
 #include <filesystem>
@@ -28,10 +28,13 @@ class GraphicsWindow {
   GraphicsWindow(const GraphicsWindow&) = delete;
   GraphicsWindow& operator=(const GraphicsWindow&) = delete;
 
-  // Waits for input at most `timeout_s` (0: does not wait), or until wake(), then starts a frame. Keys are
-  // dealt out as KeyQueue does; while some wait there is no wait for input.
-  void begin_frame(double timeout_s);
-  void end_frame();
+  // Waits for input at most `timeout_s` (0: does not wait), or until wake(), then starts a frame. Where the
+  // processor draws, a frame without input waits for its turn beyond that (DrawPace); one with input never
+  // does. Keys are dealt out as KeyQueue does; while some wait there is no wait for input. Returns whether
+  // input or wake() cut the wait for it short.
+  bool begin_frame(double timeout_s);
+  void draw_frame();
+  void show_frame();
   // A text field is about to take the keyboard: what is typed waits for it, a few frames at most.
   void await_text_field();
   // Keys pressed in this frame, unless a text field has them.
@@ -51,8 +54,12 @@ class GraphicsWindow {
   [[nodiscard]] bool covers_two() const;
   [[nodiscard]] const Theme& theme() const;
   [[nodiscard]] static double now_s();
-  // From any thread: ends the wait in begin_frame().
+  // OpenGL by the processor: what is drawn costs what looks at the pictures (DrawPace).
+  [[nodiscard]] bool draws_by_processor() const;
+  // From any thread: ends the wait for input in begin_frame().
   static void wake();
+  // The same for a hand or a foot that this window does not see itself: counts as input.
+  static void wake_by_hand();
 
  private:
   struct State;

@@ -14,10 +14,15 @@ Eigen::Vector2d vector(const ImVec2& v) { return {v.x, v.y}; }
 
 }  // namespace
 
-ScenePane::ScenePane(std::function<void()> make_current) : view_(std::move(make_current)) {}
+ScenePane::ScenePane(std::function<void()> make_current) : make_current_(std::move(make_current)) {}
+
+scene::SceneView& ScenePane::view() {
+  if (view_ == nullptr) view_ = std::make_unique<scene::SceneView>(make_current_);
+  return *view_;
+}
 
 void ScenePane::show(const scene::SceneContent& content) {
-  view_.show(content);
+  view().show(content);
   changed_ = true;
 }
 
@@ -74,14 +79,19 @@ void ScenePane::render(const Ui& ui, const Rect& rect) {
   if (!(camera_ == drawn_camera_)) changed_ = true;
   if (changed_) changed_at_s_ = ui.now_s;
   const bool is_still = ui.now_s - changed_at_s_ > kStillAfter_s;
-  const float factor = is_still && rect.width * rect.height * 4 < kMostPixelsWhenStill ? 2 : 1;
-  view_.set_still(is_still);
-  view_.resize(static_cast<int>(rect.width * factor), static_cast<int>(rect.height * factor));
-  view_.look(camera_);
-  view_.render_if_dirty();
+  const bool is_large = is_still && smooths_ && rect.width * rect.height * 4 < kMostPixelsWhenStill;
+  const float factor = is_large ? 2 : 1;
+  scene::SceneView& drawn = view();
+  drawn.set_still(is_still);
+  drawn.resize(static_cast<int>(rect.width * factor), static_cast<int>(rect.height * factor));
+  drawn.look(camera_);
+  {
+    const WidgetLog::Timed timed(ui.log, "scene_ms");
+    if (drawn.render_if_dirty()) ui.log.add("scenes", 1);
+  }
   drawn_camera_ = camera_;
   changed_ = false;
-  const auto texture = static_cast<std::uintptr_t>(view_.texture());
+  const auto texture = static_cast<std::uintptr_t>(drawn.texture());
   ImGui::GetWindowDrawList()->AddImageRounded(reinterpret_cast<ImTextureID>(texture), rect.min(), rect.max(),
                                               {0, 1}, {1, 0}, IM_COL32_WHITE, ui.theme.px(6));
 }

@@ -23,9 +23,13 @@ struct PaneInput {
 
 class ScenePane {
  public:
+  // What draws is made when something is shown first: a program that starts has a window before that.
   explicit ScenePane(std::function<void()> make_current);
 
   void show(const scene::SceneContent& content);
+  // False: nothing is drawn once more at twice the size while it rests. Beside pictures that come, the next
+  // one of them would wait for it.
+  void smooth_at_rest(bool smooths) { smooths_ = smooths; }
   void look(const scene::SceneCamera& camera) { camera_ = camera; }
   [[nodiscard]] const scene::SceneCamera& camera() const { return camera_; }
 
@@ -38,10 +42,12 @@ class ScenePane {
  private:
   void follow_mouse(const PaneInput& input);
   void render(const Ui& ui, const Rect& rect);
+  [[nodiscard]] scene::SceneView& view();
 
-  scene::SceneView view_;
+  std::function<void()> make_current_;
+  std::unique_ptr<scene::SceneView> view_;  // null before the first use
   scene::SceneCamera camera_, drawn_camera_;
-  bool drags_handle_ = false, changed_ = true;
+  bool drags_handle_ = false, changed_ = true, smooths_ = true;
   float press_travel_px_ = 0;
   Eigen::Vector2d press_px_ = Eigen::Vector2d::Zero();
   double changed_at_s_ = 0;

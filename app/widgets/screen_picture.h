@@ -14,7 +14,7 @@ struct ScreenPicture {
 };
 using ScreenPicturePtr = std::shared_ptr<const ScreenPicture>;
 
-// Before GraphicsWindow::end_frame(): fills the picture with what it shows, which must live until then. In
+// Before GraphicsWindow::draw_frame(): fills the picture with what it shows, which must live until then. In
 // the picture's own memory, which is reused where it is large enough.
 void copy_screen_into(ScreenPicture& picture, double now_s);
 

@@ -23,51 +23,20 @@ constexpr std::array<ImWchar, 11> kGlyphs{0x20,   0x17F,  0x2010, 0x2026, 0x3C3,
                                           0x2190, 0x2193, 0x2212, 0x2212, 0};
 
 // ImGui keeps the pointer to the glyphs until the atlas is built.
-ImFont* add_font(const Paths& paths, float size_px, const ImWchar* glyphs = kGlyphs.data()) {
+ImFont* add_font(ImFontAtlas& fonts, const Paths& paths, float size_px,
+                 const ImWchar* glyphs = kGlyphs.data()) {
   ImFontConfig config;
   config.OversampleH = 2;
   config.OversampleV = 1;
   for (const char* path : paths)
-    if (std::filesystem::exists(path))
-      return ImGui::GetIO().Fonts->AddFontFromFileTTF(path, size_px, &config, glyphs);
+    if (std::filesystem::exists(path)) return fonts.AddFontFromFileTTF(path, size_px, &config, glyphs);
   config.SizePixels = size_px;
-  return ImGui::GetIO().Fonts->AddFontDefault(&config);
+  return fonts.AddFontDefault(&config);
 }
 
 constexpr double kArcminPerRad = 180 * 60 / 3.14159265358979323846;
 
 ImVec4 rgba(ImU32 color) { return ImGui::ColorConvertU32ToFloat4(color); }
-
-void build_style(float scale) {
-  ImGuiStyle style;
-  ImGui::StyleColorsDark(&style);
-  style.WindowRounding = 0;
-  style.ChildRounding = style.FrameRounding = style.PopupRounding = style.GrabRounding = 6;
-  style.WindowPadding = {16, 14};
-  style.FramePadding = {14, 9};
-  style.ItemSpacing = {12, 10};
-  style.ItemInnerSpacing = {8, 6};
-  style.ScrollbarSize = 16;
-  style.GrabMinSize = 20;
-  style.WindowBorderSize = style.ChildBorderSize = style.PopupBorderSize = 1;
-  style.ScaleAllSizes(scale);
-  ImVec4* colors = style.Colors;
-  colors[ImGuiCol_WindowBg] = rgba(kBackground);
-  colors[ImGuiCol_ChildBg] = rgba(kPanel);
-  colors[ImGuiCol_PopupBg] = rgba(kPanel);
-  colors[ImGuiCol_Border] = rgba(kPanelEdge);
-  colors[ImGuiCol_Text] = rgba(kText);
-  colors[ImGuiCol_TextDisabled] = rgba(kQuietText);
-  colors[ImGuiCol_Button] = rgba(IM_COL32(38, 47, 57, 255));
-  colors[ImGuiCol_ButtonHovered] = rgba(IM_COL32(52, 66, 80, 255));
-  colors[ImGuiCol_ButtonActive] = rgba(IM_COL32(66, 92, 116, 255));
-  colors[ImGuiCol_FrameBg] = rgba(IM_COL32(32, 39, 47, 255));
-  colors[ImGuiCol_FrameBgHovered] = colors[ImGuiCol_FrameBgActive] = rgba(IM_COL32(46, 57, 69, 255));
-  colors[ImGuiCol_SliderGrab] = colors[ImGuiCol_SliderGrabActive] = rgba(kAccent);
-  colors[ImGuiCol_Header] = rgba(IM_COL32(40, 66, 88, 255));
-  colors[ImGuiCol_HeaderHovered] = colors[ImGuiCol_HeaderActive] = rgba(IM_COL32(50, 82, 108, 255));
-  ImGui::GetStyle() = style;
-}
 
 }  // namespace
 
@@ -100,18 +69,51 @@ float afar_px(const Screen& screen, float scale) {
   return std::ceil(std::clamp(afar_needed_px(screen), 0.8F * usual, 1.2F * usual));
 }
 
-Theme build_theme(float scale, float afar_px) {
-  ImGui::GetIO().Fonts->Clear();
+void build_style(float scale) {
+  ImGuiStyle style;
+  ImGui::StyleColorsDark(&style);
+  style.WindowRounding = 0;
+  style.ChildRounding = style.FrameRounding = style.PopupRounding = style.GrabRounding = 6;
+  style.WindowPadding = {16, 14};
+  style.FramePadding = {14, 9};
+  style.ItemSpacing = {12, 10};
+  style.ItemInnerSpacing = {8, 6};
+  style.ScrollbarSize = 16;
+  style.GrabMinSize = 20;
+  style.WindowBorderSize = style.ChildBorderSize = style.PopupBorderSize = 1;
+  style.ScaleAllSizes(scale);
+  ImVec4* colors = style.Colors;
+  colors[ImGuiCol_WindowBg] = rgba(kBackground);
+  colors[ImGuiCol_ChildBg] = rgba(kPanel);
+  colors[ImGuiCol_PopupBg] = rgba(kPanel);
+  colors[ImGuiCol_Border] = rgba(kPanelEdge);
+  colors[ImGuiCol_Text] = rgba(kText);
+  colors[ImGuiCol_TextDisabled] = rgba(kQuietText);
+  colors[ImGuiCol_Button] = rgba(IM_COL32(38, 47, 57, 255));
+  colors[ImGuiCol_ButtonHovered] = rgba(IM_COL32(52, 66, 80, 255));
+  colors[ImGuiCol_ButtonActive] = rgba(IM_COL32(66, 92, 116, 255));
+  colors[ImGuiCol_FrameBg] = rgba(IM_COL32(32, 39, 47, 255));
+  colors[ImGuiCol_FrameBgHovered] = colors[ImGuiCol_FrameBgActive] = rgba(IM_COL32(46, 57, 69, 255));
+  colors[ImGuiCol_SliderGrab] = colors[ImGuiCol_SliderGrabActive] = rgba(kAccent);
+  colors[ImGuiCol_Header] = rgba(IM_COL32(40, 66, 88, 255));
+  colors[ImGuiCol_HeaderHovered] = colors[ImGuiCol_HeaderActive] = rgba(IM_COL32(50, 82, 108, 255));
+  ImGui::GetStyle() = style;
+}
+
+Theme build_theme(ImFontAtlas& fonts, float scale, float afar_px) {
+  fonts.Clear();
   Theme theme;
   theme.scale = scale;
-  theme.body = add_font(kRegular, std::round(24 * scale));
-  theme.strong = add_font(kSemiBold, std::round(24 * scale));
-  theme.title = add_font(kSemiBold, std::round(34 * scale));
-  theme.number = add_font(kSemiBold, std::round(64 * scale));
+  theme.body = add_font(fonts, kRegular, std::round(24 * scale));
+  theme.strong = add_font(fonts, kSemiBold, std::round(24 * scale));
+  theme.title = add_font(fonts, kSemiBold, std::round(34 * scale));
   static constexpr std::array<ImWchar, 9> kLetters{0x20,   0xFF,   0x2010, 0x2026, 0x2190,
                                                    0x2193, 0x2212, 0x2212, 0};
-  theme.afar = add_font(kSemiBold, afar_px, kLetters.data());
-  build_style(scale);
+  theme.number = add_font(fonts, kSemiBold, std::round(64 * scale), kLetters.data());
+  theme.afar = add_font(fonts, kSemiBold, afar_px, kLetters.data());
+  unsigned char* pixels = nullptr;
+  int width = 0, height = 0;
+  fonts.GetTexDataAsRGBA32(&pixels, &width, &height);
   return theme;
 }
 

@@ -13,7 +13,7 @@ struct Theme {
   ImFont* body = nullptr;    // 24 px at scale 1
   ImFont* strong = nullptr;  // 24 px, semi-bold
   ImFont* title = nullptr;   // 34 px
-  ImFont* number = nullptr;  // 64 px
+  ImFont* number = nullptr;  // 64 px, Western letters alone
   ImFont* afar = nullptr;    // afar_px(), semi-bold, Western letters alone
   [[nodiscard]] float px(float size_at_1080) const { return size_at_1080 * scale; }
 };
@@ -55,8 +55,11 @@ inline constexpr ImU32 kBad = IM_COL32(255, 112, 92, 255);
 
 // The scale for a window of this size.
 [[nodiscard]] float scale_for(int width_px, int height_px);
-// (Re)builds fonts and style for a scale. Inter where it is installed, DejaVu Sans else, ImGui's own as the
-// last resort. Between frames only; the caller refreshes the font texture.
-[[nodiscard]] Theme build_theme(float scale, float afar_px);
+// (Re)builds the fonts for a scale, with their picture. Inter where it is installed, DejaVu Sans else,
+// ImGui's own as the last resort. Between frames only, or on any thread while there is no ImGui context; the
+// caller refreshes the font texture.
+[[nodiscard]] Theme build_theme(ImFontAtlas& fonts, float scale, float afar_px);
+// Sizes and colours of ImGui's own widgets for a scale.
+void build_style(float scale);
 
 }  // namespace arthronaut::widgets

@@ -22,14 +22,14 @@ constexpr const char* kFragmentShader = R"(#version 330 core
 in vec2 view;
 out vec4 color;
 uniform sampler2D video, table;
-uniform vec2 image_size, principal_point, circle_center;
+uniform vec2 image_size, principal_point, circle_center, held_at, held_size;
 uniform float circle_radius;
 void main() {
   vec2 nodes = vec2(textureSize(table, 0));
   vec2 raw = principal_point + texture(table, ((0.5 * view + 0.5) * (nodes - 1.0) + 0.5) / nodes).rg;
   bool is_seen = distance(raw, circle_center) <= circle_radius && all(greaterThanEqual(raw, vec2(-0.5))) &&
                  all(lessThanEqual(raw, image_size - 0.5));
-  color = is_seen ? vec4(texture(video, (raw + 0.5) / image_size).rgb, 1.0) : vec4(0.0, 0.0, 0.0, 1.0);
+  color = is_seen ? vec4(texture(video, (raw + 0.5 - held_at) / held_size).rgb, 1.0) : vec4(0.0, 0.0, 0.0, 1.0);
 })";
 
 // 0 when the machine does not take it.
@@ -194,6 +194,9 @@ void UndistortedTexture::draw_on_gpu(const VideoTexture& video, const camera::Ca
   glUniform1i(glGetUniformLocation(program_, "table"), 1);
   const camera::Boundary& boundary = camera.boundary();
   set_vector(program_, "image_size", {video.width(), video.height()});
+  const Rect held = video.held();
+  set_vector(program_, "held_at", {held.x, held.y});
+  set_vector(program_, "held_size", {held.width, held.height});
   set_vector(program_, "principal_point", camera.principal_point_px());
   set_vector(program_, "circle_center", boundary.center_px);
   glUniform1f(glGetUniformLocation(program_, "circle_radius"),

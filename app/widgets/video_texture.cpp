@@ -2,14 +2,27 @@
 
 #include <GL/glew.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace arthronaut::widgets {
 
 VideoTexture::~VideoTexture() {
   if (texture_ != 0) glDeleteTextures(1, &texture_);
 }
 
-void VideoTexture::upload(const camera::FramePtr& frame) {
-  if (frame == nullptr || frame == uploaded_) return;
+std::size_t VideoTexture::upload(const camera::FramePtr& frame, const std::optional<Rect>& part) {
+  if (frame == nullptr) return 0;
+  const Rect whole{0, 0, static_cast<float>(frame->width), static_cast<float>(frame->height)};
+  const Rect wanted = part.value_or(whole);
+  const int left = static_cast<int>(std::floor(std::clamp(wanted.x, 0.F, whole.width - 1)));
+  const int top = static_cast<int>(std::floor(std::clamp(wanted.y, 0.F, whole.height - 1)));
+  const int width =
+      std::clamp(static_cast<int>(std::ceil(wanted.x + wanted.width)) - left, 1, frame->width - left);
+  const int height =
+      std::clamp(static_cast<int>(std::ceil(wanted.y + wanted.height)) - top, 1, frame->height - top);
+  const bool is_same_part = left == left_ && top == top_ && width == held_width_ && height == held_height_;
+  if (frame == uploaded_ && is_same_part) return 0;
   if (texture_ == 0) {
     glGenTextures(1, &texture_);
     glBindTexture(GL_TEXTURE_2D, texture_);
@@ -21,16 +34,35 @@ void VideoTexture::upload(const camera::FramePtr& frame) {
   const std::uint8_t* const bgr = camera::bgr_of(*frame, made_).data();
   glBindTexture(GL_TEXTURE_2D, texture_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-  if (frame->width != width_ || frame->height != height_) {
-    width_ = frame->width;
-    height_ = frame->height;
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, width_, height_, 0, GL_BGR, GL_UNSIGNED_BYTE, bgr);
-  } else {
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, GL_BGR, GL_UNSIGNED_BYTE, bgr);
-  }
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, frame->width);
+  glPixelStorei(GL_UNPACK_SKIP_PIXELS, left);
+  glPixelStorei(GL_UNPACK_SKIP_ROWS, top);
+  if (width != held_width_ || height != held_height_)
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, width, height, 0, GL_BGR, GL_UNSIGNED_BYTE, bgr);
+  else
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_BGR, GL_UNSIGNED_BYTE, bgr);
+  // As VTK and ImGui expect them.
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  for (const GLenum setting : {GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS})
+    glPixelStorei(setting, 0);
+  width_ = frame->width;
+  height_ = frame->height;
+  left_ = left;
+  top_ = top;
+  held_width_ = width;
+  held_height_ = height;
   uploaded_ = frame;
+  return 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
+
+Rect VideoTexture::held() const {
+  return {static_cast<float>(left_), static_cast<float>(top_), static_cast<float>(held_width_),
+          static_cast<float>(held_height_)};
+}
+
+ImVec2 VideoTexture::place_of(const ImVec2& pixel) const {
+  const Rect part = held();
+  return {(pixel.x - part.x) / part.width, (pixel.y - part.y) / part.height};
 }
 
 }  // namespace arthronaut::widgets

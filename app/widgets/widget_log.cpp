@@ -21,14 +21,28 @@ void WidgetLog::note_state(std::string_view key, std::string_view value) {
   new_states_ += "STATE " + std::string(key) + " " + std::string(value) + "\n";
 }
 
+void WidgetLog::add(std::string_view what, double amount) {
+  if (!prints_) return;
+  const auto known = numbers_.find(what);
+  if (known != numbers_.end())
+    known->second += amount;
+  else
+    numbers_.emplace(what, amount);
+}
+
 void WidgetLog::end_frame() {
   if (!prints_) return;
+  add("shown_s", std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count());
   if (frame_ != printed_) {
     std::printf("%sREADY\n", frame_.c_str());
     printed_ = frame_;
   }
   std::fputs(new_states_.c_str(), stdout);
+  std::fputs("FRAME", stdout);
+  for (const auto& [what, amount] : numbers_) std::printf(" %s=%.6f", what.c_str(), amount);
+  std::fputs("\n", stdout);
   std::fflush(stdout);
+  numbers_.clear();
   new_states_.clear();
   frame_.clear();
 }

@@ -3,10 +3,12 @@
 //   WIDGET name x y width height       window pixels
 //   READY                              the list above is complete
 //   STATE key value
+//   FRAME name=number ...              closes every frame: what it cost and what it held
 #pragma once
 
 #include <imgui.h>
 
+#include <chrono>
 #include <map>
 #include <string>
 #include <string_view>
@@ -18,13 +20,32 @@ class WidgetLog {
   explicit WidgetLog(bool prints) : prints_(prints) {}
   void note(std::string_view name, const ImVec2& min, const ImVec2& max);
   void note_state(std::string_view key, std::string_view value);
-  // Call once a frame after the swap.
+  // Adds to a number of this frame: a count, bytes, milliseconds.
+  void add(std::string_view what, double amount);
+  // Call once a frame after the swap. FRAME names the moment as "shown_s", on the steady clock.
   void end_frame();
+
+  // Adds the milliseconds from here to the end of its scope. On software OpenGL most of what is drawn is
+  // computed later, while other parts are prepared, and at the latest during the swap.
+  class Timed {
+   public:
+    Timed(WidgetLog& log, std::string_view what) : log_(log), what_(what) {}
+    ~Timed() { log_.add(what_, std::chrono::duration<double, std::milli>(Clock::now() - begun_).count()); }
+    Timed(const Timed&) = delete;
+    Timed& operator=(const Timed&) = delete;
+
+   private:
+    using Clock = std::chrono::steady_clock;
+    WidgetLog& log_;
+    std::string_view what_;
+    Clock::time_point begun_ = Clock::now();
+  };
 
  private:
   bool prints_;
   std::string frame_, printed_, new_states_;
   std::map<std::string, std::string, std::less<>> states_;
+  std::map<std::string, double, std::less<>> numbers_;
 };
 
 }  // namespace arthronaut::widgets

@@ -58,7 +58,15 @@ void WorkstationWindow::add_screen_actions() {
 void WorkstationWindow::end_frame(double now_s) {
   const std::shared_ptr<widgets::ScreenPicture> copy = copies_.wanted(now_s);
   if (copy != nullptr) widgets::copy_screen_into(*copy, now_s);
-  window_.end_frame();
+  {
+    const widgets::WidgetLog::Timed timed(log_, "draw_ms");
+    window_.draw_frame();
+  }
+  {
+    const widgets::WidgetLog::Timed timed(log_, "swap_ms");
+    window_.show_frame();
+  }
+  shown().on_screen();
   if (copy != nullptr) copies_.take(copy);
 }
 

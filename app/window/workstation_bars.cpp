@@ -81,7 +81,8 @@ std::pair<std::string, bool> WorkstationWindow::status_words() {
                              : !fault.empty()                 ? fault
                              : !standstill.empty()            ? standstill
                              : shows_start() || shows_paint() ? std::string()
-                                                              : shown().notice();
+                             : !shown().notice().empty()      ? shown().notice()
+                                                              : slow_.words();
   // What leaves the screen is said beside whatever else there is to say.
   const std::string copied = copies_.words(widgets::GraphicsWindow::now_s());
   if (!notice.empty()) return {copied.empty() ? notice : notice + ".  " + copied, true};

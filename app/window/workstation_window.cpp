@@ -40,7 +40,7 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
               .bones_made = [this] { reopens_ = true; }}) {
   make_modes();
   add_actions();
-  room_.listen([] { GraphicsWindow::wake(); });
+  room_.listen([] { GraphicsWindow::wake_by_hand(); });
   start_.enter(false);
   if (options.built_in)
     open({});
@@ -108,9 +108,7 @@ void WorkstationWindow::run() {
                            : modes_are_busy() || start_.is_busy() || paint_.is_busy() || opening_ != nullptr
                                ? kBusyWait_s
                                : kIdleWait_s;
-    const double started = GraphicsWindow::now_s();
-    frame(timeout);
-    const bool woken = timeout > 0 && GraphicsWindow::now_s() - started < timeout;
+    const bool woken = frame(timeout);
     settle = woken && !modes_are_busy() ? kFramesAfterInput : std::max(settle - 1, 0);
   }
   shown().leave();
@@ -138,13 +136,19 @@ bool WorkstationWindow::works_elsewhere() const {
 }
 
 // poll -> queues and actions -> UI (with the scenes that are dirty) -> draw -> swap
-void WorkstationWindow::frame(double timeout_s) {
-  window_.begin_frame(timeout_s);
-  work();
-  const widgets::Ui ui{window_.theme(), actions_, log_, GraphicsWindow::now_s()};
+bool WorkstationWindow::frame(double timeout_s) {
+  const bool woken = window_.begin_frame(timeout_s);
+  const double begun_s = GraphicsWindow::now_s();
+  {
+    const widgets::WidgetLog::Timed timed(log_, "work_ms");
+    work();
+  }
+  const widgets::Ui ui{window_.theme(), actions_, log_, GraphicsWindow::now_s(),
+                       window_.draws_by_processor()};
   heartbeat_.beat(ui.now_s, has_running_work());
   watch_.frame_drawn(has_running_work());
   try {
+    const widgets::WidgetLog::Timed timed(log_, "build_ms");
     draw_screen(ui);
   } catch (const std::runtime_error& error) {
     fault_.note(error.what(), ui.now_s);
@@ -155,7 +159,11 @@ void WorkstationWindow::frame(double timeout_s) {
   }
   guarded([&] { actions_.advance(ui.now_s); });  // after the buttons: what was let go in this frame is known
   end_frame(ui.now_s);
+  const double took_s = GraphicsWindow::now_s() - begun_s;
+  slow_.drawn(took_s, has_running_work());
+  log_.add("frame_ms", 1000 * took_s);
   log_.end_frame();
+  return woken;
 }
 
 bool WorkstationWindow::guarded(const std::function<void()>& part) {
@@ -220,6 +228,7 @@ void WorkstationWindow::dispatch_keys() {
                           std::find(prefixes.begin(), prefixes.end(), "setup.next") != prefixes.end();
   room_.press_pedals(actions_, action_prefixes(), ImGui::GetIO().WantTextInput);
   for (widgets::KeyPress press : window_.keys()) {
+    log_.add("keys", 1);
     if (has_pedals && press.mods == 0) press.key = room_.meaning_of(press.key);
     if (shows_keys_ && press.key == GLFW_KEY_ESCAPE) {
       shows_keys_ = false;
@@ -271,9 +280,12 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   ImGui::SetNextWindowSize(size);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  // No background: the frame was cleared to its colour, and to blend all of it once more costs milliseconds
+  // where the processor draws.
   ImGui::Begin("workstation", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                   ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar(2);
   ImGui::PushFont(ui.theme.body);
   widgets::Rect area{0, 0, size.x, size.y};
@@ -310,6 +322,7 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   log_.note_state("room", room_.trouble());
   log_.note_state("foot_switch", room_.devices());
   log_.note_state("standstill", heartbeat_.words());
+  log_.note_state("slow_screen", slow_.words());
   log_.note_state("screen_copy", copies_.words(ui.now_s));
   log_.note_state("frame_fault", fault_.words(ui.now_s));
   log_.note_state("mode", shown().title().name);

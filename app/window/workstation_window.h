@@ -15,6 +15,7 @@
 #include "app/start/start_view.h"
 #include "app/widgets/graphics_window.h"
 #include "app/widgets/heartbeat.h"
+#include "app/widgets/slow_screen.h"
 #include "app/window/draw_watch.h"
 #include "app/window/frame_fault.h"
 #include "app/window/room.h"
@@ -38,7 +39,8 @@ class WorkstationWindow {
   void add_screen_actions();
   void end_frame(double now_s);
   // A part of a frame's work or its drawing that throws is broken off there, says why, and the rest follows.
-  void frame(double timeout_s);
+  // Returns whether something cut its wait short.
+  bool frame(double timeout_s);
   void work();                                      // what is done in a frame before it is drawn
   bool guarded(const std::function<void()>& part);  // false: it threw
   // Empty: the built-in case. The one that is open stays open until the other one is.
@@ -89,6 +91,7 @@ class WorkstationWindow {
   review::ReviewView* review_ = nullptr;            // one of them
   std::size_t shown_ = 0;
   widgets::Heartbeat heartbeat_;
+  widgets::SlowScreen slow_;
   DrawWatch watch_;
   FrameFault fault_;
   screen_copy::ScreenCopies copies_;

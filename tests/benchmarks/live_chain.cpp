@@ -4,7 +4,6 @@
 //                                               CLIP: 1080p60 H.264 without B-frames, sent round and round
 //   live_chain faults COUNT [SEED]              prints a row a kind: how soon gone, told and back
 // Prints what was sent, tracked and recorded, latency by stage, and how the memory grew.
-#include <gst/rtsp-server/rtsp-server.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,6 +22,7 @@
 #include "navigation/sources/frame_source.h"
 #include "navigation/theatre/navigate_source.h"
 #include "planning/geometry/error.h"
+#include "tests/benchmarks/file_sender.h"
 #include "tests/live/fault_drill.h"
 #include "tests/temporary_folder.h"
 
@@ -35,35 +35,6 @@ double resident_mb() {
   statm >> all >> resident;
   return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) * 1e-6;
 }
-
-// Sends a file as it is by RTSP, from a process of its own, whose time is not ours.
-class FileSender {
- public:
-  FileSender(const std::string& file, int port) {
-    process_ = ::fork();
-    if (process_ == 0) run(file, port);
-  }
-  ~FileSender() { ::kill(process_, SIGKILL); }
-  FileSender(const FileSender&) = delete;
-  FileSender& operator=(const FileSender&) = delete;
-
- private:
-  [[noreturn]] static void run(const std::string& file, int port) {
-    gst_init(nullptr, nullptr);
-    GstRTSPServer* const server = gst_rtsp_server_new();
-    gst_rtsp_server_set_service(server, std::to_string(port).c_str());
-    GstRTSPMediaFactory* const factory = gst_rtsp_media_factory_new();
-    const std::string launch = "( filesrc location=" + file +
-                               " ! matroskademux ! h264parse config-interval=-1 ! rtph264pay name=pay0 )";
-    gst_rtsp_media_factory_set_launch(factory, launch.c_str());
-    GstRTSPMountPoints* const mounts = gst_rtsp_server_get_mount_points(server);
-    gst_rtsp_mount_points_add_factory(mounts, "/scope", factory);
-    gst_rtsp_server_attach(server, nullptr);
-    g_main_loop_run(g_main_loop_new(nullptr, FALSE));
-    std::_Exit(0);
-  }
-  pid_t process_ = -1;
-};
 
 // What a clip whose camera is not given is looked at with: its markers are found, and no pose of them is
 // right.
@@ -97,7 +68,7 @@ int stream(const StreamChoice& choice) {
   std::shared_ptr<sources::FrameSource> source;
   for (int i = 0; source == nullptr; ++i) {
     try {
-      source = sources::open_stream("rtsp://127.0.0.1:" + std::to_string(port) + "/scope");
+      source = sources::open_stream(sender.address());
     } catch (const DeviceError& error) {
       if (i == 20) throw;
       std::this_thread::sleep_for(std::chrono::milliseconds(200));

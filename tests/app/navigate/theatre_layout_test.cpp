@@ -37,8 +37,7 @@ struct Screen {
     ImGui::CreateContext();
     const widgets::Screen screen{shape.width, shape.height, shape.diagonal_mm};
     const float scale = widgets::scale_for(shape.width, shape.height);
-    theme = widgets::build_theme(scale, widgets::afar_px(screen, scale));
-    ImGui::GetIO().Fonts->Build();
+    theme = widgets::build_theme(*ImGui::GetIO().Fonts, scale, widgets::afar_px(screen, scale));
     const float margin = 12 * scale;
     area = Rect{0, 0, static_cast<float>(shape.width), static_cast<float>(shape.height)}.inset(margin);
   }

@@ -3,10 +3,12 @@
 #include <GL/glew.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "app/scene/offscreen_context.h"
+#include "app/widgets/picture_placement.h"
 #include "navigation/camera/medium.h"
 #include "planning/geometry/error.h"
 #include "tests/app/scope.h"
@@ -84,6 +86,30 @@ TEST_F(UndistortedTextureTest, ShaderAndProcessorAgree) {
     EXPECT_LT(different, 3L * 12 * kSize_px / 10) << "more than a few pixels of the rim differ";
   }
   EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+// Of a picture of which only the round view was uploaded the same is made.
+TEST_F(UndistortedTextureTest, TheRoundViewAloneIsEnough) {
+  const camera::FramePtr frame = stripes();
+  const camera::CameraModel camera = small_scope(0.4);
+  const camera::Boundary& view = camera.boundary();
+  VideoTexture whole, part;
+  EXPECT_EQ(whole.upload(frame), static_cast<std::size_t>(3) * 960 * 540);
+  const Rect wanted = shown_part(view, frame->width, frame->height);
+  EXPECT_LT(part.upload(frame, wanted), static_cast<std::size_t>(3) * 960 * 540 * 2 / 3);
+  EXPECT_EQ(part.upload(frame, wanted), 0U) << "it is there already";
+  UndistortedTexture of_whole, of_part;
+  of_whole.draw(frame, whole, camera, kSize_px);
+  of_part.draw(frame, part, camera, kSize_px);
+  const auto a = read_texture(of_whole.texture()), b = read_texture(of_part.texture());
+  int worst = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(int{a[i]} - int{b[i]}));
+  EXPECT_LE(worst, 1);
+  // As it came: the same pixel stands at the same place of the picture.
+  const ImVec2 first = part.place_of(wanted.min()), last = part.place_of(wanted.max());
+  const Rect held = part.held();
+  EXPECT_NEAR(held.x + first.x * held.width, wanted.x, 1e-3);
+  EXPECT_NEAR(held.y + last.y * held.height, wanted.y + wanted.height, 1e-3);
 }
 
 // Drawing leaves what others had set up as it was.

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace arthronaut::test {
 
@@ -121,7 +122,7 @@ void RunningWorkstation::read_output(int pipe) {
       std::string value;
       words >> name >> std::ws;
       std::getline(words, value);
-      states_[name] = value;
+      states_[name] = new_states_[name] = value;
       if (name == "key_clash") ADD_FAILURE() << "two actions share a key: " << value;
     } else if (kind == "WIDGET") {
       Area area;
@@ -130,6 +131,13 @@ void RunningWorkstation::read_output(int pipe) {
     } else if (kind == "READY") {
       widgets_ = std::move(arriving_);
       arriving_.clear();
+    } else if (kind == "FRAME") {
+      DrawnFrame frame{{}, std::exchange(new_states_, {})};
+      for (std::string word; words >> word;) {
+        const std::size_t at = word.find('=');
+        frame.numbers[word.substr(0, at)] = std::atof(word.c_str() + at + 1);
+      }
+      frames_.push_back(std::move(frame));
     }
   }
   free(line);
@@ -164,6 +172,11 @@ std::string RunningWorkstation::state(const std::string& key) const {
 std::map<std::string, Area> RunningWorkstation::widgets() const {
   const std::lock_guard lock(mutex_);
   return widgets_;
+}
+
+std::vector<DrawnFrame> RunningWorkstation::frames() const {
+  const std::lock_guard lock(mutex_);
+  return frames_;
 }
 
 void RunningWorkstation::hand(const std::string& arguments) const {

@@ -43,6 +43,17 @@ struct Area {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
+// A frame that was drawn: its numbers (widget_log.h), and the states that were others in it for the first
+// time.
+struct DrawnFrame {
+  std::map<std::string, double> numbers;
+  std::map<std::string, std::string> states;
+  [[nodiscard]] double number(const std::string& name) const {  // 0 where there is none
+    const auto found = numbers.find(name);
+    return found != numbers.end() ? found->second : 0;
+  }
+};
+
 // The workstation with --list-widgets. What it prints is read as it comes.
 class RunningWorkstation {
  public:
@@ -60,6 +71,7 @@ class RunningWorkstation {
   [[nodiscard]] bool wait_for_widget(const std::string& name, double seconds = 40) const;
   [[nodiscard]] std::string state(const std::string& key) const;
   [[nodiscard]] std::map<std::string, Area> widgets() const;  // of the last complete list
+  [[nodiscard]] std::vector<DrawnFrame> frames() const;       // all that were drawn so far
 
   void press(const std::string& key) const;  // as xdotool names it
   // Holds the key down until the state is so, then lets go; false when it did not become so in time.
@@ -92,6 +104,8 @@ class RunningWorkstation {
   mutable std::mutex mutex_;
   std::map<std::string, std::string> states_;
   std::map<std::string, Area> arriving_, widgets_;
+  std::map<std::string, std::string> new_states_;
+  std::vector<DrawnFrame> frames_;
   std::thread reader_;
 };
 

@@ -1,0 +1,90 @@
+// What holds the screen's rate and how soon it follows a key, counted in frames and bytes instead of seconds,
+// which are the machine's: on the real window.
+#include <algorithm>
+#include <optional>
+
+#include "tests/app/window/theatre.h"
+
+namespace arthronaut::test {
+namespace {
+
+// A key is seen in the frame that takes it, whatever a frame costs: nothing that it does waits for another
+// one.
+TEST_F(Theatre, Hazard34AKeyIsSeenInTheFrameThatTakesIt) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  start_simulation(app);
+  struct Key {
+    const char *key, *state;
+  };
+  for (const Key& key : {Key{"v", "overlay"}, Key{"Return", "menu"}, Key{"u", "view"}, Key{"h", "layout"}}) {
+    for (int times = 0; times < 2; ++times) {
+      const std::size_t before = app.frames().size();
+      app.press(key.key);
+      const auto taking = [&]() -> std::optional<DrawnFrame> {
+        const auto frames = app.frames();
+        for (std::size_t i = before; i < frames.size(); ++i)
+          if (frames[i].number("keys") > 0) return frames[i];
+        return std::nullopt;
+      };
+      ASSERT_TRUE(becomes([&] { return taking().has_value(); }, 40)) << key.key;
+      const DrawnFrame frame = *taking();
+      EXPECT_TRUE(frame.states.contains(key.state)) << key.key;
+    }
+  }
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
+// A picture goes to OpenGL once, and no more of it than its colours take.
+TEST_F(Theatre, Hazard34APictureIsUploadedOnce) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  start_simulation(app);
+  const auto pictures_of = [](const std::vector<DrawnFrame>& frames) {
+    std::map<double, double> bytes;  // by picture
+    for (const DrawnFrame& frame : frames)
+      if (frame.numbers.contains("picture")) bytes[frame.number("picture")] += frame.number("uploaded_bytes");
+    return bytes;
+  };
+  ASSERT_TRUE(becomes([&] { return pictures_of(app.frames()).size() > 5; }, 120));
+  for (int times = 0; times < 4; ++times) app.press("v");
+  for (const auto& [picture, bytes] : pictures_of(app.frames())) {
+    EXPECT_GT(bytes, 0) << picture;
+    EXPECT_LE(bytes, 4 * 1080 * 1920) << picture;
+  }
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
+// Where nothing has changed nothing is computed again: neither the bone in 3D nor the picture.
+TEST_F(Theatre, Hazard34WhatStandsStillIsNotDrawnAgain) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  start_simulation(app);
+  ASSERT_TRUE(app.hold_until("Escape", "guidance", "The pictures have ended"));
+  // The 3D view is drawn once more, smoothly, when it has come to rest.
+  const auto rests = [&] {
+    const auto frames = app.frames();
+    if (frames.size() < 4) return false;
+    const auto last = frames.end() - 4;
+    return std::all_of(last, frames.end(),
+                       [](const DrawnFrame& frame) { return frame.number("scenes") == 0; }) &&
+           frames.back().number("shown_s") > last->number("shown_s") + 0.5;
+  };
+  ASSERT_TRUE(becomes(rests, 60));
+  const std::size_t before = app.frames().size();
+  for (int times = 0; times < 4; ++times) {
+    const std::string was = app.state("overlay");
+    app.press("v");
+    ASSERT_TRUE(becomes([&] { return app.state("overlay") != was; }, 40));
+  }
+  const auto frames = app.frames();
+  ASSERT_GE(frames.size(), before + 4);
+  for (std::size_t i = before; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].number("scenes"), 0) << i - before;
+    EXPECT_EQ(frames[i].number("uploaded_bytes"), 0) << i - before;
+  }
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
+}  // namespace
+}  // namespace arthronaut::test
