@@ -171,8 +171,7 @@ void SolidLayer::draw_rows(int first, int end, const BoneRows& bone_rows, Memory
                          &corners->normal[1], &corners->normal[2]})
       values->resize(room);
   }
-  memory.lit_.resize(3 * room);
-  memory.lit_parts_.assign(room, -1);
+  memory.lit_.resize(3 * kTogether);
   memory.counts_.assign(looks_.size(), 0);
   std::array<int, 2> span{0, -1};
   for (int row = first; row < end; ++row) {
@@ -196,18 +195,11 @@ void SolidLayer::draw_row(int row, const std::array<int, 2>& span, const BoneRow
     const int from = std::max(first, span[0]), last = std::min(first + kTogether - 1, span[1]);
     std::int32_t met = 0;
     for (int i = from; i <= last + 1; ++i) met |= upper[i] | lower[i];
-    if (met == 0) {
-      memory.lit_parts_[static_cast<std::size_t>(first)] = -1;
-      continue;
-    }
-    // Inside a face light changes slowly: that of the corner will do, or of the one above it.
-    float* const lit = memory.lit_.data() + static_cast<std::ptrdiff_t>(3) * first;
-    std::int32_t* const lit_parts = memory.lit_parts_.data() + first;
-    if (row % 2 == 0 || !std::equal(upper + first, upper + first + kTogether, lit_parts)) {
-      picture_kernel().light_parts(looks_.data(), {above.x.data() + first, above.y.data() + first, nullptr},
-                                   kTogether, above.met(first), exposure_, lit);
-      std::copy_n(upper + first, kTogether, lit_parts);
-    }
+    if (met == 0) continue;
+    // Inside a face light changes slowly: that of the corner will do.
+    float* const lit = memory.lit_.data();
+    picture_kernel().light_parts(looks_.data(), {above.x.data() + first, above.y.data() + first, nullptr},
+                                 kTogether, above.met(first), exposure_, lit);
     for (int i = from; i <= last; ++i) {
       float* const bgr = out + static_cast<std::ptrdiff_t>(3) * i;
       const std::int32_t part = upper[i];

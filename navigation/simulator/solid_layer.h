@@ -29,9 +29,8 @@ class SolidLayer {
    private:
     friend class SolidLayer;
     Corners above_, below_;
-    std::vector<float> lit_;               // of the last row of corners that was shaded
-    std::vector<std::int32_t> lit_parts_;  // whose light it is
-    std::vector<int> counts_;              // by part
+    std::vector<float> lit_;   // of a packet
+    std::vector<int> counts_;  // by part
   };
 
   // Draws over rows [first, end) of the area's light, row after row, three values a pixel. bone_rows: the
