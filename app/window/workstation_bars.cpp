@@ -10,6 +10,7 @@ namespace arthronaut::window {
 namespace {
 
 constexpr const char* kNotice = "Research software, not a medical device";
+constexpr const char *kNoticeBeginning = "Research software,", *kNoticeEnd = "not a medical device";
 
 }  // namespace
 
@@ -104,26 +105,37 @@ void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& 
   (void)rest.cut_left(side, ui.theme.px(10));
   if (const auto kind = shown().source_kind())
     (void)rest.cut_left(widgets::draw_source_word(ui, rest, *kind), ui.theme.px(14));
-  // Whose knee it is: the patient as far as known, the case and the side.
+  ImFont* const font = ui.theme.body;
+  const auto [text, warns] = status_words();
+  const auto width_of = [&](const std::string& words) {
+    return font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str()).x;
+  };
+  const float gap = ui.theme.px(20), standing = width_of(kNotice) + gap;
+  // What is to be said now is said whole: what always stands there goes up to the right, and never away.
+  const bool has_room = !warns || standing + width_of(text) <= foot.width;
+  if (has_room) {
+    draw.AddText(font, font->FontSize, foot.min(), widgets::kQuietText, kNotice);
+    ui.log.note("app.notice", foot.min(), {foot.x + standing, foot.y + font->FontSize});
+  } else {
+    const float width = width_of(kNoticeEnd);
+    const ImVec2 at{area.x + area.width - width, rest.y + ui.theme.px(4)};
+    draw.AddText(font, font->FontSize, at, widgets::kQuietText, kNoticeBeginning);
+    draw.AddText(font, font->FontSize, {at.x, at.y + font->FontSize}, widgets::kQuietText, kNoticeEnd);
+    ui.log.note("app.notice", at, {at.x + width, at.y + 2 * font->FontSize});
+    rest.width = at.x - gap - rest.x;
+  }
+  // Whose knee it is: the patient as far as known, the case and the side. A long name is cut short.
   const cases::Case& knee = model()->knee();
   const std::string side_words = std::string(bones::to_text(knee.side)) + " knee";
   const std::string patient = case_->identity() ? case_->identity()->in_words() : knee.name;
-  const auto line = [&](ImFont* font, float y, ImU32 color, const std::string& words) {
-    const ImVec4 clip{rest.x, area.y, rest.x + rest.width, area.y + area.height};
-    draw.AddText(font, font->FontSize, {rest.x, y}, color, words.c_str(), nullptr, 0, &clip);
+  const auto line = [&](const char* id, ImFont* of, float y, ImU32 color, const std::string& whole) {
+    const std::string words = widgets::fitting(of, whole, rest.width);
+    draw.AddText(of, of->FontSize, {rest.x, y}, color, words.c_str());
+    ui.log.note(id, {rest.x, y},
+                {rest.x + of->CalcTextSizeA(of->FontSize, 1e9F, 0, words.c_str()).x, y + of->FontSize});
   };
-  line(ui.theme.title, rest.y, widgets::kText, side_words);
-  line(ui.theme.strong, rest.y + ui.theme.title->FontSize, widgets::kQuietText, patient);
-  ImFont* const font = ui.theme.body;
-  const auto [text, warns] = status_words();
-  const float standing = font->CalcTextSizeA(font->FontSize, 1e9F, 0, kNotice).x + ui.theme.px(20);
-  // What is to be said now is said whole: what always stands there goes up beside the side, and never away.
-  const bool has_room =
-      !warns || standing + font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x <= foot.width;
-  const ImVec2 notice_at =
-      has_room ? foot.min() : ImVec2{area.x + area.width - standing, rest.y + ui.theme.px(4)};
-  draw.AddText(font, font->FontSize, notice_at, widgets::kQuietText, kNotice);
-  ui.log.note("app.notice", notice_at, {notice_at.x + standing, notice_at.y + font->FontSize});
+  line("app.side", ui.theme.title, rest.y, widgets::kText, side_words);
+  line("app.whose", ui.theme.strong, rest.y + ui.theme.title->FontSize, widgets::kQuietText, patient);
   const float left = foot.x + (has_room ? standing : 0);
   const std::string words = warns ? widgets::fitting(font, text, foot.x + foot.width - left) : "";
   ui.log.note_state("header_notice", words);

@@ -160,7 +160,7 @@ bool WorkstationWindow::frame(double timeout_s) {
   guarded([&] { actions_.advance(ui.now_s); });  // after the buttons: what was let go in this frame is known
   end_frame(ui.now_s);
   const double took_s = GraphicsWindow::now_s() - begun_s;
-  slow_.drawn(took_s, has_running_work());
+  slow_.drawn(took_s, !shows_start() && !shows_paint() && shown().has_running_work());
   log_.add("frame_ms", 1000 * took_s);
   log_.end_frame();
   return woken;

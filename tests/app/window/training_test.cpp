@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/app/window/display.h"
@@ -114,7 +115,11 @@ TEST_F(WorkstationTraining, Hazard40NavigateStartsNothingWhileItIsLent) {
   const std::string refusal = "An exercise runs here: end it in Train (F6) first";
   ASSERT_TRUE(app.hold_until("k", "notice", refusal));
   EXPECT_EQ(app.state("header_notice"), refusal);
-  EXPECT_TRUE(app.widgets().contains("app.notice")) << "research software, beside whatever is to be said";
+  const std::map<std::string, Area> shown = app.widgets();
+  ASSERT_TRUE(shown.contains("app.notice")) << "research software, beside whatever is to be said";
+  const auto right_of = [&](const char* name) { return shown.at(name).x + shown.at(name).width; };
+  EXPECT_GE(shown.at("app.notice").x, right_of("app.side")) << "and not over whose knee it is";
+  EXPECT_GE(shown.at("app.notice").x, right_of("app.whose"));
   EXPECT_EQ(app.state("cameras"), "none");
   EXPECT_EQ(app.state("source_kind"), "SIMULATION");
   ASSERT_TRUE(app.hold_until("Escape", "source_kind", "none", 60));
