@@ -1,5 +1,5 @@
 // Inner header: one still picture out of its bytes, and into them. Decoded by the libraries that decode the
-// videos: OpenCV's own reader of pictures brings in over a hundred libraries, which every start of the
+// videos: OpenCV's own reader of pictures brings in fifty libraries more, which every start of the
 // program would wait for.
 #pragma once
 
