@@ -238,7 +238,10 @@ bool GraphicsWindow::begin_frame(double timeout_s) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
-  if (ImGui::GetIO().WantTextInput) s.keys.clear();
+  // A field takes every key but the one that means nothing in a line of text: the pedal for the way back,
+  // which must not be dead in a field that was opened by a slip.
+  if (ImGui::GetIO().WantTextInput)
+    std::erase_if(s.keys, [](const KeyPress& press) { return press.key != GLFW_KEY_PAGE_UP; });
   return came;
 }
 

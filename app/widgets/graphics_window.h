@@ -37,7 +37,7 @@ class GraphicsWindow {
   void show_frame();
   // A text field is about to take the keyboard: what is typed waits for it, a few frames at most.
   void await_text_field();
-  // Keys pressed in this frame, unless a text field has them.
+  // Keys pressed in this frame; where a text field has them, only what means nothing to it (page up).
   [[nodiscard]] const std::vector<KeyPress>& keys() const;
   // Keys let go in this frame (GLFW_KEY_*), also those that a text field has.
   [[nodiscard]] const std::vector<int>& released_keys() const;
