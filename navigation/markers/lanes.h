@@ -52,19 +52,19 @@ inline void logarithm_of(const Floats& value, Floats& result) {
 inline void transpose(Floats (&rows)[8]) {
   Floats pairs[8], fours[8];
   for (int k = 0; k < 8; k += 2) {
-    pairs[k] = __builtin_shuffle(rows[k], rows[k + 1], Ints{0, 8, 1, 9, 4, 12, 5, 13});
-    pairs[k + 1] = __builtin_shuffle(rows[k], rows[k + 1], Ints{2, 10, 3, 11, 6, 14, 7, 15});
+    pairs[k] = __builtin_shufflevector(rows[k], rows[k + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    pairs[k + 1] = __builtin_shufflevector(rows[k], rows[k + 1], 2, 10, 3, 11, 6, 14, 7, 15);
   }
   for (int k = 0; k < 8; k += 4) {
     for (int i = 0; i < 2; ++i) {
-      fours[k + 2 * i] = __builtin_shuffle(pairs[k + i], pairs[k + i + 2], Ints{0, 1, 8, 9, 4, 5, 12, 13});
+      fours[k + 2 * i] = __builtin_shufflevector(pairs[k + i], pairs[k + i + 2], 0, 1, 8, 9, 4, 5, 12, 13);
       fours[k + 2 * i + 1] =
-          __builtin_shuffle(pairs[k + i], pairs[k + i + 2], Ints{2, 3, 10, 11, 6, 7, 14, 15});
+          __builtin_shufflevector(pairs[k + i], pairs[k + i + 2], 2, 3, 10, 11, 6, 7, 14, 15);
     }
   }
   for (int k = 0; k < 4; ++k) {
-    rows[k] = __builtin_shuffle(fours[k], fours[k + 4], Ints{0, 1, 2, 3, 8, 9, 10, 11});
-    rows[k + 4] = __builtin_shuffle(fours[k], fours[k + 4], Ints{4, 5, 6, 7, 12, 13, 14, 15});
+    rows[k] = __builtin_shufflevector(fours[k], fours[k + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    rows[k + 4] = __builtin_shufflevector(fours[k], fours[k + 4], 4, 5, 6, 7, 12, 13, 14, 15);
   }
 }
 
