@@ -65,7 +65,7 @@ double BoneGrid::depth_at(const Vector3d& p_mm) const {
   return face(0) + f.z() * (face(plane) - face(0));
 }
 
-BoneGrid bone_grid(const VolumeSampler& postop, const geometry::RigidTransform& postop_from_plan,
+BoneGrid bone_grid(const images::VolumeSampler& postop, const geometry::RigidTransform& postop_from_plan,
                    const geometry::Surface& bone, const Vector3d& near_mm, double radius_mm) {
   const geometry::Bounds bounds = geometry::bounds_of(bone.mesh());
   const Vector3d low = (bounds.min_mm.array() - kRoom_mm).max(near_mm.array() - radius_mm),

@@ -8,7 +8,7 @@
 
 #include "planning/geometry/rigid_transform.h"
 #include "planning/geometry/surface.h"
-#include "planning/postop/volume_sampler.h"
+#include "planning/images/volume_sampler.h"
 
 namespace arthronaut::postop {
 
@@ -38,7 +38,7 @@ struct BoneGrid {
 };
 
 // Of the part of the bone within `radius_mm` of a place in the plan's frame.
-[[nodiscard]] BoneGrid bone_grid(const VolumeSampler& postop,
+[[nodiscard]] BoneGrid bone_grid(const images::VolumeSampler& postop,
                                  const geometry::RigidTransform& postop_from_plan,
                                  const geometry::Surface& bone, const Eigen::Vector3d& near_mm,
                                  double radius_mm);

@@ -31,8 +31,8 @@ double merit(const EdgePose& pose) {
 
 }  // namespace
 
-FoundBone find_bone(const VolumeSampler& postop, const BoneField& field, const geometry::TriangleMesh& bone,
-                    const Eigen::Vector3d& near_mm) {
+FoundBone find_bone(const images::VolumeSampler& postop, const BoneField& field,
+                    const geometry::TriangleMesh& bone, const Eigen::Vector3d& near_mm) {
   FoundBone found;
   const auto samples = surface_samples(bone, near_mm, kRadius_mm, kSamples);
   if (samples.empty()) {

@@ -25,7 +25,7 @@ struct FoundBone {
 };
 
 // `near_mm`: the planned entry. The surface within 90 mm of it is what is looked for.
-[[nodiscard]] FoundBone find_bone(const VolumeSampler& postop, const BoneField& field,
+[[nodiscard]] FoundBone find_bone(const images::VolumeSampler& postop, const BoneField& field,
                                   const geometry::TriangleMesh& bone, const Eigen::Vector3d& near_mm);
 
 }  // namespace arthronaut::postop

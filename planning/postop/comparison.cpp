@@ -64,13 +64,13 @@ bool is_against(const AchievedTunnel& achieved, const tunnels::Tunnel& plan) {
 
 struct PostopImages::Prepared {
   const images::Volume& volume;
-  VolumeSampler sampler;
+  images::VolumeSampler sampler;
   BoneField field;
 };
 
 PostopImages::PostopImages(const images::Volume& postop, const ComparisonOptions& options)
     : prepared_(std::make_unique<Prepared>(
-          Prepared{postop, VolumeSampler(postop), bone_field(postop, options.threshold_hu)})) {}
+          Prepared{postop, images::VolumeSampler(postop), bone_field(postop, options.threshold_hu)})) {}
 PostopImages::~PostopImages() = default;
 PostopImages::PostopImages(PostopImages&&) noexcept = default;
 PostopImages& PostopImages::operator=(PostopImages&&) noexcept = default;

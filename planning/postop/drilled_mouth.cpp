@@ -24,7 +24,8 @@ struct Column {
   double most_hu = 0, outside_hu = 0;
 };
 
-std::optional<Column> column_at(const VolumeSampler& postop, const geometry::RigidTransform& postop_from_plan,
+std::optional<Column> column_at(const images::VolumeSampler& postop,
+                                const geometry::RigidTransform& postop_from_plan,
                                 const geometry::Surface& bone, const Vector3d& place, const Vector3d& inward,
                                 double reach_mm) {
   std::optional<geometry::RayHit> entry;
@@ -61,7 +62,7 @@ std::optional<Passage> passage_of(const geometry::Surface& bone, const Vector3d&
   return Passage{entry->point_mm, exit->point_mm};
 }
 
-SeenMouth mouth_at(const VolumeSampler& postop, const geometry::RigidTransform& postop_from_plan,
+SeenMouth mouth_at(const images::VolumeSampler& postop, const geometry::RigidTransform& postop_from_plan,
                    const geometry::Surface& bone, const Vector3d& place_mm, const Vector3d& inward,
                    double radius_mm) {
   const Vector3d u = inward.unitOrthogonal(), v = inward.cross(u);
@@ -98,7 +99,7 @@ SeenMouth mouth_at(const VolumeSampler& postop, const geometry::RigidTransform& 
   return mouth;
 }
 
-std::optional<double> blind_end_mm(const VolumeSampler& postop,
+std::optional<double> blind_end_mm(const images::VolumeSampler& postop,
                                    const geometry::RigidTransform& postop_from_plan, const Passage& passage,
                                    double radius_mm, double contrast_hu) {
   const double length = passage.length_mm();

@@ -5,7 +5,7 @@
 
 #include "planning/geometry/rigid_transform.h"
 #include "planning/geometry/surface.h"
-#include "planning/postop/volume_sampler.h"
+#include "planning/images/volume_sampler.h"
 
 namespace arthronaut::postop {
 
@@ -32,7 +32,7 @@ struct SeenMouth {
 };
 
 // `place_mm`: on the bone's surface. `inward`: unit, along the bore into the bone.
-[[nodiscard]] SeenMouth mouth_at(const VolumeSampler& postop,
+[[nodiscard]] SeenMouth mouth_at(const images::VolumeSampler& postop,
                                  const geometry::RigidTransform& postop_from_plan,
                                  const geometry::Surface& bone, const Eigen::Vector3d& place_mm,
                                  const Eigen::Vector3d& inward, double radius_mm);
@@ -40,7 +40,7 @@ struct SeenMouth {
 // How far from the entry a bore ends that does not come out: where the grey of its middle first steps up by
 // half of `contrast_hu`, what its wall stands out by. nullopt when no step is seen that stands out of the
 // noise.
-[[nodiscard]] std::optional<double> blind_end_mm(const VolumeSampler& postop,
+[[nodiscard]] std::optional<double> blind_end_mm(const images::VolumeSampler& postop,
                                                  const geometry::RigidTransform& postop_from_plan,
                                                  const Passage& passage, double radius_mm,
                                                  double contrast_hu);

@@ -222,7 +222,7 @@ class Finder {
   }
 
   const images::Volume& volume_;
-  VolumeSampler sampler_;
+  images::VolumeSampler sampler_;
   geometry::RigidTransform postop_from_plan_;
   const geometry::Surface& bone_;
   BoneGrid grid_;

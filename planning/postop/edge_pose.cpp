@@ -31,7 +31,8 @@ struct Edge {
   std::optional<double> outward_mm;  // of the sample's place
 };
 
-Edge edge_at(const VolumeSampler& postop, const Vector3d& q, const Vector3d& outward, double reach_mm) {
+Edge edge_at(const images::VolumeSampler& postop, const Vector3d& q, const Vector3d& outward,
+             double reach_mm) {
   const int reach = static_cast<int>(std::lround(reach_mm / kStep_mm)), room = reach + kSide + 1,
             count = 2 * room + 1;
   std::vector<double> profile(static_cast<std::size_t>(count)), until(static_cast<std::size_t>(count) + 1, 0);
@@ -83,8 +84,8 @@ struct Look {
   std::size_t in_view = 0;
 };
 
-Look look(const VolumeSampler& postop, std::span<const SurfaceSample> samples, const RigidTransform& pose,
-          double reach_mm) {
+Look look(const images::VolumeSampler& postop, std::span<const SurfaceSample> samples,
+          const RigidTransform& pose, double reach_mm) {
   Look result;
   for (const SurfaceSample& sample : samples) {
     const Vector3d q = pose * sample.point_mm, n = pose.rotate(sample.normal);
@@ -164,7 +165,7 @@ double EdgePose::sigma_at_mm(const Vector3d& p_in_plan) const {
   return std::sqrt(std::max(0.0, (by_pose * covariance * by_pose.transpose()).trace()));
 }
 
-EdgePose edge_pose(const VolumeSampler& postop, std::span<const SurfaceSample> samples,
+EdgePose edge_pose(const images::VolumeSampler& postop, std::span<const SurfaceSample> samples,
                    const RigidTransform& postop_from_plan) {
   struct Round {
     double reach_mm;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "planning/geometry/rigid_transform.h"
+#include "planning/images/volume_sampler.h"
 #include "planning/postop/surface_samples.h"
-#include "planning/postop/volume_sampler.h"
 
 namespace arthronaut::postop {
 
@@ -33,7 +33,7 @@ struct EdgePose {
 // between the cortex and what lies beside it (as segmentation/edge_surface.h has it), sought along the normal
 // of each sample; the pose that brings the samples onto them is found by point-to-plane least squares, edges
 // that disagree left out (Tukey).
-[[nodiscard]] EdgePose edge_pose(const VolumeSampler& postop, std::span<const SurfaceSample> samples,
+[[nodiscard]] EdgePose edge_pose(const images::VolumeSampler& postop, std::span<const SurfaceSample> samples,
                                  const geometry::RigidTransform& postop_from_plan);
 
 }  // namespace arthronaut::postop

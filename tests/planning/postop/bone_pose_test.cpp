@@ -28,7 +28,7 @@ test::KnownCtOptions half_fine() {
 
 FoundBone found_in(const images::Volume& volume, const phantom::PhantomKnee& sought, bones::BoneKind kind) {
   const bool is_femur = kind == bones::BoneKind::Femur;
-  const VolumeSampler sampler(volume);
+  const images::VolumeSampler sampler(volume);
   return find_bone(sampler, bone_field(volume, 200), (is_femur ? sought.femur : sought.tibia).mesh,
                    (is_femur ? sought.femoral_tunnel : sought.tibial_tunnel).entry_mm);
 }
