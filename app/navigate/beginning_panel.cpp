@@ -92,8 +92,6 @@ std::optional<double> DepthEntry::draw(const widgets::Ui& ui, const widgets::Rec
     trouble_ = depth_mm ? "" : "Not a number of millimetres from 0 to 150: once more, then Enter";
     return depth_mm;
   }
-  // The pedal that is a key goes into the field, which has no use for it.
-  if (ImGui::IsItemActive() && ImGui::IsKeyPressed(ImGuiKey_PageUp, false)) close();
   if (!wants_focus_ && ImGui::IsItemDeactivated()) close();
   wants_focus_ = false;
   return std::nullopt;

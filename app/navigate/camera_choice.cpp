@@ -132,8 +132,6 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
   const bool is_entered = ImGui::InputText("##stream", &text_, ImGuiInputTextFlags_EnterReturnsTrue);
   ui.log.note("navigate.stream_field", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   is_typing_ = ImGui::IsItemActive();
-  // The pedal that is a key goes into the field, which has no use for it.
-  const bool goes_back = is_typing_ && ImGui::IsKeyPressed(ImGuiKey_PageUp, false);
   // Esc; a click elsewhere leaves the field, and what is typed stays.
   const bool was_left =
       !wants_focus_ && ImGui::IsItemDeactivated() && !ImGui::IsMouseDown(ImGuiMouseButton_Left);
@@ -144,7 +142,7 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
     if (auto taken = take_address(text_)) return taken;
     if (trouble_.empty()) text_.clear();  // a tracker's: the pictures are still to be chosen
     wants_focus_ = true;
-  } else if (was_left || goes_back) {
+  } else if (was_left) {
     close();
   }
   return std::nullopt;
