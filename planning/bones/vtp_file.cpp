@@ -7,6 +7,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkStringArray.h>
+#include <vtkXMLDataElement.h>
 #include <vtkXMLPolyDataReader.h>
 
 #include <new>
@@ -41,8 +42,9 @@ class ErrorObserver : public vtkCommand {
 };
 
 // A count in a broken header must not become an allocation: zlib packs at most about 1030 bytes into one.
+constexpr double kMostPerByte = 1100;
+
 void refuse_impossible_counts(const std::filesystem::path& file, std::string_view text) {
-  constexpr double kMostPerByte = 1100;
   for (auto at = text.find("NumberOf"); at != std::string_view::npos; at = text.find("NumberOf", at + 1)) {
     const auto open = text.find_first_of("\"'", at);
     if (open == std::string_view::npos || open > at + 40) continue;
@@ -53,6 +55,32 @@ void refuse_impossible_counts(const std::filesystem::path& file, std::string_vie
     }
   }
 }
+
+// VTK makes room for as many corners as the offsets say, which no count in the header tells.
+class BoundedReader : public vtkXMLPolyDataReader {
+ public:
+  static BoundedReader* New() { return new BoundedReader; }
+  void bound(double most_values) { most_values_ = most_values; }
+
+ protected:
+  int ReadArrayValues(vtkXMLDataElement* element, vtkIdType at, vtkAbstractArray* array, vtkIdType start,
+                      vtkIdType count, FieldType type) override {
+    if (!vtkXMLPolyDataReader::ReadArrayValues(element, at, array, start, count, type)) return 0;
+    const char* name = element->GetAttribute("Name");
+    auto* offsets = vtkDataArray::SafeDownCast(array);
+    if (!name || std::string_view(name) != "offsets" || !offsets) return 1;
+    for (vtkIdType i = 0; i < offsets->GetNumberOfTuples(); ++i) {
+      const double offset = offsets->GetComponent(i, 0);
+      if (offset >= 0 && offset <= most_values_) continue;
+      vtkErrorMacro("an offset that the file cannot hold");
+      return 0;
+    }
+    return 1;
+  }
+
+ private:
+  double most_values_ = 0;
+};
 
 template <typename Append>
 void for_each_cell(const std::filesystem::path& file, vtkCellArray* cells, std::size_t vertex_count,
@@ -100,7 +128,8 @@ std::optional<Space> space_of_field(vtkFieldData* field) {
 RawMesh parse_vtp(const std::filesystem::path& file, std::string_view text) {
   refuse_impossible_counts(file, text);
   vtkNew<ErrorObserver> errors;
-  vtkNew<vtkXMLPolyDataReader> reader;
+  vtkNew<BoundedReader> reader;
+  reader->bound(kMostPerByte * static_cast<double>(text.size()));
   reader->AddObserver(vtkCommand::ErrorEvent, errors);
   reader->AddObserver(vtkCommand::WarningEvent, errors);
   reader->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, errors);

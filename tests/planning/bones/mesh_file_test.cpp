@@ -161,6 +161,21 @@ TEST(MeshFile, IndicesOutOfRangeAreRefused) {
   }
 }
 
+// VTK makes room for what the last offset says: one wrong digit asked for gigabytes.
+TEST(MeshFile, OffsetsThatTheFileCannotHoldAreRefused) {
+  const TemporaryFolder folder;
+  const std::string last = std::to_string(3 * bone_like().triangles.size()) + " </DataArray></Polys>";
+  for (const char* bad : {"555555555", "-3"}) {
+    std::string contents = test::vtp(bone_like());
+    const auto at = contents.find(last);
+    ASSERT_NE(at, std::string::npos);
+    contents.replace(at, last.find(' '), bad);
+    test::write_bytes(folder / "a.vtp", contents);
+    EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_mesh(folder / "a.vtp"); }),
+                AllOf(HasSubstr("a.vtp"), HasSubstr("an offset that the file cannot hold")));
+  }
+}
+
 TEST(MeshFile, EmptyAndForeignFilesAreRefused) {
   const TemporaryFolder folder;
   for (const char* name : {"a.stl", "a.ply", "a.obj", "a.vtk", "a.vtp"}) {
