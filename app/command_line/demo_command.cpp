@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include "app/command_line/command.h"
@@ -15,7 +16,13 @@ namespace fs = std::filesystem;
 struct DemoArguments {
   std::string output, side = "right";
   std::uint64_t seed = 1;
+  std::vector<std::string> surroundings;
 };
+
+simulator::SurroundingsOptions surroundings_from(const std::vector<std::string>& names) {
+  const auto has = [&](const char* name) { return std::ranges::find(names, name) != names.end(); };
+  return {.soft_tissue = has("soft-tissue"), .motes = has("motes"), .other_hand = has("other-hand")};
+}
 
 // Without a name of the user's: the first of demo.arthro, demo-2.arthro, ... that is not there.
 fs::path folder_of(const DemoArguments& arguments) {
@@ -48,11 +55,17 @@ void add_demo_command(CLI::App& app, Context& context) {
   command->add_option("--seed", arguments->seed, "Another knee and another hand for each seed")
       ->check(a_seed())
       ->capture_default_str();
+  command
+      ->add_option("--surroundings", arguments->surroundings,
+                   "What else the joint shows, separated by commas: soft-tissue, motes, other-hand")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"soft-tissue", "motes", "other-hand"}));
   command->callback([&context, arguments] {
     const std::filesystem::path folder = folder_of(*arguments);
-    run_demo(
-        context,
-        {.case_folder = folder, .seed = arguments->seed, .side = bones::side_from_text(arguments->side)});
+    run_demo(context, {.case_folder = folder,
+                       .seed = arguments->seed,
+                       .side = bones::side_from_text(arguments->side),
+                       .surroundings = surroundings_from(arguments->surroundings)});
     workstation_library::note_case(folder);
   });
 }

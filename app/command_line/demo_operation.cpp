@@ -87,6 +87,7 @@ class Demo {
     simulation_.tools = tools::standard_tools();
     simulation_.plan = simulation_.knee.femoral_tunnel;
     simulation_.seed = options_.seed;
+    simulation_.surroundings = options_.surroundings;
     const geometry::TriangleMesh& mesh = simulation_.knee.femur.mesh;
     femur_ = std::make_shared<const geometry::Surface>(mesh);
     planned_length_mm_ = tunnels::measure(simulation_.plan, *femur_).length_mm;

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "app/command_line/command.h"
+#include "navigation/simulator/surroundings.h"
 #include "planning/bones/bone.h"
 
 namespace arthronaut::command_line {
@@ -12,6 +13,7 @@ struct DemoOptions {
   std::filesystem::path case_folder;  // not there yet
   std::uint64_t seed = 1;
   bones::Side side = bones::Side::Right;
+  simulator::SurroundingsOptions surroundings = {};
 };
 
 // Says each step with its numbers, and those against the truth of the simulation. Sets the exit code to 4,

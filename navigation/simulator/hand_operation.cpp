@@ -128,7 +128,8 @@ struct HandOperation::State {
   Staging staging;
   HandScene scene;
   HandControl control;
-  RigidTransform bone_from_world;  // the marker, where it is now
+  RigidTransform bone_from_world;                       // the marker, where it is now
+  Surroundings probe_surroundings, guide_surroundings;  // of either tool's view
   BoneView bone_view;
   Renderer renderer;
   sources::SourceInfo info;
@@ -147,6 +148,8 @@ struct HandOperation::State {
         scene(scene_of(o, staging, bone, hand)),
         control(scene.start, bone, hand.limits),
         bone_from_world(staging.bone_from_world_marker),
+        probe_surroundings(surroundings_seen_from(scene.start.bone_from_camera_probe)),
+        guide_surroundings(surroundings_seen_from(scene.start.bone_from_camera_guide)),
         bone_view(mesh_of(o), o.seed),
         renderer(&bone_view, SensorOptions{.blur_sigma_px = std::max(0.5, hand.picture_share)}),
         bone_from_probe(staging.strokes.front().front().bone_from_marker),
@@ -161,6 +164,16 @@ struct HandOperation::State {
     info.kind = sources::SourceKind::Simulation;
     info.image_size_px = camera.image_size_px;
     info.frames_per_second = options.frames_per_second;
+  }
+
+  Surroundings surroundings_seen_from(const RigidTransform& bone_from_camera) const {
+    if (!options.surroundings.any()) return {};
+    return {options.surroundings,
+            bone,
+            {.worked_at_mm = scene.plan.entry_mm,
+             .kept_free_mm = bone_from_world.translation_mm,
+             .bone_from_camera = bone_from_camera},
+            options.seed};
   }
 
   bool is_due(const Fault& fault) const {
@@ -238,6 +251,7 @@ struct HandOperation::State {
     const bool is_probe = now.held == Held::Probe;
     add_tool(is_probe ? probe_of(options.tools) : guide_of(options),
              camera_from_bone * (is_probe ? bone_from_probe : bone_from_guide), picture.solids);
+    (is_probe ? probe_surroundings : guide_surroundings).add(time_s, camera_from_bone, picture.solids);
     const camera::CameraModel model(camera, camera.lens_angle_rad(now.mark_angle_deg),
                                     options.refractive_index);
     const auto frame = std::make_shared<camera::Frame>();

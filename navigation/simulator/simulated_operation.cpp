@@ -44,6 +44,7 @@ struct SimulatedOperation::State {
   Staging staging;
   tunnels::Tunnel aim;
   Script script;
+  Surroundings surroundings;
   BoneView bone_view;
   Renderer renderer;
   sources::SourceInfo info;
@@ -67,6 +68,12 @@ struct SimulatedOperation::State {
       aim = aimed_tunnel(options, bone);
     }
     script = write_script();
+    if (options.surroundings.any() && phase != Phase::Calibrate)
+      surroundings = Surroundings(options.surroundings, bone,
+                                  {.worked_at_mm = options.plan.entry_mm,
+                                   .kept_free_mm = staging.bone_from_world_marker.translation_mm,
+                                   .bone_from_camera = script.front().bone_from_camera},
+                                  options.seed);
     exposure = fitting_exposure();
     info.name = "simulated arthroscope";
     info.kind = sources::SourceKind::Simulation;
@@ -148,6 +155,8 @@ struct SimulatedOperation::State {
       const geometry::RigidTransform camera_from_tool = truth.camera_from_bone * *tool_pose;
       add_truth(tool(), camera_from_tool);
       add_tool(tool(), camera_from_tool, scene.solids);
+      surroundings.add(static_cast<double>(index) / options.frames_per_second, truth.camera_from_bone,
+                       scene.solids);
     }
     const camera::CameraModel model(options.camera, options.camera.lens_angle_rad(truth.mark_angle_deg),
                                     phase == Phase::Calibrate ? 1.0 : options.refractive_index);

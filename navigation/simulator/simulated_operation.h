@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "navigation/camera/camera_model.h"
-#include "navigation/registration/registration.h"
+#include "navigation/simulator/surroundings.h"
 #include "navigation/sources/frame_source.h"
 #include "navigation/tools/tool_set.h"
 #include "planning/phantom/phantom_knee.h"
@@ -35,6 +35,7 @@ struct SimulationOptions {
   int rest_count = 0;   // Scratch: places where the tip rests for 1.5 s after the strokes, to touch them
   double drill_error_mm = 0.6, drill_error_deg = 1.0;  // how well the scripted surgeon aims
   double square_mm = 1.5;                              // of the checkerboard
+  SurroundingsOptions surroundings;                    // in all phases but Calibrate
 };
 
 // What was true in a frame; poses are exact.

@@ -216,10 +216,16 @@ std::vector<Fault> faults_of(const Exercise& exercise, Level level) {
   return {};
 }
 
+simulator::SurroundingsOptions surroundings_of(const Exercise& exercise, Level level) {
+  if (level == Level::Easy || exercise.goal == Goal::Calibrate) return {};
+  return {.soft_tissue = true, .motes = true, .other_hand = level == Level::Hard};
+}
+
 std::string words_of_faults(const Exercise& exercise, Level level) {
   std::string words;
-  for (const Fault& fault : faults_of(exercise, level))
-    words += (words.empty() ? "" : ", ") + std::string(to_text(fault.kind));
+  const auto add = [&](std::string_view word) { words += (words.empty() ? "" : ", ") + std::string(word); };
+  for (const Fault& fault : faults_of(exercise, level)) add(to_text(fault.kind));
+  for (const std::string_view word : simulator::words_of(surroundings_of(exercise, level))) add(word);
   return words.empty() ? "nothing goes wrong" : words;
 }
 

@@ -69,7 +69,9 @@ struct Exercise {
 [[nodiscard]] const Exercise* find_exercise(std::string_view id);
 // What the simulator does against it at this level; nothing where it is easy.
 [[nodiscard]] std::vector<simulator::Fault> faults_of(const Exercise& exercise, Level level);
-// "bleeding, glare"; "nothing goes wrong".
+// What the joint shows beside bone and tools: nothing where it is easy, nor where a board is all there is.
+[[nodiscard]] simulator::SurroundingsOptions surroundings_of(const Exercise& exercise, Level level);
+// "bleeding, glare, soft tissue, motes"; "nothing goes wrong".
 [[nodiscard]] std::string words_of_faults(const Exercise& exercise, Level level);
 
 }  // namespace arthronaut::training

@@ -38,6 +38,7 @@ simulator::SimulationOptions simulation_of(const ExerciseSetup& setup) {
   options.refractive_index = camera::kSalineIndex;
   options.seed = setup.seed;
   options.frames_per_second = kFramesPerSecond;
+  options.surroundings = surroundings_of(setup.exercise, setup.level);
   return options;
 }
 

@@ -9,9 +9,10 @@ namespace arthronaut::simulator {
 namespace {
 
 // Moments of the phase, evenly through it, round and round.
-void draw_frame(benchmark::State& state, Phase phase) {
+void draw_frame(benchmark::State& state, Phase phase, bool is_surrounded = false) {
   SimulationOptions options = phantom_options();
   options.frame_count = 200;
+  if (is_surrounded) options.surroundings = {.soft_tissue = true, .motes = true, .other_hand = true};
   auto operation = std::make_unique<SimulatedOperation>(options, phase);
   for (auto _ : state) {
     auto frame = operation->next();
@@ -40,6 +41,12 @@ BENCHMARK_CAPTURE(draw_frame, scratch, Phase::Scratch)
     ->UseRealTime()
     ->Iterations(100);
 BENCHMARK_CAPTURE(draw_frame, drill, Phase::Drill)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Iterations(100);
+
+BENCHMARK_CAPTURE(draw_frame, drill_surrounded, Phase::Drill, true)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime()
