@@ -81,8 +81,10 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewS
       const widgets::Rect below_left = below.cut_left(width / 2);
       widgets::number_block(ui, below_left, "Drill depth", widgets::fixed(drill->depth_mm, 1), "mm",
                             widgets::Severity::Quiet);
-      widgets::number_block(ui, below, "Remaining", widgets::fixed(drill->remaining_mm, 1), "mm",
-                            widgets::Severity::Quiet);
+      // As Navigate said it then: beyond the plan it is "Too deep", never a length with a minus sign.
+      const guidance_severity::DrillText text = guidance_severity::drill_text(*drill);
+      widgets::number_block(ui, below, text.name, text.mm, "mm",
+                            guidance_severity::severity_of_drill(*drill));
     }
     ImGui::Dummy({width, (drill ? 2 : 1) * height});
   } else {
