@@ -33,6 +33,7 @@ struct NavigateArguments {
   std::optional<double> medium_index;
   double duration_s = 0;  // 0: to the end
   int igtl_port = -1;     // -1: nothing is served
+  bool igtl_network = false;
   bool fixed_lens = false, no_copy = false;
   CLI::Option* probe_option = nullptr;
   CartilageArguments cartilage;
@@ -228,8 +229,10 @@ void navigate(Context& context, const NavigateArguments& arguments) {
 
   std::optional<openigtlink::IgtlServer> igtl;
   if (arguments.igtl_port >= 0) {
-    igtl.emplace(arguments.igtl_port);
-    context.say("OpenIGTLink: port " + std::to_string(igtl->port()));
+    using openigtlink::Reach;
+    igtl.emplace(arguments.igtl_port, arguments.igtl_network ? Reach::Network : Reach::ThisMachine);
+    context.say("OpenIGTLink: port " + std::to_string(igtl->port()) +
+                (arguments.igtl_network ? ", for other machines too" : ", for this machine alone"));
   }
   NewSession session(arguments.case_folder);
   theatre::NavigationSummary summary;
@@ -328,6 +331,8 @@ void add_navigate_command(CLI::App& app, Context& context) {
       ->add_option("--igtl", arguments->igtl_port,
                    "Serve poses and states by OpenIGTLink on this port, 0 for any free one, while it runs")
       ->check(between(0, 65535));
+  command->add_flag("--igtl-network", arguments->igtl_network,
+                    "Serve other machines too, and not this one alone: there is no password");
   add_tracker_option(*command, arguments->tracker);
   command
       ->add_option("--duration-s", arguments->duration_s,

@@ -31,11 +31,11 @@ constexpr double kRefusal_s = 6;  // long enough to be read
 
 NavigateView::NavigateView(std::function<void()> make_current, std::function<void()> wake,
                            const sources::DeviceTurns& turns, std::function<void(Elsewhere)> go_elsewhere,
-                           int igtl_port)
+                           std::shared_ptr<PoseSharing> sharing)
     : turns_(turns),
       go_elsewhere_(std::move(go_elsewhere)),
       scene_(std::move(make_current)),
-      sharing_(std::make_shared<PoseSharing>(igtl_port)),
+      sharing_(std::move(sharing)),
       bones_(wake, [sharing = sharing_](const theatre::LiveState& live) { sharing->tell(live); }),
       resume_(wake) {
   bones_.keep_pictures_as(load_picture_keeping(picture_keeping_file()));

@@ -30,9 +30,10 @@ enum class Elsewhere { Plan, SetUp };
 class NavigateView : public mode::Mode {
  public:
   // wake: ends the window's wait for input; called from other threads. turns: shared with whatever else opens
-  // cameras. go_elsewhere: shows another mode. igtl_port: see PoseSharing.
+  // cameras. go_elsewhere: shows another mode. sharing: what other programs hear of it.
   NavigateView(std::function<void()> make_current, std::function<void()> wake,
-               const sources::DeviceTurns& turns, std::function<void(Elsewhere)> go_elsewhere, int igtl_port);
+               const sources::DeviceTurns& turns, std::function<void(Elsewhere)> go_elsewhere,
+               std::shared_ptr<PoseSharing> sharing);
   ~NavigateView() override;
 
   [[nodiscard]] mode::ModeTitle title() const override;

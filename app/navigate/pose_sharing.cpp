@@ -4,7 +4,6 @@
 #include <mutex>
 
 #include "app/navigate/navigate_display.h"
-#include "navigation/openigtlink/igtl_server.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::navigate {
@@ -19,16 +18,18 @@ double utc_now_s() {
 
 struct PoseSharing::State {
   std::optional<openigtlink::IgtlServer> server;
+  openigtlink::Reach reach{};
   std::string trouble;
   std::mutex mutex;        // of what follows
   bones::BoneKind bone{};  // whose operation gave pictures last
   camera::FramePtr last;   // that was sent: held, so that no other one comes to lie where it lay
 };
 
-PoseSharing::PoseSharing(int port) : state_(std::make_unique<State>()) {
+PoseSharing::PoseSharing(int port, openigtlink::Reach reach) : state_(std::make_unique<State>()) {
+  state_->reach = reach;
   if (port < 0) return;
   try {  // a port that is taken hinders nobody's operation
-    state_->server.emplace(port);
+    state_->server.emplace(port, reach);
   } catch (const DeviceError& error) {
     state_->trouble = error.what();
   }
@@ -57,7 +58,9 @@ int PoseSharing::port() const { return state_->server ? state_->server->port() :
 
 std::string PoseSharing::words() const {
   if (!state_->server) return state_->trouble;
-  return "port " + std::to_string(port()) + ", " + std::to_string(state_->server->client_count()) + " listen";
+  const bool is_network = state_->reach == openigtlink::Reach::Network;
+  return "port " + std::to_string(port()) + (is_network ? ", whole network, " : ", this machine, ") +
+         std::to_string(state_->server->client_count()) + " listen";
 }
 
 }  // namespace arthronaut::navigate

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "navigation/openigtlink/igtl_server.h"
 #include "navigation/theatre/live_operation.h"
 
 namespace arthronaut::navigate {
@@ -15,7 +16,7 @@ namespace arthronaut::navigate {
 class PoseSharing {
  public:
   // port: -1: nothing is served; 0: any free one. A port that is taken is told by words().
-  explicit PoseSharing(int port);
+  explicit PoseSharing(int port, openigtlink::Reach reach = openigtlink::Reach::ThisMachine);
   ~PoseSharing();
   PoseSharing(const PoseSharing&) = delete;
   PoseSharing& operator=(const PoseSharing&) = delete;
@@ -25,7 +26,7 @@ class PoseSharing {
   void tell(const theatre::LiveState& live);
 
   [[nodiscard]] int port() const;  // -1: nothing is served
-  // "port 18944, 2 listen", or why nothing is served; empty where nobody asked for it.
+  // "port 18944, this machine, 2 listen", or why nothing is served; empty where nobody asked for it.
   [[nodiscard]] std::string words() const;
 
  private:

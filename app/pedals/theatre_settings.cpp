@@ -148,6 +148,7 @@ TheatreSettings load_theatre_settings(const fs::path& file) {
     if (settings.igtl_port < 0 || settings.igtl_port > kLastPort)
       json.fail("igtl_port", "is no port from 0 to 65535");
   }
+  if (json.has("igtl_network")) settings.igtl_network = json.boolean("igtl_network");
   if (json.has("foot_switches"))
     for (const std::string& path : json.texts("foot_switches")) settings.foot_switches.emplace_back(path);
   if (json.has("pedals")) settings.codes = read_map(json.object("pedals"), code_from_name);

@@ -5,7 +5,7 @@
 //     "format": "arthronaut.theatre", "version": 1,
 //     "screen_diagonal_in": 27,
 //     "screen_stream": "udp://10.0.0.9:5004",
-//     "igtl_port": 18944,
+//     "igtl_port": 18944, "igtl_network": false,
 //     "foot_switches": ["/dev/input/by-id/usb-PCsensor_FootSwitch-event-kbd"],
 //     "pedals": { "do_it": ["KEY_B"], "back": ["KEY_A"], "overlay": ["KEY_C", "59"] },
 //     "keys": { "do_it": ["F8"], "back": ["B"], "overlay": [] }
@@ -32,6 +32,7 @@ struct TheatreSettings {
   std::optional<double> screen_diagonal_in;
   std::string screen_stream;  // where the screen is sent to when somebody asks for it; empty: nowhere
   int igtl_port = -1;         // where other programs get poses by OpenIGTLink (0: any free one); -1: nowhere
+  bool igtl_network = false;  // to other machines, too, and not to this one alone
   // Devices that are pedals. Empty: every input device whose name says that it is a pedal or a foot switch.
   std::vector<std::filesystem::path> foot_switches;
   std::map<int, Pedal> codes;  // of the kernel's events

@@ -20,6 +20,7 @@ class Room {
   [[nodiscard]] double screen_diagonal_mm() const;  // 0: nobody said
   [[nodiscard]] const std::string& screen_stream() const { return settings_.screen_stream; }
   [[nodiscard]] int igtl_port() const { return settings_.igtl_port; }
+  [[nodiscard]] bool igtl_network() const { return settings_.igtl_network; }
   // The key whose meaning this key has: its own, unless the settings say otherwise.
   [[nodiscard]] int meaning_of(int key) const;
   // Pedals that were pressed or let go, as keys; while `is_typing`, presses of all but the way back are

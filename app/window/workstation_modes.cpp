@@ -32,7 +32,9 @@ void WorkstationWindow::make_modes() {
         const bool is_plan = where == navigate::Elsewhere::Plan;
         actions_.run(is_plan ? "mode.plan" : "mode.setup");
       },
-      room_.igtl_port());
+      std::make_shared<navigate::PoseSharing>(room_.igtl_port(), room_.igtl_network()
+                                                                     ? openigtlink::Reach::Network
+                                                                     : openigtlink::Reach::ThisMachine));
   navigate::NavigateView* const screen = theatre.get();
   modes_.push_back(std::move(theatre));
   auto review = std::make_unique<review::ReviewView>(make_current, wake);

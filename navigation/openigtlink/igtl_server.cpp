@@ -6,10 +6,13 @@
 #include <igtlStatusMessage.h>
 #include <igtlTimeStamp.h>
 #include <igtlTransformMessage.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <cstdint>
 #include <mutex>
 #include <vector>
 
@@ -37,6 +40,27 @@ struct Nothing {};
 struct Wishes {
   std::atomic<bool> one_picture = false, pictures = false, picture_waits = false;
   std::atomic<int> waiting = 0;  // states that it did not take yet
+};
+
+// The library's own listens on every interface.
+class ListeningSocket : public igtl::ServerSocket {
+ public:
+  using Self = ListeningSocket;
+  using Pointer = igtl::SmartPointer<ListeningSocket>;
+  igtlTypeMacro(ListeningSocket, igtl::ServerSocket);
+  igtlNewMacro(ListeningSocket);
+
+  bool listen_on(int port, Reach reach) {
+    m_SocketDescriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const int again = 1;  // also right after a run that ended
+    ::setsockopt(m_SocketDescriptor, SOL_SOCKET, SO_REUSEADDR, &again, sizeof again);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(reach == Reach::Network ? INADDR_ANY : INADDR_LOOPBACK);
+    return ::bind(m_SocketDescriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+           Listen(m_SocketDescriptor) == 0;
+  }
 };
 
 bool send(igtl::Socket& socket, igtl::MessageBase& message, const std::string& name,
@@ -227,17 +251,17 @@ struct IgtlServer::State {
     clients.erase(gone, clients.end());
   }
 
-  igtl::ServerSocket::Pointer server = igtl::ServerSocket::New();
+  ListeningSocket::Pointer server = ListeningSocket::New();
   std::mutex mutex;
   std::vector<std::unique_ptr<Client>> clients;
   sources::BackgroundEnd ending;
   std::unique_ptr<Acceptor> acceptor;  // last: ends before the rest goes
 };
 
-IgtlServer::IgtlServer(int port) : state_(std::make_unique<State>()) {
+IgtlServer::IgtlServer(int port, Reach reach) : state_(std::make_unique<State>()) {
   // A client that leaves while something is sent is no reason to end.
   std::signal(SIGPIPE, SIG_IGN);
-  if (state_->server->CreateServer(port) < 0)
+  if (!state_->server->listen_on(port, reach))
     throw DeviceError("OpenIGTLink: port " + std::to_string(port) + " is taken or not allowed");
   state_->acceptor = std::make_unique<State::Acceptor>(
       worker::Backlog::NewestWins, [state = state_.get()](auto& inbox) { state->accept(inbox); });

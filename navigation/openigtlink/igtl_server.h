@@ -16,10 +16,14 @@
 
 namespace arthronaut::openigtlink {
 
+// Who may listen. Poses, plan and pictures of a patient go out without a password: to programs of this
+// machine, and to others only where somebody said so.
+enum class Reach { ThisMachine, Network };
+
 class IgtlServer {
  public:
-  // Listens on the port on every interface; 0: any free one. Throws DeviceError when it is taken.
-  explicit IgtlServer(int port);
+  // 0: any free port. Throws DeviceError when it is taken.
+  explicit IgtlServer(int port, Reach reach = Reach::ThisMachine);
   ~IgtlServer();
   IgtlServer(const IgtlServer&) = delete;
   IgtlServer& operator=(const IgtlServer&) = delete;

@@ -83,7 +83,7 @@ class PoseSharingTest : public ::testing::Test {
   void SetUp() override {
     for (int i = 0; i < 500 && sharing_.words().find(", 1 listen") == std::string::npos; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    ASSERT_EQ(sharing_.words(), "port " + std::to_string(sharing_.port()) + ", 1 listen");
+    ASSERT_EQ(sharing_.words(), "port " + std::to_string(sharing_.port()) + ", this machine, 1 listen");
   }
   PoseSharing sharing_{0};
   Listener listener_{sharing_.port()};

@@ -57,6 +57,9 @@ TEST_F(Settings, SayWhereTheScreenIsSentTo) {
   EXPECT_EQ(load("").screen_stream, "");
   EXPECT_EQ(load("").igtl_port, -1) << "nothing goes out unasked";
   EXPECT_EQ(load(R"(, "igtl_port": 18944)").igtl_port, 18944);
+  EXPECT_FALSE(load(R"(, "igtl_port": 18944)").igtl_network) << "not to other machines unasked";
+  EXPECT_TRUE(load(R"(, "igtl_port": 18944, "igtl_network": true)").igtl_network);
+  EXPECT_NE(refusal(", \"igtl_network\": 1").find("igtl_network"), std::string::npos);
   for (const char* bad : {"-1", "65536", "\"18944\"", "1.5"})
     EXPECT_NE(refusal(", \"igtl_port\": " + std::string(bad)).find("igtl_port"), std::string::npos) << bad;
   EXPECT_EQ(load(R"(, "screen_stream": "udp://10.0.0.9:5004")").screen_stream, "udp://10.0.0.9:5004");

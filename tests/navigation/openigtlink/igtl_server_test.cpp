@@ -324,6 +324,23 @@ TEST(IgtlServer, APortThatIsTakenIsSaid) {
   EXPECT_THROW(IgtlServer(server.port()), DeviceError);
 }
 
+// 127.0.0.2 is another address of this machine: who listens on 127.0.0.1 alone is not there, who listens on
+// every interface is.
+TEST(IgtlServer, ServesOtherAddressesOnlyWhereAsked) {
+  const auto answers_at = [](const char* address, int port) {
+    const auto socket = igtl::ClientSocket::New();
+    const bool is_there = socket->ConnectToServer(address, port) == 0;
+    socket->CloseSocket();
+    return is_there;
+  };
+  const IgtlServer alone(0);
+  EXPECT_TRUE(answers_at("127.0.0.1", alone.port()));
+  EXPECT_FALSE(answers_at("127.0.0.2", alone.port()));
+  const IgtlServer network(0, Reach::Network);
+  EXPECT_TRUE(answers_at("127.0.0.1", network.port()));
+  EXPECT_TRUE(answers_at("127.0.0.2", network.port()));
+}
+
 TEST(IgtlServer, AClientMayGoAtAnyTime) {
   IgtlServer server(0);
   {
