@@ -134,7 +134,7 @@ theatre::TheatreSource camera_setup(const open_case::PlanModel& model, bones::Bo
       return turns.open(address);
     };
   else
-    source.open = [address = pictures.address] { return sources::open_stream(address); };
+    source.open = [turns, address = pictures.address] { return turns.open_stream(address); };
   if (const auto& tracker = source.setup.pipeline.tools.tracker) {
     if (tracker->address.empty())
       throw InvalidInput(

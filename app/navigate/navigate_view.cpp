@@ -218,7 +218,8 @@ void NavigateView::choose_camera() {
 void NavigateView::offer_cameras() {
   cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()), used_before_,
                 [turns = turns_](const LivePictures& one) {
-                  return one.device ? turns.open_if_free({*one.device}) : sources::open_stream(one.address);
+                  return one.device ? turns.open_if_free({*one.device})
+                                    : turns.open_stream_if_free(one.address);
                 });
 }
 

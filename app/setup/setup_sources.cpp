@@ -84,11 +84,12 @@ FeedSource stills(const fs::path& folder) {
 }
 
 // Shown without its password.
-FeedSource stream(const std::string& address) {
+FeedSource stream(const std::string& address, const sources::DeviceTurns& turns) {
   FeedSource source;
   source.name = sources::shown_address(address);
   source.path = address;
-  source.open = [address] { return sources::open_stream(address); };
+  source.open = [turns, address] { return turns.open_stream(address); };
+  source.look = [turns, address] { return turns.open_stream_if_free(address); };
   source.is_live = true;
   return source;
 }
@@ -140,7 +141,7 @@ std::vector<FeedSource> sources_for(Purpose purpose, const fs::path& case_folder
       if (sources::is_camera_address(path.string()))
         offered.push_back(addressed_camera(path.string(), turns));
       else if (sources::is_stream_address(path.string()))
-        offered.push_back(stream(path.string()));
+        offered.push_back(stream(path.string(), turns));
     }
   };
   const auto offer_stills = [&](const fs::path& folder) {

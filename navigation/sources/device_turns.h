@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "navigation/sources/camera_device.h"
 #include "navigation/sources/camera_modes.h"
@@ -25,11 +26,13 @@ class DeviceTurns {
   [[nodiscard]] std::unique_ptr<FrameSource> open(const CameraAddress& address) const;
   // The same for who only looks: waits for nobody, and takes its turn from nobody who has it.
   [[nodiscard]] std::unique_ptr<FrameSource> open_if_free(const CameraAddress& address) const;
+  // A stream, by open_stream(): a port that is listened on here cannot be listened on a second time. Who
+  // still has it after patience_s is not told of: the stream's own error says what is wrong, and many streams
+  // can be had twice.
+  [[nodiscard]] std::unique_ptr<FrameSource> open_stream(const std::string& address) const;
+  [[nodiscard]] std::unique_ptr<FrameSource> open_stream_if_free(const std::string& address) const;
 
  private:
-  [[nodiscard]] std::unique_ptr<FrameSource> open_within(const CameraAddress& address,
-                                                         double patience_s) const;
-
   struct State;
   std::shared_ptr<State> state_;
 };
