@@ -35,6 +35,8 @@ geometry::Bounds joined(geometry::Bounds all, const geometry::Bounds& other) {
   return all;
 }
 
+// Of a view a few hundred pixels wide, with its normals smoothed: the outline is what suffers first.
+constexpr std::size_t kMovingTriangles = 6000;
 }  // namespace
 
 PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
@@ -54,6 +56,7 @@ PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
     if (bone.mesh.empty()) continue;
     BoneModel& made = bones_[kind];
     made.drawn = scene::simplified(bone.mesh);
+    made.moving = scene::simplified(*made.drawn, kMovingTriangles);
     made.review.surface = std::make_shared<const geometry::Surface>(bone.mesh);
     made.bounds = geometry::bounds_of(bone.mesh);
     made.mesh_sha256 = bones::mesh_sha256(bone.mesh);

@@ -42,6 +42,10 @@ class PlanModel {
   [[nodiscard]] const std::shared_ptr<const geometry::TriangleMesh>& drawn_mesh(bones::BoneKind kind) const {
     return bones_.at(kind).drawn;
   }
+  // Far coarser, for a view that moves where the processor draws: there each triangle costs.
+  [[nodiscard]] const std::shared_ptr<const geometry::TriangleMesh>& moving_mesh(bones::BoneKind kind) const {
+    return bones_.at(kind).moving;
+  }
 
   [[nodiscard]] std::optional<tunnels::Tunnel> tunnel(const tunnels::TunnelKey& key) const;
   // As planned and measured, all on bones of the case.
@@ -108,7 +112,7 @@ class PlanModel {
 
  private:
   struct BoneModel {
-    std::shared_ptr<const geometry::TriangleMesh> drawn;
+    std::shared_ptr<const geometry::TriangleMesh> drawn, moving;
     plan_review::ReviewedBone review;
     geometry::Bounds bounds, joint_bounds;
     landmarks::AnatomicalAxes axes;

@@ -288,7 +288,7 @@ void NavigateView::follow_reached(const NavigateDisplay& display, double now_s) 
     choices_.reached = {};
 }
 
-NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double now_s) {
+NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double now_s, bool by_processor) {
   NavigateScreen screen{live_.get(), display, words_, choices_.bone};
   if (model_ != nullptr && model_->has_bone(choices_.bone)) {
     // The one that guides: an edit that was not taken over is drawn in Plan alone.
@@ -301,7 +301,7 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
             tunnels::name_of(key) + (choices_.is_drilled(*live_->operation, *plan) ? ", drilled" : "");
     }
     screen.surface = model_->shared_surface(choices_.bone);
-    screen.drawn_bone = model_->drawn_mesh(choices_.bone);
+    screen.drawn_bone = by_processor ? model_->moving_mesh(choices_.bone) : model_->drawn_mesh(choices_.bone);
   }
   screen.overlay_opacity = overlay_opacity(now_s);
   screen.layout = layout(now_s);
@@ -367,7 +367,7 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
     if (now - choices_.guidance_seen_s > kGuideAway_s) choices_.layout.reset();
     choices_.guidance_seen_s = now;
   }
-  const NavigateScreen screen = screen_of(display, now);
+  const NavigateScreen screen = screen_of(display, now, ui.by_processor);
   const TheatreLayout layout = layout_in(ui, area);
   draw_video(ui, layout.video, screen, video_);
   draw_rail(ui, layout.rail, screen);

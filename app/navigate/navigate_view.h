@@ -124,7 +124,7 @@ class NavigateView : public mode::Mode {
   }
   void read_live();
   [[nodiscard]] NavigateLayout layout(double now_s) const;
-  [[nodiscard]] NavigateScreen screen_of(const NavigateDisplay& display, double now_s);
+  [[nodiscard]] NavigateScreen screen_of(const NavigateDisplay& display, double now_s, bool by_processor);
   void note_states(const widgets::Ui& ui, const NavigateScreen& screen);
   [[nodiscard]] float overlay_opacity(double now_s) const;
   [[nodiscard]] bool takes_window() const { return live_->phase != theatre::LiveState::Phase::NoSource; }

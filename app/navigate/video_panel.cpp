@@ -33,10 +33,9 @@ DrawnPicture draw_picture(const widgets::Ui& ui, const widgets::Rect& area, cons
   const theatre::LiveState& live = *screen.live;
   const ImU32 tint =
       screen.display.is_live ? IM_COL32_WHITE : IM_COL32(120, 120, 120, 255);  // not live: visibly dimmed
-  const auto put = [&](std::uint32_t texture, const widgets::Rect& at, const ImVec2& uv_min,
+  const auto put = [&](const auto& shown, const widgets::Rect& at, const ImVec2& uv_min,
                        const ImVec2& uv_max) {
-    draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), at.min(), at.max(),
-                  uv_min, uv_max, tint);
+    widgets::draw_opaque(draw, shown.texture(), shown.version(), at, uv_min, uv_max, tint);
   };
   const widgets::Rect part =
       widgets::shown_part(screen.options().calibration.boundary, live.picture->width, live.picture->height);
@@ -49,11 +48,11 @@ DrawnPicture draw_picture(const widgets::Ui& ui, const widgets::Rect& area, cons
     square = {std::floor(square.x), std::floor(square.y), std::floor(square.width), std::floor(square.width)};
     const int size_px = std::max(static_cast<int>(square.width), 1);
     textures.undistorted.draw(live.picture, textures.raw, screen.frame().camera, size_px);
-    put(textures.undistorted.texture(), square, {0, 0}, {1, 1});
+    put(textures.undistorted, square, {0, 0}, {1, 1});
     return {square, {square, screen.frame().camera, textures.undistorted.view()}};
   }
   const widgets::Rect picture = widgets::fitted(area, part.width / part.height);
-  put(textures.raw.texture(), picture, textures.raw.place_of(part.min()), textures.raw.place_of(part.max()));
+  put(textures.raw, picture, textures.raw.place_of(part.min()), textures.raw.place_of(part.max()));
   return {picture, {picture, part}};
 }
 

@@ -15,6 +15,7 @@
 #include "app/widgets/draw_pace.h"
 #include "app/widgets/key_labels.h"
 #include "app/widgets/key_queue.h"
+#include "app/widgets/screen_drawing.h"
 #include "app/widgets/software_drawing.h"
 #include "app/widgets/two_screens.h"
 #include "planning/geometry/error.h"
@@ -61,6 +62,7 @@ struct GraphicsWindow::State {
   int frames_to_hold = 0;
   bool has_input = false, by_processor = false;
   double begun_s = 0;
+  ScreenDrawing drawing;
   DrawPace pace{false};
   std::optional<ScreenArea> on_one_screen;  // where it was, while it covers two
 
@@ -73,6 +75,10 @@ struct GraphicsWindow::State {
     of(window).queue.add({kind, key, scancode, mods, 0});
   }
   static void on_mouse(GLFWwindow* window, double, double) { of(window).has_input = true; }
+  static void on_uncovered(GLFWwindow* window) {
+    of(window).drawing.forget();
+    of(window).has_input = true;
+  }
   static void on_button(GLFWwindow* window, int, int, int) { of(window).has_input = true; }
   static void on_letter(GLFWwindow* window, unsigned codepoint) {
     of(window).queue.add({KeyEvent::Kind::Text, 0, 0, 0, codepoint});
@@ -197,6 +203,8 @@ GraphicsWindow::GraphicsWindow(const std::string& title, double diagonal_mm)
   glfwSetWindowUserPointer(state_->window, state_.get());
   state_->by_processor = widgets::draws_by_processor();
   state_->pace = DrawPace(state_->by_processor);
+  state_->drawing = ScreenDrawing(state_->window, state_->by_processor);
+  glfwSetWindowRefreshCallback(state_->window, &State::on_uncovered);
   // ImGui's own, which follow, call these.
   glfwSetCursorPosCallback(state_->window, &State::on_mouse);
   glfwSetScrollCallback(state_->window, &State::on_mouse);
@@ -233,6 +241,7 @@ bool GraphicsWindow::begin_frame(double timeout_s) {
     s.build(scale);
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
+    s.drawing.forget();
   }
   s.deal_keys();
   ImGui_ImplOpenGL3_NewFrame();
@@ -247,22 +256,15 @@ bool GraphicsWindow::begin_frame(double timeout_s) {
 
 void GraphicsWindow::draw_frame() {
   ImGui::Render();
-  int width = 0, height = 0;
-  glfwGetFramebufferSize(state_->window, &width, &height);
-  // VTK leaves a framebuffer of its own bound.
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glViewport(0, 0, width, height);
-  glDisable(GL_SCISSOR_TEST);
-  const ImVec4 background = ImGui::ColorConvertU32ToFloat4(kBackground);
-  glClearColor(background.x, background.y, background.z, 1);
-  glClear(GL_COLOR_BUFFER_BIT);
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  state_->drawing.draw();
 }
 
 void GraphicsWindow::show_frame() {
-  glfwSwapBuffers(state_->window);
+  state_->drawing.show();
   state_->pace.drawn(state_->begun_s, glfwGetTime());
 }
+
+long GraphicsWindow::drawn_px() const { return state_->drawing.drawn_px(); }
 
 bool GraphicsWindow::can_cover_two() { return across_two(connected_screens()).has_value(); }
 bool GraphicsWindow::covers_two() const { return state_->on_one_screen.has_value(); }

@@ -35,6 +35,7 @@ class GraphicsWindow {
   bool begin_frame(double timeout_s);
   void draw_frame();
   void show_frame();
+  [[nodiscard]] long drawn_px() const;  // in the last frame: where the processor draws, what changed
   // A text field is about to take the keyboard: what is typed waits for it, a few frames at most.
   void await_text_field();
   // Keys pressed in this frame; where a text field has them, only what means nothing to it (page up).

@@ -1,5 +1,6 @@
 #include "app/widgets/scene_pane.h"
 
+#include "app/widgets/draw_damage.h"
 #include "app/widgets/held_mouse.h"
 
 namespace arthronaut::widgets {
@@ -87,13 +88,19 @@ void ScenePane::render(const Ui& ui, const Rect& rect) {
   drawn.look(camera_);
   {
     const WidgetLog::Timed timed(ui.log, "scene_ms");
-    if (drawn.render_if_dirty()) ui.log.add("scenes", 1);
+    if (drawn.render_if_dirty()) {
+      ui.log.add("scenes", 1);
+      ++version_;
+    }
   }
   drawn_camera_ = camera_;
   changed_ = false;
   const auto texture = static_cast<std::uintptr_t>(drawn.texture());
-  ImGui::GetWindowDrawList()->AddImageRounded(reinterpret_cast<ImTextureID>(texture), rect.min(), rect.max(),
-                                              {0, 1}, {1, 0}, IM_COL32_WHITE, ui.theme.px(6));
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  shows_version(draw, version_);
+  draw.AddImageRounded(reinterpret_cast<ImTextureID>(texture), rect.min(), rect.max(), {0, 1}, {1, 0},
+                       IM_COL32_WHITE, ui.theme.px(6));
+  draw.AddCallback(ImDrawCallback_ResetRenderState, nullptr);
 }
 
 }  // namespace arthronaut::widgets

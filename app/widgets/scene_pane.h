@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -48,6 +49,7 @@ class ScenePane {
   std::unique_ptr<scene::SceneView> view_;  // null before the first use
   scene::SceneCamera camera_, drawn_camera_;
   bool drags_handle_ = false, changed_ = true, smooths_ = true;
+  std::uint64_t version_ = 0;  // of the picture (draw_damage.h)
   float press_travel_px_ = 0;
   Eigen::Vector2d press_px_ = Eigen::Vector2d::Zero();
   double changed_at_s_ = 0;

@@ -176,6 +176,7 @@ void UndistortedTexture::draw(const camera::FramePtr& frame, const VideoTexture&
   }
   if (size_px != size_px_) resize(size_px);
   drawn_ = frame;
+  ++version_;
   if (program_ != 0)
     draw_on_gpu(video, camera);
   else

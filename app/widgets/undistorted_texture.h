@@ -26,7 +26,8 @@ class UndistortedTexture {
   void draw(const camera::FramePtr& frame, const VideoTexture& video, const camera::CameraModel& camera,
             int size_px);
 
-  [[nodiscard]] std::uint32_t texture() const { return texture_; }              // 0 before the first draw()
+  [[nodiscard]] std::uint32_t texture() const { return texture_; }  // 0 before the first draw()
+  [[nodiscard]] std::uint64_t version() const { return version_; }  // another one after every draw()
   [[nodiscard]] const camera::UndistortedView& view() const { return *view_; }  // after the first draw()
   // For tests: else both sides of a comparison could be the CPU's.
   [[nodiscard]] bool is_on_gpu() const { return program_ != 0; }
@@ -42,6 +43,7 @@ class UndistortedTexture {
   std::shared_ptr<const camera::UndistortedView> view_;
   camera::UndistortedPicture picture_;  // the CPU's
   std::uint32_t texture_ = 0, table_ = 0, framebuffer_ = 0, program_ = 0, vertices_ = 0;
+  std::uint64_t version_ = 0;
   int size_px_ = 0;
   camera::FramePtr drawn_;
 };

@@ -5,7 +5,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/widgets/draw_damage.h"
+
 namespace arthronaut::widgets {
+
+namespace {
+
+void without_blending(const ImDrawList*, const ImDrawCmd*) { glDisable(GL_BLEND); }
+
+}  // namespace
+
+void draw_opaque(ImDrawList& draw, std::uint32_t texture, std::uint64_t version, const Rect& at,
+                 const ImVec2& uv_min, const ImVec2& uv_max, ImU32 tint) {
+  shows_opaque(draw, version, without_blending);
+  draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), at.min(), at.max(),
+                uv_min, uv_max, tint);
+  draw.AddCallback(ImDrawCallback_ResetRenderState, nullptr);
+}
 
 VideoTexture::~VideoTexture() {
   if (texture_ != 0) glDeleteTextures(1, &texture_);
@@ -52,6 +68,7 @@ std::size_t VideoTexture::upload(const camera::FramePtr& frame, const std::optio
   held_width_ = width;
   held_height_ = height;
   uploaded_ = frame;
+  ++version_;
   return 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
 }
 

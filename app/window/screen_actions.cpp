@@ -66,6 +66,7 @@ void WorkstationWindow::end_frame(double now_s) {
     const widgets::WidgetLog::Timed timed(log_, "swap_ms");
     window_.show_frame();
   }
+  log_.add("drawn_px", static_cast<double>(window_.drawn_px()));
   shown().on_screen();
   if (copy != nullptr) copies_.take(copy);
 }

@@ -1,6 +1,7 @@
 // What holds the screen's rate and how soon it follows a key, counted in frames and bytes instead of seconds,
 // which are the machine's: on the real window.
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 
 #include "tests/app/window/theatre.h"
@@ -83,6 +84,41 @@ TEST_F(Theatre, Hazard34WhatStandsStillIsNotDrawnAgain) {
     EXPECT_EQ(frames[i].number("scenes"), 0) << i - before;
     EXPECT_EQ(frames[i].number("uploaded_bytes"), 0) << i - before;
   }
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
+// Where the processor draws, only what changed is drawn: what stands on the screen after pictures, menus and
+// text that came and went is what a window draws that was covered and knows nothing of what stood there. The
+// mark that moves all the time is the one difference.
+TEST_F(Theatre, Hazard34AScreenDrawnInPartsIsTheWholeScreen) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  start_simulation(app);
+  ASSERT_TRUE(app.hold_until("Escape", "guidance", "The pictures have ended"));
+  for (const char* key : {"Return", "h", "u", "Return", "F10", "u", "F10", "v"}) app.press(key);
+  ASSERT_TRUE(becomes([&] { return app.frames().back().number("scenes") == 0; }, 60));
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  const Picture in_parts = app.screenshot();
+  const long all_px = 1280L * 720;
+  const auto frames = app.frames();
+  EXPECT_LT(frames.back().number("drawn_px"), all_px / 3);
+  const std::string window = "DISPLAY=" + display.name() +
+                             " xdotool search --name Arthronaut windowunmap --sync %@ windowmap --sync %@";
+  ASSERT_EQ(std::system(window.c_str()), 0);
+  ASSERT_TRUE(becomes([&] { return app.frames().back().number("drawn_px") == all_px; }, 20));
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  const Picture whole = app.screenshot();
+  int left = 1280, right = 0, top = 720, bottom = 0;
+  for (int y = 0; y < 720; ++y)
+    for (int x = 0; x < 1280; ++x) {
+      if (in_parts.at(x, y) == whole.at(x, y)) continue;
+      left = std::min(left, x);
+      right = std::max(right, x);
+      top = std::min(top, y);
+      bottom = std::max(bottom, y);
+    }
+  EXPECT_LE(right - left, 48) << left << ", " << top << " to " << right << ", " << bottom;
+  EXPECT_LE(bottom - top, 48);
   EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
 }
 
