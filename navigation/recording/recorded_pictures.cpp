@@ -61,16 +61,20 @@ struct RecordedPictures::State {
   void open(std::size_t wanted) {
     if (part == wanted && (video != nullptr || stream != nullptr)) return;
     video.reset();
+    video_before.reset();
     stream.reset();
-    before.reset();
+    stream_before.reset();
     part = wanted;
     const std::filesystem::path file = folder / parts[wanted].file;
     if (!std::filesystem::exists(file)) throw IoError(file, "the video is not there any more");
-    if (parts[wanted].as == PicturesAs::AsTheyCame)
+    if (parts[wanted].as == PicturesAs::AsTheyCame) {
       stream = open_stream();
-    else
-      video = sources::open_seekable_video(
-          file, parts[wanted].as == PicturesAs::Lossless ? sources::LumaOf::File : sources::LumaOf::Colours);
+    } else {
+      const auto luma =
+          parts[wanted].as == PicturesAs::Lossless ? sources::LumaOf::File : sources::LumaOf::Colours;
+      open_video = [file, luma] { return sources::open_seekable_video(file, luma); };
+      video = open_video();
+    }
   }
 
   [[nodiscard]] std::unique_ptr<sources::KeptStream> open_stream() const {
@@ -90,15 +94,39 @@ struct RecordedPictures::State {
     if (!open_if_begun(part_of(parts, static_cast<std::int64_t>(number)))) return nullptr;
     const std::int64_t packet = pictures[number].packet;
     if (stream != nullptr) {
-      if (before != nullptr && !stream->remembers(packet) && before->remembers(packet))
-        std::swap(stream, before);
+      if (stream_before != nullptr && !stream->remembers(packet) && stream_before->remembers(packet))
+        std::swap(stream, stream_before);
       return stream->picture(packet, renamed(on_the_way, [this, number](const camera::Frame& passed) {
                                const KeptPicture* const kept = passed_before(number, passed.packet);
                                return kept == nullptr ? nullptr : with_names(passed, kept->frame, -1);
                              }));
     }
-    return video->picture_at(
-        std::llround(static_cast<double>(packet) / video->info().frames_per_second * 1e9));
+    return picture_at(std::llround(static_cast<double>(packet) / video->info().frames_per_second * 1e9));
+  }
+
+  camera::FramePtr picture_at(std::int64_t time_ns, const sources::OnTheWay& on_the_way = {}) {
+    if (video_before != nullptr && !video->remembers(time_ns) && video_before->remembers(time_ns))
+      std::swap(video, video_before);
+    return video->picture_at(time_ns, on_the_way);
+  }
+
+  void read_before_stream(const std::function<bool()>& goes_on) {
+    const auto first = stream->first_remembered();
+    if (!first || *first == 0) return;
+    if (stream_before == nullptr) stream_before = open_stream();
+    if (stream_before->remembers(*first - 1)) return;
+    (void)stream_before->picture(*first - 1, [&goes_on](const auto& /*passed*/) { return goes_on(); });
+  }
+
+  void read_before_video(const std::function<bool()>& goes_on) {
+    const auto first = video->first_remembered_ns();
+    const double rate = video->info().frames_per_second;
+    if (!first || rate <= 0) return;
+    const std::int64_t wanted = *first - std::llround(1e9 / rate);
+    if (wanted < 0) return;
+    if (video_before == nullptr) video_before = open_video();
+    if (video_before->remembers(wanted)) return;
+    (void)video_before->picture_at(wanted, [&goes_on](const auto& /*passed*/) { return goes_on(); });
   }
 
   std::filesystem::path folder;
@@ -106,9 +134,11 @@ struct RecordedPictures::State {
   std::vector<KeptPicture> pictures;  // by rising frames
   bool was_finished = true;
   std::size_t part = 0;
-  std::unique_ptr<sources::SeekableVideo> video;
-  std::unique_ptr<sources::KeptStream> stream;
-  std::unique_ptr<sources::KeptStream> before;  // the same file, at what lies before; null: nobody went back
+  // Of the part in hand, or the source's own. `before`: the same file, at what lies before; null: nobody went
+  // back.
+  std::function<std::unique_ptr<sources::SeekableVideo>()> open_video;
+  std::unique_ptr<sources::SeekableVideo> video, video_before;
+  std::unique_ptr<sources::KeptStream> stream, stream_before;
 };
 
 RecordedPictures::RecordedPictures(const SessionOverview& session) : state_(std::make_unique<State>()) {
@@ -118,10 +148,12 @@ RecordedPictures::RecordedPictures(const SessionOverview& session) : state_(std:
   s.parts = parts_of(session.header);
   s.pictures = session.pictures;
   s.was_finished = session.was_finished;
-  if (s.parts.empty())
-    s.video = open_own(session);
-  else
+  if (!s.parts.empty()) {
     s.open(0);
+    return;
+  }
+  s.open_video = [session] { return open_own(session); };
+  s.video = s.open_video();
 }
 
 RecordedPictures::~RecordedPictures() = default;
@@ -131,9 +163,9 @@ camera::FramePtr RecordedPictures::picture(std::int64_t frame_index, std::int64_
   State& s = *state_;
   camera::FramePtr picture;
   if (s.parts.empty()) {
-    picture = s.video->picture_at(timestamp_ns, renamed(on_the_way, [](const camera::Frame& passed) {
-                                    return with_names(passed, -1, passed.timestamp_ns);
-                                  }));
+    picture = s.picture_at(timestamp_ns, renamed(on_the_way, [](const camera::Frame& passed) {
+                             return with_names(passed, -1, passed.timestamp_ns);
+                           }));
   } else {
     const auto found =
         std::lower_bound(s.pictures.begin(), s.pictures.end(), frame_index,
@@ -146,11 +178,10 @@ camera::FramePtr RecordedPictures::picture(std::int64_t frame_index, std::int64_
 
 void RecordedPictures::read_before_remembered(const std::function<bool()>& goes_on) {
   State& s = *state_;
-  const auto first = s.stream == nullptr ? std::nullopt : s.stream->first_remembered();
-  if (!first || *first == 0) return;
-  if (s.before == nullptr) s.before = s.open_stream();
-  if (s.before->remembers(*first - 1)) return;
-  (void)s.before->picture(*first - 1, [&goes_on](const auto& /*passed*/) { return goes_on(); });
+  if (s.stream != nullptr)
+    s.read_before_stream(goes_on);
+  else if (s.video != nullptr)
+    s.read_before_video(goes_on);
 }
 
 }  // namespace arthronaut::recording

@@ -3,8 +3,8 @@
 // What the recorder encoded without loss has nothing but key frames: a picture takes as long as decoding one.
 // A copied video, and a stream that was kept as it came, take as long as decoding from the key frame before
 // it, most of a second where hundreds of pictures lie between: what is passed on the way can be looked at
-// meanwhile. Of a stream the last pictures are remembered, so that going back by one costs nothing. A still
-// takes as long as reading it.
+// meanwhile. The last pictures are remembered, so that going back by one costs nothing. A still takes as long
+// as reading it.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,8 @@ class RecordedPictures {
   // frame has is null.
   [[nodiscard]] camera::FramePtr picture(std::int64_t frame_index, std::int64_t timestamp_ns,
                                          const sources::OnTheWay& on_the_way = {});
-  // For the time between two wishes of somebody who goes back: decodes what lies before the pictures of a
-  // stream that are remembered, and remembers as many again. Begins where `goes_on` ended it the last time.
+  // For the time between two wishes of somebody who goes back: decodes what lies before the pictures
+  // that are remembered, and remembers as many again. Begins where `goes_on` ended it the last time.
   void read_before_remembered(const std::function<bool()>& goes_on);
 
  private:

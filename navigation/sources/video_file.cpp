@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <utility>
 
 #include "navigation/sources/libav.h"
@@ -19,6 +20,7 @@ namespace {
 constexpr double kFallbackFramesPerSecond = 60;
 // How much earlier it is tried again where a file's index leads to a key frame behind the wish.
 constexpr std::array<double, 4> kSeekBack_s{0, 1, 10, 60};
+constexpr std::size_t kRememberedPictures = 32;  // 100 MB at 1080p
 
 class VideoFile : public FrameSource, public SeekableVideo {
  public:
@@ -40,7 +42,10 @@ class VideoFile : public FrameSource, public SeekableVideo {
 
   camera::FramePtr next() override {
     if (!decode()) return nullptr;
-    auto frame = frame_of_picture();
+    if (next_index_ == 0) first_time_s_ = picture_s();
+    last_timestamp_ns_ = std::max(timestamp_ns(*picture_, next_index_),
+                                  last_timestamp_ns_ + 1);  // some recorders repeat a time
+    auto frame = frame_of(*picture_, next_index_, last_timestamp_ns_);
     ++next_index_;
     return frame;
   }
@@ -51,34 +56,58 @@ class VideoFile : public FrameSource, public SeekableVideo {
     add_missing_index();
     if (decode()) first_time_s_ = picture_s();
     is_at_end_ = true;  // the first wish seeks
+    most_remembered_ = has_key_frames_alone() ? 1 : kRememberedPictures;
   }
 
   camera::FramePtr picture_at(std::int64_t time_ns, const OnTheWay& on_the_way) override {
     const double wanted_s = static_cast<double>(time_ns) * 1e-9;
     if (wanted_s < -grace_s()) return nullptr;
-    if (shown_ && std::abs(shown_s_ - wanted_s) <= grace_s()) return shown_;
-    shown_ = nullptr;
+    if (const Remembered* const known = find_remembered(wanted_s)) return frame_at(*known);
     bool is_wanted = true;
     const OnTheWay passing = [&](const auto& passed) {
       return is_wanted = on_the_way == nullptr || on_the_way(passed);
     };
-    if (is_reached_by_reading_on(wanted_s) && read_on_to(wanted_s, passing)) return shown_;
+    if (is_reached_by_reading_on(wanted_s))
+      if (camera::FramePtr found = read_on_to(wanted_s, passing)) return found;
     for (const double back_s : kSeekBack_s) {
       if (!is_wanted || !seek(std::max(wanted_s - back_s, 0.0))) return nullptr;
-      if (read_on_to(wanted_s, passing)) return shown_;
+      if (camera::FramePtr found = read_on_to(wanted_s, passing)) return found;
       if (is_at_end_) return nullptr;
     }
     return nullptr;
   }
 
+  bool remembers(std::int64_t time_ns) const override {
+    return find_remembered(static_cast<double>(time_ns) * 1e-9) != nullptr;
+  }
+  std::optional<std::int64_t> first_remembered_ns() const override {
+    if (remembered_.empty() || most_remembered_ == 1) return std::nullopt;
+    return std::llround(remembered_.front().at_s * 1e9);
+  }
+
  private:
-  camera::FramePtr frame_of_picture() {
+  struct Remembered {
+    double at_s;
+    LibavPtr<AVFrame> picture;
+  };
+
+  camera::FramePtr frame_of(const AVFrame& picture, std::int64_t index, std::int64_t timestamp_ns) {
     auto frame = std::make_shared<camera::Frame>();
-    frame->index = next_index_;
-    frame->timestamp_ns = timestamp_ns();
-    convert(*frame);
-    if (luma_ == LumaOf::File) copy_luma(*frame);
+    frame->index = index;
+    frame->timestamp_ns = timestamp_ns;
+    convert(picture, *frame);
+    if (luma_ == LumaOf::File) copy_luma(picture, *frame);
     return frame;
+  }
+  camera::FramePtr frame_at(const Remembered& of) {
+    const std::int64_t index = std::llround(of.at_s * rate());
+    return frame_of(*of.picture, index, timestamp_ns(*of.picture, index));
+  }
+  [[nodiscard]] const Remembered* find_remembered(double wanted_s) const {
+    const auto found = std::find_if(remembered_.begin(), remembered_.end(), [&](const Remembered& one) {
+      return std::abs(one.at_s - wanted_s) <= grace_s();
+    });
+    return found == remembered_.end() ? nullptr : &*found;
   }
 
   [[nodiscard]] double rate() const {
@@ -93,29 +122,33 @@ class VideoFile : public FrameSource, public SeekableVideo {
     return std::llround((time_s + first_time_s_) / av_q2d(stream().time_base));
   }
 
+  [[nodiscard]] bool has_key_frames_alone() const {
+    const AVCodecDescriptor* const codec = avcodec_descriptor_get(stream().codecpar->codec_id);
+    return codec != nullptr && (codec->props & AV_CODEC_PROP_INTRA_ONLY) != 0;
+  }
+
   // A killed recording has no index: libavformat would read all before a picture to come to it. Where every
   // picture is a key frame, each cluster is a place to begin at.
   void add_missing_index() {
-    const AVCodecDescriptor* const codec = avcodec_descriptor_get(stream().codecpar->codec_id);
-    if (codec == nullptr || (codec->props & AV_CODEC_PROP_INTRA_ONLY) == 0) return;
-    if (!matroska_is_unfinished(file_)) return;
+    if (!has_key_frames_alone() || !matroska_is_unfinished(file_)) return;
     for (const MatroskaCluster& cluster : matroska_clusters(file_))
       av_add_index_entry(&stream(), cluster.position, cluster.time, 0, 0, AVINDEX_KEYFRAME);
   }
 
   // Whether no key frame lies between the picture in hand and the wanted one.
   [[nodiscard]] bool is_reached_by_reading_on(double wanted_s) const {
-    if (is_at_end_ || wanted_s < shown_s_) return false;
+    if (is_at_end_ || wanted_s < decoded_s_) return false;
     const AVIndexEntry* const key =
         avformat_index_get_entry_from_timestamp(&stream(), ticks_of(wanted_s), AVSEEK_FLAG_BACKWARD);
-    if (key == nullptr) return wanted_s - shown_s_ < 1;
+    if (key == nullptr) return wanted_s - decoded_s_ < 1;
     return static_cast<double>(key->timestamp) * av_q2d(stream().time_base) - first_time_s_ <=
-           shown_s_ + 2 * grace_s();
+           decoded_s_ + 2 * grace_s();
   }
 
   bool seek(double time_s) {
     is_at_end_ = breaks_off_ = false;
-    shown_s_ = -1;
+    decoded_s_ = -1;
+    remembered_.clear();
     if (av_seek_frame(container_.get(), stream_index_, ticks_of(time_s), AVSEEK_FLAG_BACKWARD) < 0) {
       is_at_end_ = true;
       return false;
@@ -124,27 +157,28 @@ class VideoFile : public FrameSource, public SeekableVideo {
     return true;
   }
 
-  // Decodes up to the picture of that time and shows it. False when there is none, it lies behind, or
-  // on_the_way ended it.
-  bool read_on_to(double wanted_s, const OnTheWay& on_the_way) {
+  // Decodes up to the picture of that time. Null when there is none, it lies behind, or on_the_way ended it.
+  camera::FramePtr read_on_to(double wanted_s, const OnTheWay& on_the_way) {
     while (decode()) {
-      const double at_s = picture_s() - first_time_s_;
-      shown_s_ = at_s;
-      const auto taken = [this, at_s] {
-        next_index_ = std::llround(at_s * rate());
-        last_timestamp_ns_ = -1;
-        return frame_of_picture();
-      };
-      if (at_s < wanted_s - grace_s()) {
-        if (!is_damaged() && !on_the_way(taken)) return false;
+      decoded_s_ = picture_s() - first_time_s_;
+      next_index_ = std::llround(decoded_s_ * rate()) + 1;
+      const bool is_whole = !is_damaged();
+      if (is_whole) remember();
+      if (decoded_s_ < wanted_s - grace_s()) {
+        if (is_whole && !on_the_way([this] { return frame_at(remembered_.back()); })) return nullptr;
         continue;
       }
-      if (at_s > wanted_s + grace_s() || is_damaged()) return false;
-      shown_ = taken();
-      return true;
+      if (decoded_s_ > wanted_s + grace_s() || !is_whole) return nullptr;
+      return frame_at(remembered_.back());
     }
     is_at_end_ = true;
-    return false;
+    return nullptr;
+  }
+
+  void remember() {
+    remembered_.push_back({decoded_s_, LibavPtr<AVFrame>(av_frame_alloc())});
+    av_frame_move_ref(remembered_.back().picture.get(), picture_.get());
+    if (remembered_.size() > most_remembered_) remembered_.pop_front();
   }
 
   [[nodiscard]] bool is_damaged() const {
@@ -153,8 +187,9 @@ class VideoFile : public FrameSource, public SeekableVideo {
 
   AVStream& stream() const { return *container_->streams[stream_index_]; }
 
-  [[noreturn]] void fail(const std::string& reason) const {
-    throw InvalidInput(file_, "frame " + std::to_string(next_index_), reason);
+  [[noreturn]] void fail(const std::string& reason) const { fail_at(next_index_, reason); }
+  [[noreturn]] void fail_at(std::int64_t index, const std::string& reason) const {
+    throw InvalidInput(file_, "frame " + std::to_string(index), reason);
   }
 
   void open_container() {
@@ -236,38 +271,35 @@ class VideoFile : public FrameSource, public SeekableVideo {
     if (next_index_ == 0) fail("is missing: the video is empty");
   }
 
-  std::int64_t timestamp_ns() {
-    const double by_rate_s = static_cast<double>(next_index_) / rate();
+  // From the first picture on; where the file's clock counts no finer, by the frame rate.
+  [[nodiscard]] std::int64_t timestamp_ns(const AVFrame& picture, std::int64_t index) const {
+    const double by_rate_s = static_cast<double>(index) / rate();
     double time_s = by_rate_s;
-    if (picture_->best_effort_timestamp != AV_NOPTS_VALUE) {
+    if (picture.best_effort_timestamp != AV_NOPTS_VALUE) {
       const double tick_s = av_q2d(stream().time_base);
-      const double file_s = static_cast<double>(picture_->best_effort_timestamp) * tick_s;
-      if (next_index_ == 0 && !is_tolerant_) first_time_s_ = file_s;
-      time_s = file_s - first_time_s_;
+      time_s = static_cast<double>(picture.best_effort_timestamp) * tick_s - first_time_s_;
       if (std::abs(time_s - by_rate_s) <= tick_s) time_s = by_rate_s;
     }
-    const auto ns = static_cast<std::int64_t>(std::llround(time_s * 1e9));
-    last_timestamp_ns_ = std::max(ns, last_timestamp_ns_ + 1);  // some recorders repeat a time
-    return last_timestamp_ns_;
+    return std::llround(time_s * 1e9);
   }
 
-  void convert(camera::Frame& frame) {
-    if (picture_->width != info_.image_size_px.x() || picture_->height != info_.image_size_px.y()) {
-      fail("has another size than the frames before it");
+  void convert(const AVFrame& picture, camera::Frame& frame) {
+    if (picture.width != info_.image_size_px.x() || picture.height != info_.image_size_px.y()) {
+      fail_at(frame.index, "has another size than the frames before it");
     }
-    frame.width = picture_->width;
-    frame.height = picture_->height;
-    if (!converter_.convert(*picture_, frame.bgr)) fail("has a pixel format that can't be converted");
+    frame.width = picture.width;
+    frame.height = picture.height;
+    if (!converter_.convert(picture, frame.bgr))
+      fail_at(frame.index, "has a pixel format that can't be converted");
   }
 
-  void copy_luma(camera::Frame& frame) const {
-    if (picture_->format != AV_PIX_FMT_YUV420P && picture_->format != AV_PIX_FMT_YUV444P) {
-      fail("has no luma plane of its own");
+  void copy_luma(const AVFrame& picture, camera::Frame& frame) const {
+    if (picture.format != AV_PIX_FMT_YUV420P && picture.format != AV_PIX_FMT_YUV444P) {
+      fail_at(frame.index, "has no luma plane of its own");
     }
     frame.luma.resize(static_cast<std::size_t>(frame.width) * frame.height);
     for (int y = 0; y < frame.height; ++y) {
-      const std::uint8_t* const row =
-          picture_->data[0] + static_cast<std::ptrdiff_t>(y) * picture_->linesize[0];
+      const std::uint8_t* const row = picture.data[0] + static_cast<std::ptrdiff_t>(y) * picture.linesize[0];
       std::copy(row, row + frame.width, frame.luma.data() + static_cast<std::ptrdiff_t>(y) * frame.width);
     }
   }
@@ -285,10 +317,12 @@ class VideoFile : public FrameSource, public SeekableVideo {
   std::int64_t last_timestamp_ns_ = -1;
   double first_time_s_ = 0;
   bool breaks_off_ = false;  // the demuxer met a cut-off packet or a read error
-  // Of picture_at(): what is broken is passed over; the picture in hand and its time.
+  // Of picture_at(): what is broken is passed over; the time of the picture that was decoded last, and those
+  // that were decoded since the last seek.
   bool is_tolerant_ = false, is_at_end_ = false;
-  camera::FramePtr shown_;
-  double shown_s_ = -1;
+  double decoded_s_ = -1;
+  std::size_t most_remembered_ = 1;
+  std::deque<Remembered> remembered_;
 };
 
 }  // namespace

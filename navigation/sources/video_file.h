@@ -1,8 +1,10 @@
 // A video file, decoded with libavformat and libavcodec.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "navigation/sources/frame_source.h"
 #include "navigation/sources/on_the_way.h"
@@ -17,6 +19,7 @@ enum class LumaOf {
 
 // Any picture of a file, by its time. From the key frame before it on everything is decoded: a file of which
 // every picture is a key frame gives each at once, one with a key frame in every n pictures decodes up to n.
+// Of the latter the last 32 pictures are remembered, so that going back by one decodes nothing.
 //
 // Threads: one at a time.
 class SeekableVideo {
@@ -29,6 +32,10 @@ class SeekableVideo {
   // said that it is not wanted: asked for again, decoding goes on from there.
   [[nodiscard]] virtual camera::FramePtr picture_at(std::int64_t time_ns,
                                                     const OnTheWay& on_the_way = {}) = 0;
+  // Whether picture_at() would decode nothing, and the time of the first of those; nullopt: none is, or each
+  // picture is a key frame.
+  [[nodiscard]] virtual bool remembers(std::int64_t /*time_ns*/) const { return false; }
+  [[nodiscard]] virtual std::optional<std::int64_t> first_remembered_ns() const { return std::nullopt; }
 };
 
 // The file's own index of key frames is used. A Matroska file that a crash left without one, all of whose

@@ -179,6 +179,39 @@ TEST(RecordedPictures, NamesWhatIsPassedInACopiedVideo) {
   EXPECT_EQ(passed, all);
 }
 
+// Who goes back in a copied video decodes nothing anew: what was passed is remembered, 32 pictures of it, and
+// what lies before that is read between two wishes.
+TEST(RecordedPictures, GoesBackInACopiedVideoByWhatItRemembers) {
+  const test::TemporaryFolder folder;
+  // A key frame every 12 pictures.
+  ASSERT_NO_FATAL_FAILURE(copy_numbered_video(folder / "a.mp4", "mp4v", folder / "session"));
+  RecordedPictures pictures(read_overview(folder / "session"));
+  int passed = 0;
+  const auto expect_picture = [&](int wanted) {
+    const camera::FramePtr picture =
+        pictures.picture(wanted, test::frame_result(wanted).timestamp_ns, [&](const auto& /*make*/) {
+          ++passed;
+          return true;
+        });
+    ASSERT_NE(picture, nullptr) << wanted;
+    EXPECT_EQ(number_of(*picture), wanted);
+    EXPECT_EQ(picture->index, wanted);
+  };
+  expect_picture(95);  // a key frame is 84
+  EXPECT_EQ(passed, 11);
+  for (int wanted = 94; wanted >= 84; --wanted) expect_picture(wanted);
+  EXPECT_EQ(passed, 11);
+  pictures.read_before_remembered([] { return true; });
+  for (int wanted = 83; wanted >= 72; --wanted) expect_picture(wanted);
+  EXPECT_EQ(passed, 11);
+  // Ended: the picture itself is decoded when it is asked for.
+  pictures.read_before_remembered([] { return false; });
+  expect_picture(71);
+  EXPECT_GT(passed, 11);
+  // On from there, and far from all that is remembered.
+  for (const int wanted : {96, 97, 71, 3, 230}) expect_picture(wanted);
+}
+
 // Stills of a pattern that does not begin with nought.
 TEST(RecordedPictures, FindsTheStillsOfAPattern) {
   const test::TemporaryFolder folder;
