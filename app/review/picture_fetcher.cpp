@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "app/review/copy_maker.h"
+#include "navigation/recording/quick_pictures.h"
 #include "navigation/recording/recorded_pictures.h"
 #include "planning/files/format.h"
 
@@ -16,6 +18,8 @@ namespace {
 constexpr std::size_t kKept = 12;  // pictures of 8 MB
 // Of what is passed on the way to a picture, so much is shown: the first at once, then ten a second.
 constexpr auto kShowEvery = std::chrono::milliseconds(100);
+// Longer, and copies are made.
+constexpr auto kSlow = std::chrono::milliseconds(100);
 
 // The frame that a passed picture is of, by the one of its names that it has (recorded_pictures.h).
 camera::FramePtr named(const camera::FramePtr& picture, const std::vector<recording::FrameGlance>& frames) {
@@ -37,16 +41,32 @@ camera::FramePtr named(const camera::FramePtr& picture, const std::vector<record
   return frame;
 }
 
+std::vector<recording::QuickPictures::Name> names_of(const std::vector<recording::FrameGlance>& frames) {
+  std::vector<recording::QuickPictures::Name> names;
+  names.reserve(frames.size());
+  for (const recording::FrameGlance& frame : frames) names.push_back({frame.index, frame.timestamp_ns});
+  return names;
+}
+
 std::function<PictureReader()> opening(const std::filesystem::path& folder,
                                        std::shared_ptr<const recording::SessionTimeline> timeline) {
   return [folder, timeline = std::move(timeline)]() -> PictureReader {
-    const auto pictures = std::make_shared<recording::RecordedPictures>(recording::read_overview(folder));
+    const recording::SessionOverview session = recording::read_overview(folder);
+    const auto names = names_of(timeline->frames());
+    const auto pictures = std::make_shared<recording::RecordedPictures>(session);
+    const auto copies = std::make_shared<recording::QuickPictures>(session, names);
+    const auto making = std::make_shared<std::unique_ptr<CopyMaker>>();
     return {[pictures, timeline](const PictureWish& wish, const sources::OnTheWay& on_the_way) {
               return pictures->picture(wish.frame, wish.timestamp_ns, [&](const auto& passed) {
                 return on_the_way([&] { return named(passed(), timeline->frames()); });
               });
             },
-            [pictures](const std::function<bool()>& goes_on) { pictures->read_before_remembered(goes_on); }};
+            [pictures](const std::function<bool()>& goes_on) { pictures->read_before_remembered(goes_on); },
+            [copies](const PictureWish& wish) { return copies->picture(wish.frame); },
+            [making, session, names](const PictureWish& wish) {
+              if (*making == nullptr) *making = std::make_unique<CopyMaker>(session, names);
+              (*making)->make_about(wish.frame);
+            }};
   };
 }
 
@@ -65,9 +85,9 @@ PictureFetcher::Worker::Body PictureFetcher::reading(std::function<PictureReader
     using Clock = std::chrono::steady_clock;
     const PictureReader reader = open();
     Pictures kept;
-    const auto keep = [&](std::int64_t frame, const camera::FramePtr& picture) {
+    const auto keep = [&](std::int64_t frame, const camera::FramePtr& picture, bool is_copy = false) {
       if (kept.size() == kKept) kept.erase(kept.begin());
-      kept.push_back({frame, picture});
+      kept.push_back({frame, picture, is_copy});
       inbox.publish(kept);
     };
     const auto is_undisturbed = [&] { return !inbox.has_message() && !inbox.stops(); };
@@ -75,9 +95,12 @@ PictureFetcher::Worker::Body PictureFetcher::reading(std::function<PictureReader
     while (const auto wish = inbox.next()) {
       Clock::time_point shows_again{};
       bool is_wanted = true, has_passed = false;
+      const camera::FramePtr copy = reader.copy ? reader.copy(*wish) : nullptr;
+      if (copy != nullptr) keep(wish->frame, copy, true);
+      const auto begin = Clock::now();
       const camera::FramePtr picture = reader.read(*wish, [&](const auto& passed) {
         // One at least of each search, so that something moves however fast wishes come.
-        if (Clock::now() >= shows_again) {
+        if (copy == nullptr && Clock::now() >= shows_again) {
           if (const camera::FramePtr on_the_way = passed()) {
             if (std::exchange(has_passed, true)) kept.pop_back();
             keep(on_the_way->index, on_the_way);
@@ -87,6 +110,7 @@ PictureFetcher::Worker::Body PictureFetcher::reading(std::function<PictureReader
         return is_wanted = is_undisturbed();
       });
       if (is_wanted) keep(wish->frame, picture);
+      if (reader.was_slow && Clock::now() - begin > kSlow) reader.was_slow(*wish);
       const bool goes_back = wish->timestamp_ns < std::exchange(last_ns, wish->timestamp_ns);
       if (goes_back && reader.read_before && is_undisturbed()) reader.read_before(is_undisturbed);
     }
@@ -94,13 +118,15 @@ PictureFetcher::Worker::Body PictureFetcher::reading(std::function<PictureReader
 }
 
 std::optional<Fetched> PictureFetcher::picture(const PictureWish& wish) {
+  std::optional<Fetched> known;
   if (const auto pictures = worker_.latest()) {
     const auto found = std::find_if(pictures->rbegin(), pictures->rend(),
                                     [&](const Fetched& fetched) { return fetched.frame == wish.frame; });
-    if (found != pictures->rend()) return *found;
+    if (found != pictures->rend()) known = *found;
   }
+  if (known && !known->is_copy) return known;
   if (std::exchange(wish_, wish.frame) != wish.frame) worker_.post(wish);
-  return std::nullopt;
+  return known;
 }
 
 camera::FramePtr PictureFetcher::nearest(const PictureWish& wish) const {

@@ -297,7 +297,9 @@ void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) 
   // Until it is there the nearest one, which says that it is another: the numbers beside it are not its.
   const camera::FramePtr picture = fetched ? fetched->picture : open_->pictures->nearest(wish);
   video_.upload(picture);
+  const bool is_copy = fetched && fetched->is_copy;
   ui.log.note_state("review_picture", picture == nullptr ? (fetched ? "none" : "reading")
+                                      : is_copy          ? "copy"
                                       : fetched          ? "shown"
                                                          : "another");
   if (fetched && picture == nullptr)
@@ -315,6 +317,7 @@ void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) 
   const ImVec2 from{(w - side) / 2 / w, (h - side) / 2 / h}, to{(w + side) / 2 / w, (h + side) / 2 / h};
   draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(video_.texture())), at.min(),
                 at.max(), from, to, fetched ? IM_COL32_WHITE : IM_COL32(150, 150, 150, 255));
+  if (is_copy) widgets::caption(ui, area, widgets::kQuietText, "Small copy: reading the picture itself");
   if (!fetched)
     widgets::caption(ui, area, widgets::kCaution,
                      "Reading. This picture: " + nearness_in_words(picture->timestamp_ns, wish.timestamp_ns));

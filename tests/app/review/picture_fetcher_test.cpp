@@ -193,6 +193,36 @@ TEST(PictureFetcher, ReadsBeforeForWhoGoesBack) {
   EXPECT_EQ(disturbed.load(), 1);
 }
 
+// A small copy is there at once and says that it is one, until the picture itself is decoded; that this took
+// long is told to whoever makes copies.
+TEST(PictureFetcher, ShowsACopyUntilThePictureIsThere) {
+  SlowVideo video;
+  std::atomic<std::int64_t> slow = -1;
+  PictureFetcher fetcher(
+      [&] {
+        PictureReader reader = video.reader();
+        reader.copy = [](const PictureWish& wish) { return wish.frame == 50 ? number(50) : nullptr; };
+        reader.was_slow = [&](const PictureWish& wish) { slow = wish.frame; };
+        return reader;
+      },
+      [] {});
+  const auto shows = [&](std::int64_t frame, bool is_copy) {
+    const auto fetched = fetcher.picture(wish_of(frame));
+    return fetched && fetched->picture != nullptr && fetched->picture->index == frame &&
+           fetched->is_copy == is_copy;
+  };
+  EXPECT_TRUE(comes_true([&] { return shows(50, true); }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(150));
+  EXPECT_TRUE(shows(50, true));
+  video.allow(kFrames);
+  EXPECT_TRUE(comes_true([&] { return shows(50, false); }));
+  EXPECT_TRUE(comes_true([&] { return slow == 50; }));
+  // Left before it was decoded, and wished again: looked for again.
+  video.allow(0);
+  EXPECT_FALSE(fetcher.picture(wish_of(60)));
+  EXPECT_TRUE(shows(50, false));
+}
+
 TEST(PictureFetcher, SaysHowNearAPictureIs) {
   EXPECT_EQ(nearness_in_words(1'000'000'000, 2'240'000'000), "1.24 s earlier");
   EXPECT_EQ(nearness_in_words(2'240'000'000, 2'220'000'000), "0.02 s later");
