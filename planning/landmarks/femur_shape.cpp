@@ -49,7 +49,7 @@ double lowest(const Shape& shape, const Vector3d& z) {
 Vector3d proximal_by_roof(const Shape& shape) {
   const Vector3d forward = shape.notch.roof;
   const Vector3d into_bone =
-      (shape.notch.into_bone - shape.notch.into_bone.dot(forward) * forward).normalized();
+      (shape.notch.flat.into_bone - shape.notch.flat.into_bone.dot(forward) * forward).normalized();
   const double slope = geometry::rad_from_deg(kRoofSlope_deg);
   return -std::cos(slope) * forward + std::sin(slope) * into_bone;
 }
@@ -76,7 +76,7 @@ std::optional<LongAxis> find_shaft(const Shape& shape, const geometry::TriangleM
 // Condyles and notch in turn, until they agree: each as the other lets it be seen, and without the shaft, of
 // which more or less may be there.
 bool refine(Shape& shape, const geometry::Surface& surface, Matrix3d axes, Vector3d origin,
-            RoofConvention convention, std::string& reason) {
+            std::string& reason) {
   constexpr int kRounds = 5;
   constexpr double kSettled = 0.001;  // of the axes' directions
   for (int round = 0; round < kRounds; ++round) {
@@ -86,7 +86,7 @@ bool refine(Shape& shape, const geometry::Surface& surface, Matrix3d axes, Vecto
       return false;
     }
     shape.condyles = *condyles;
-    const auto notch = find_notch(surface, *condyles, convention);
+    const auto notch = find_notch(surface, *condyles);
     if (!notch) {
       reason = "between its condyles is no notch with a roof";
       return false;
@@ -115,7 +115,7 @@ void take_samples(Shape& shape, const geometry::TriangleMesh& mesh, double each_
 }
 
 std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
-                                const RoughFrame& rough, RoofConvention convention, std::string& reason) {
+                                const RoughFrame& rough, std::string& reason) {
   Shape shape;
   shape.rough = rough;
   take_samples(shape, mesh, kCoarse_mm2);
@@ -126,15 +126,14 @@ std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geomet
   for (const double lean_deg : {0.0, 15.0, -15.0, 30.0, -30.0}) {
     if (std::abs(lean_deg) > 20 && best) break;
     const Eigen::AngleAxisd lean(geometry::rad_from_deg(lean_deg), Vector3d::UnitX());
-    if (refine(shape, surface, rough.bone_from_frame * lean, rough.origin_mm, convention, reason_of_last) &&
+    if (refine(shape, surface, rough.bone_from_frame * lean, rough.origin_mm, reason_of_last) &&
         (!best || shape.notch.cost < best->notch.cost))
       best = shape;
   }
   if (best) {
     take_samples(*best, mesh, kFine_mm2);
     const Condyles found = best->condyles;
-    if (!refine(*best, surface, found.bone_from_frame, found.center_mm, convention, reason_of_last))
-      best.reset();
+    if (!refine(*best, surface, found.bone_from_frame, found.center_mm, reason_of_last)) best.reset();
   }
   if (!best) {
     reason = reason_of_last;
@@ -192,27 +191,28 @@ std::optional<Vector3d> epicondyle(const Shape& shape, double sign) {
 }
 
 // Where the outline of one condyle below the line reaches furthest along `direction`.
-std::optional<Vector3d> extent(const Shape& shape, double sign, const Vector3d& direction) {
+std::optional<Vector3d> extent(const Shape& shape, const BlumensaatLine& line, double sign,
+                               const Vector3d& direction) {
   const Vector3d x = shape.condyles.bone_from_frame.col(0);
   std::vector<Vector3d> found;
   for (const auto& s : shape.samples) {
-    const Vector3d from_roof = s.point_mm - shape.notch.anterior_mm;
-    if (sign * from_roof.dot(x) > 0 && from_roof.dot(shape.notch.into_bone) < 0) found.push_back(s.point_mm);
+    const Vector3d from_roof = s.point_mm - line.anterior_mm;
+    if (sign * from_roof.dot(x) > 0 && from_roof.dot(line.into_bone) < 0) found.push_back(s.point_mm);
   }
   return furthest(found, direction, shape.each_mm2, kExtent_mm);
 }
 
 // Blumensaat's line, and how far the lateral condyle reaches along it and away from it. lateral: 1 where that
 // is +x.
-void put_roof(const Shape& shape, double lateral, Landmarks& marks) {
-  marks["blumensaat_anterior"] = shape.notch.anterior_mm;
-  marks["blumensaat_posterior"] = shape.notch.posterior_mm;
+void put_roof(const Shape& shape, const BlumensaatLine& line, double lateral, Landmarks& marks) {
+  marks["blumensaat_anterior"] = line.anterior_mm;
+  marks["blumensaat_posterior"] = line.posterior_mm;
   const auto put = [&](const char* name, const std::optional<Vector3d>& at) {
     if (at) marks[name] = *at;
   };
-  put("lateral_condyle_deep", extent(shape, lateral, -shape.notch.forward));
-  put("lateral_condyle_shallow", extent(shape, lateral, shape.notch.forward));
-  put("lateral_condyle_low", extent(shape, lateral, -shape.notch.into_bone));
+  put("lateral_condyle_deep", extent(shape, line, lateral, -line.forward));
+  put("lateral_condyle_shallow", extent(shape, line, lateral, line.forward));
+  put("lateral_condyle_low", extent(shape, line, lateral, -line.into_bone));
 }
 
 }  // namespace
@@ -225,7 +225,7 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
   std::optional<Shape> shape;
   proposal.reason = "the surface has no joint's end that comes near to its own mirror image";
   for (const RoughFrame& rough : rough_frames(mesh, surface, bones::BoneKind::Femur)) {
-    shape = find_shape(mesh, surface, rough, options.roof, proposal.reason);
+    shape = find_shape(mesh, surface, rough, proposal.reason);
     if (shape) break;
   }
   if (!shape) return proposal;
@@ -240,7 +240,9 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
   const bool is_plus = lateral > 0;
   const Condyles& condyles = shape->condyles;
   Landmarks& marks = proposal.landmarks;
-  put_roof(*shape, lateral, marks);
+  const bool by_ends = options.roof == RoofConvention::Ends;
+  put_roof(*shape, by_ends ? shape->notch.ends : shape->notch.flat, lateral, marks);
+  put_roof(*shape, by_ends ? shape->notch.flat : shape->notch.ends, lateral, proposal.by_other_roof);
   marks["notch_apex"] = shape->notch.apex_mm;
   marks["lateral_condyle_posterior"] = is_plus ? condyles.posterior_plus : condyles.posterior_minus;
   marks["medial_condyle_posterior"] = is_plus ? condyles.posterior_minus : condyles.posterior_plus;
@@ -261,12 +263,6 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
   }
   proposal.roof = shape->notch.shape;
   proposal.hill_mm = shape->notch.hill_mm;
-  const RoofConvention other =
-      options.roof == RoofConvention::Ends ? RoofConvention::Flat : RoofConvention::Ends;
-  if (const auto notch = find_notch(surface, condyles, other)) {
-    shape->notch = *notch;
-    put_roof(*shape, lateral, proposal.by_other_roof);
-  }
   return proposal;
 }
 

@@ -238,8 +238,7 @@ Roof mean_about(const std::vector<ProfilePoint>& profile, const Roof& best) {
 
 }  // namespace
 
-std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& condyles,
-                                RoofConvention convention) {
+std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& condyles) {
   const Eigen::Matrix3d& axes = condyles.bone_from_frame;
   const double usual = geometry::rad_from_deg(kUsualSlope_deg);
   double slope = usual;
@@ -286,17 +285,18 @@ std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& 
   const auto at = [&](double s, double t) -> Vector3d {
     return view.center + ridge * view.across + s * view.forward + t * view.into_bone;
   };
-  const auto laid = [&](double s) {
-    return at(s, convention == RoofConvention::Ends ? outline_at(profile, s) : roof.line.at(s));
+  const auto laid = [&](double t_anterior, double t_posterior) {
+    BlumensaatLine line{at(roof.to, t_anterior), at(roof.from, t_posterior), {}, {}};
+    line.forward = (line.anterior_mm - line.posterior_mm).normalized();
+    line.into_bone = (view.into_bone - view.into_bone.dot(line.forward) * line.forward).normalized();
+    return line;
   };
-  notch.anterior_mm = laid(roof.to);
-  notch.posterior_mm = laid(roof.from);
+  notch.flat = laid(roof.line.at(roof.to), roof.line.at(roof.from));
+  notch.ends = laid(outline_at(profile, roof.to), outline_at(profile, roof.from));
   const double middle = (roof.from + roof.to) / 2;
   notch.apex_mm = at(middle, outline_at(profile, middle));
   notch.cost = roof.cost;
   notch.roof = view.forward;
-  notch.forward = (notch.anterior_mm - notch.posterior_mm).normalized();
-  notch.into_bone = (view.into_bone - view.into_bone.dot(notch.forward) * notch.forward).normalized();
   return notch;
 }
 

@@ -12,13 +12,18 @@
 
 namespace arthronaut::landmarks {
 
-struct Notch {
-  // In the lateral view: along Blumensaat's line towards the front, and out of the notch into the bone. At
-  // right angles.
+// As one convention lays it. Bone frame.
+struct BlumensaatLine {
+  Eigen::Vector3d anterior_mm, posterior_mm;  // its ends
+  // In the lateral view: along the line towards the front, and out of the notch into the bone. At right
+  // angles.
   Eigen::Vector3d forward, into_bone;
-  Eigen::Vector3d roof;  // forward along the best straight line through the roof, whatever the convention
-  Eigen::Vector3d anterior_mm, posterior_mm;  // the ends of Blumensaat's line by the convention; bone frame
-  Eigen::Vector3d apex_mm;                    // of the roof's ridge, halfway
+};
+
+struct Notch {
+  BlumensaatLine flat, ends;  // by RoofConvention
+  Eigen::Vector3d roof;       // forward along the best straight line through the roof
+  Eigen::Vector3d apex_mm;    // of the roof's ridge, halfway
   RoofShape shape = RoofShape::Straight;
   double hill_mm = 0;
   double cost =
@@ -30,7 +35,6 @@ struct Notch {
 // meet: the back of the shaft, the roof, the groove of the kneecap. Roofs are bent like an S, so that an end
 // is not where the outline leaves the line by so much, but where it turns for good. The line's direction is
 // found anew until it stays. nullopt where between the condyles no such roof is.
-[[nodiscard]] std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& condyles,
-                                              RoofConvention convention);
+[[nodiscard]] std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& condyles);
 
 }  // namespace arthronaut::landmarks
