@@ -7,7 +7,7 @@
 #include "app/command_line/option_checks.h"
 #include "navigation/calibration/calibration.h"
 #include "navigation/calibration/residual_plot.h"
-#include "navigation/camera/camera_file.h"
+#include "navigation/camera/doubted_camera_file.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -79,7 +79,7 @@ void run_calibrate(Context& context, CalibrateArguments& arguments) {
     throw InvalidInput("calibrate: " +
                        (summary.reasons.empty() ? std::string("failed") : summary.reasons.front()));
   if (!arguments.plot.empty()) calibration::write_residual_plot(arguments.plot, summary, pictures);
-  camera::write_camera_file(arguments.output, summary.record);
+  camera::write_doubted_camera_file(arguments.output, summary.record, summary.reasons);
   if (arguments.output != "-") say_result(context, summary, options.square_mm);
   if (!summary.reasons.empty()) context.say_unreliable("the calibration", summary.reasons);
 }

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
+#include "navigation/camera/doubted_camera_file.h"
 #include "navigation/camera/medium.h"
 #include "planning/files/json_covariance.h"
 #include "planning/files/json_document.h"
@@ -78,6 +79,11 @@ CalibrationRecord read_camera_file(const std::filesystem::path& file) {
 }
 
 void write_camera_file(const std::filesystem::path& file, const CalibrationRecord& record) {
+  write_doubted_camera_file(file, record, {});
+}
+
+void write_doubted_camera_file(const std::filesystem::path& file, const CalibrationRecord& record,
+                               const std::vector<std::string>& reasons) {
   const Calibration& c = record.calibration;
   nlohmann::ordered_json json = {
       {"format", kFormat},
@@ -102,6 +108,10 @@ void write_camera_file(const std::filesystem::path& file, const CalibrationRecor
   const std::string& calibrated_utc =
       record.provenance.calibrated_utc.empty() ? record.date_utc : record.provenance.calibrated_utc;
   if (!calibrated_utc.empty()) json["calibrated_utc"] = calibrated_utc;
+  if (!reasons.empty()) {
+    json["reliable"] = false;
+    json["reasons"] = reasons;
+  }
   files::write_json(file, json);
 }
 

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "navigation/calibration/fluid_file.h"
-#include "navigation/camera/camera_file.h"
+#include "navigation/camera/doubted_camera_file.h"
 #include "navigation/recording/session_marks.h"
 #include "navigation/registration/registration.h"
 #include "navigation/registration/registration_file.h"
@@ -80,6 +80,8 @@ TEST_F(Schemas, DescribeTheCamera) {
     camera::write_camera_file(file, record);
     expect_described(file, "camera", [&] { (void)camera::read_camera_file(file); });
   }
+  camera::write_doubted_camera_file(file, record, {"the lens was not turned"});
+  expect_described(file, "camera", [&] { (void)camera::read_camera_file(file); });
 }
 
 // The built-in tools: with tips, with axes.

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -87,7 +89,12 @@ class CalibrateCommand : public ::testing::Test {
   // Done, written, and not to be relied upon.
   void expect_doubted(const test::ProgramResult& result) const {
     EXPECT_EQ(result.exit_code, 4) << result.errors;
-    EXPECT_TRUE(std::filesystem::exists(camera_file()));
+    // The file says so too, and why: it is what goes on to others.
+    std::ifstream stream(camera_file());
+    const auto camera = nlohmann::json::parse(stream);
+    EXPECT_EQ(camera.at("reliable"), false);
+    ASSERT_FALSE(camera.at("reasons").empty());
+    for (const std::string reason : camera.at("reasons")) EXPECT_THAT(result.errors, HasSubstr(reason));
   }
 
   test::TemporaryFolder folder_;
