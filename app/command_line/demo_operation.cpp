@@ -8,6 +8,7 @@
 
 #include "app/case/case_calibration.h"
 #include "app/command_line/frame_dump.h"
+#include "app/command_line/interruption.h"
 #include "app/command_line/tracking_report.h"
 #include "app/report/report.h"
 #include "app/scene/overlay_picture.h"
@@ -22,6 +23,7 @@
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
 #include "planning/files/utc_clock.h"
+#include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
 #include "planning/phantom/phantom_case.h"
 
@@ -35,13 +37,20 @@ using simulator::Phase;
 // Enough for a tip that is sure; the swing's own 130 frames would take as long again to render.
 constexpr int kPivotFrames = 70;
 
+// Ctrl+C during minutes of work: what was begun is removed before the program ends.
+void stop_if_interrupted(const Interruption& interruption) {
+  if (interruption.caught() != 0) throw DeviceError("the demo was stopped by hand");
+}
+
 // Keeps how deep the drill truly was in every frame: frames are rendered in another thread than they are
 // tracked in.
 class WatchedOperation : public sources::FrameSource {
  public:
-  WatchedOperation(const simulator::SimulationOptions& options, Phase phase) : operation_(options, phase) {}
+  WatchedOperation(const simulator::SimulationOptions& options, Phase phase, const Interruption& interruption)
+      : operation_(options, phase), interruption_(interruption) {}
   const sources::SourceInfo& info() const override { return operation_.info(); }
   camera::FramePtr next() override {
+    stop_if_interrupted(interruption_);
     camera::FramePtr frame = operation_.next();
     const std::lock_guard lock(mutex_);
     if (frame) depth_mm_[frame->index] = operation_.truth().drilled_depth_mm;
@@ -55,14 +64,18 @@ class WatchedOperation : public sources::FrameSource {
 
  private:
   simulator::SimulatedOperation operation_;
+  const Interruption& interruption_;
   mutable std::mutex mutex_;
   std::map<std::int64_t, double> depth_mm_;
 };
 
 class Demo {
  public:
-  Demo(Context& context, const DemoOptions& options)
-      : context_(context), options_(options), started_(std::chrono::steady_clock::now()) {}
+  Demo(Context& context, const DemoOptions& options, const Interruption& interruption)
+      : context_(context),
+        options_(options),
+        interruption_(interruption),
+        started_(std::chrono::steady_clock::now()) {}
 
   void run() {
     plan();
@@ -75,6 +88,7 @@ class Demo {
 
  private:
   void step(const std::string& name) {
+    stop_if_interrupted(interruption_);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started_;
     context_.say(format("[%5.1f s] ", elapsed.count()) + name);
   }
@@ -100,7 +114,7 @@ class Demo {
 
   bool calibrate() {
     step("Calibrate: stills of a checkerboard in air, the lens turned in between");
-    WatchedOperation source(simulation_, Phase::Calibrate);
+    WatchedOperation source(simulation_, Phase::Calibrate, interruption_);
     std::vector<calibration::CalibrationPicture> pictures;
     std::vector<std::uint8_t> gray;
     while (const camera::FramePtr frame = source.next()) {
@@ -153,7 +167,7 @@ class Demo {
     view.refractive_index = simulation_.refractive_index;
     simulator::SimulationOptions swing = simulation_;
     swing.frame_count = kPivotFrames;
-    WatchedOperation source(swing, Phase::Pivot);
+    WatchedOperation source(swing, Phase::Pivot, interruption_);
     const pipeline::TrackedVideo tracked = pipeline::track_video(source, view, simulation_.tools);
     tools::ToolSet tools = simulation_.tools;
     const auto probe =
@@ -236,7 +250,7 @@ class Demo {
 
   // One phase as a session of the case; its last frame with a registration becomes a picture.
   theatre::NavigationSummary navigate(Phase phase, const std::string& name) {
-    const auto source = std::make_shared<WatchedOperation>(simulation_, phase);
+    const auto source = std::make_shared<WatchedOperation>(simulation_, phase, interruption_);
     last_session_ = cases::create_session_folder(options_.case_folder);
     camera::FramePtr last_frame;
     pipeline::FrameResult last_result;
@@ -309,6 +323,7 @@ class Demo {
 
   Context& context_;
   DemoOptions options_;
+  const Interruption& interruption_;
   std::chrono::steady_clock::time_point started_;
   simulator::SimulationOptions simulation_;  // the truth
   theatre::NavigateOptions navigation_;      // what the theatre has found so far
@@ -323,11 +338,13 @@ class Demo {
 }  // namespace
 
 void run_demo(Context& context, const DemoOptions& options) {
+  const Interruption interruption;
   try {
-    Demo(context, options).run();
+    Demo(context, options, interruption).run();
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(options.case_folder, ignored);
+    if (interruption.caught() != 0) interruption.end_program();
     throw;
   }
 }

@@ -1,10 +1,10 @@
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_lock.h"
+#include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
@@ -213,7 +213,7 @@ void add_landmarks_command(CLI::App& app, Context& context) {
     std::map<BoneKind, landmarks::Proposal> proposals;
     if (change(*arguments, knee, proposals)) cases::save_case(arguments->case_folder, knee);
     if (arguments->as_json) {
-      std::cout << to_json(knee, proposals).dump(2) << '\n';
+      files::write_atomically("-", to_json(knee, proposals).dump(2) + "\n");
     } else {
       list(context, knee);
     }

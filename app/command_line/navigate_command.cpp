@@ -1,8 +1,10 @@
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "app/command_line/cartilage_option.h"
 #include "app/command_line/command.h"
+#include "app/command_line/interruption.h"
 #include "app/command_line/medium_option.h"
 #include "app/command_line/navigation_report.h"
 #include "app/command_line/option_checks.h"
@@ -209,7 +211,15 @@ double captured_utc_s(const camera::Frame& picture) {
   return now_s - (steady_s - static_cast<double>(picture.captured_ns) * 1e-9);
 }
 
-void navigate(Context& context, const NavigateArguments& arguments) {
+// Ctrl+C ends a live source, and what was seen until then is kept, as at any other end of it. A recording can
+// be run again: its half session is removed.
+void stop_if_interrupted(const Interruption& interruption) {
+  if (interruption.caught() != 0) throw DeviceError("stopped by hand");
+}
+
+// `interruption` begins with the session: until then Ctrl+C ends the program at once.
+void navigate(Context& context, const NavigateArguments& arguments,
+              std::optional<Interruption>& interruption) {
   const cases::CaseLock lock = cases::lock_or_refuse(arguments.case_folder);
   if (!lock.notice().empty()) context.say(lock.notice() + ".");
   const cases::Case knee = cases::load_case(arguments.case_folder);
@@ -234,6 +244,7 @@ void navigate(Context& context, const NavigateArguments& arguments) {
     context.say("OpenIGTLink: port " + std::to_string(igtl->port()) +
                 (arguments.igtl_network ? ", for other machines too" : ", for this machine alone"));
   }
+  interruption.emplace();
   NewSession session(arguments.case_folder);
   theatre::NavigationSummary summary;
   {
@@ -243,10 +254,12 @@ void navigate(Context& context, const NavigateArguments& arguments) {
     observer.on_frame = [&](const camera::FramePtr& picture, const operation::OperationStatePtr& state) {
       progress.advance_to(++done);
       if (igtl) igtl->publish(state, captured_utc_s(*picture), picture);
+      stop_if_interrupted(*interruption);
     };
     observer.on_silence = [&](const theatre::SourceWatch& watch, const operation::OperationStatePtr&) {
       const bool is_told = watch.trouble() != theatre::SourceTrouble::None;
       if (igtl) igtl->tell({false, is_told ? watch.words() : "no new picture"}, utc_now_s());
+      stop_if_interrupted(*interruption);
     };
     theatre::RecordOptions record;
     record.folder = session.folder();
@@ -336,9 +349,17 @@ void add_navigate_command(CLI::App& app, Context& context) {
   add_tracker_option(*command, arguments->tracker);
   command
       ->add_option("--duration-s", arguments->duration_s,
-                   "Stop after so many seconds of pictures; default: at the source's end")
+                   "Stop after so many seconds of pictures; default: at the source's end, or at Ctrl+C")
       ->check(above_zero());
-  command->callback([&context, arguments] { navigate(context, *arguments); });
+  command->callback([&context, arguments] {
+    std::optional<Interruption> interruption;
+    try {
+      navigate(context, *arguments, interruption);
+    } catch (const DeviceError&) {
+      if (interruption && interruption->caught() != 0) interruption->end_program();
+      throw;
+    }
+  });
 }
 
 }  // namespace arthronaut::command_line

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 
 #include "planning/files/atomic_file.h"
 #include "tests/app/command_line/program.h"
@@ -182,6 +183,28 @@ TEST(OutputFolder, IsAbsentOrEmpty) {
   }
   fs::create_directory(folder / "Knee.arthro");
   EXPECT_EQ(run_program({"phantom", "-o", folder / "Knee.arthro"}).exit_code, 0);
+}
+
+// A folder that is left half would refuse the next try of that name.
+TEST(OutputFolder, OfADemoThatIsInterruptedIsGone) {
+  const test::TemporaryFolder folder;
+  const fs::path knee = folder / "demo.arthro";
+  const auto result =
+      run_program({"demo", "-o", knee}, {.interrupts_when = [&] { return fs::exists(knee / "pictures"); }});
+  EXPECT_EQ(result.exit_code, 128 + SIGINT) << result.errors;
+  EXPECT_THAT(folder.names(), ::testing::IsEmpty());
+}
+
+// What was asked for on standard output and did not get there is an error, as in a file.
+TEST(OutputFile, AFullDiskBehindStandardOutputIsTold) {
+  const test::TemporaryFolder folder;
+  const std::string knee = folder / "Knee.arthro";
+  ASSERT_EQ(run_program({"phantom", "-o", knee}).exit_code, 0);
+  for (const std::string command : {"landmarks", "plan"}) {
+    const auto result = run_program({command, knee, "--json"}, {.output = "/dev/full"});
+    EXPECT_EQ(result.exit_code, 3) << command;
+    EXPECT_THAT(result.errors, HasSubstr("standard output: cannot write")) << command;
+  }
 }
 
 }  // namespace

@@ -5,9 +5,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include "tests/temporary_folder.h"
 
@@ -46,23 +49,38 @@ std::string contents_of(const fs::path& file) {
   ::_exit(127);
 }
 
+// Nothing is sent to a program that has ended.
+void interrupt_when(const std::function<bool()>& is_time, pid_t child) {
+  siginfo_t ended{};
+  while (!is_time()) {
+    ended.si_pid = 0;
+    if (::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+        ended.si_pid != 0)
+      return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  ::kill(child, SIGINT);
+}
+
 }  // namespace
 
 ProgramResult run_program(const std::vector<std::string>& arguments, const ProgramLimits& limits) {
   const TemporaryFolder folder;
-  const int output = ::open((folder / "out").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  const fs::path output_file = limits.output.empty() ? fs::path(folder / "out") : limits.output;
+  const int output = ::open(output_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   const int errors = ::open((folder / "err").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   const pid_t child = ::fork();
   if (child == 0)
     become_program(arguments, limits, limits.data_home.empty() ? folder / "data" : limits.data_home, output,
                    errors);
   int status = 0;
+  if (limits.interrupts_when) interrupt_when(limits.interrupts_when, child);
   ::waitpid(child, &status, 0);
   ::close(output);
   ::close(errors);
   ProgramResult result;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  result.output = contents_of(folder / "out");
+  if (limits.output.empty()) result.output = contents_of(output_file);
   result.errors = contents_of(folder / "err");
   return result;
 }

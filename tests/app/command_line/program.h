@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct ProgramLimits {
   bool as_nobody = false;    // gives up root, which no folder is read-only for
   // What the program takes for the user's data (XDG_DATA_HOME); empty: a folder of this run's own.
   std::filesystem::path data_home = {};
+  // Ctrl+C once this is true; asked all the while.
+  std::function<bool()> interrupts_when = {};
+  std::filesystem::path output = {};  // where standard output goes in place of ProgramResult::output
 };
 
 ProgramResult run_program(const std::vector<std::string>& arguments, const ProgramLimits& limits = {});

@@ -172,5 +172,31 @@ TEST_F(VideoCommands, NavigateLeavesNothingBehindWhenItFails) {
   EXPECT_TRUE(!std::filesystem::exists(knee + "/sessions") || std::filesystem::is_empty(knee + "/sessions"));
 }
 
+// How a live source usually ends: the session is closed whole, and nothing of it is half written.
+TEST_F(VideoCommands, NavigateKeepsWhatALiveSourceGaveUntilCtrlC) {
+  const std::string knee = folder_ / "knee.arthro";
+  ASSERT_EQ(run_program({"phantom", "-o", knee}).exit_code, 0);
+  const auto session = [&]() -> std::filesystem::path {
+    if (!std::filesystem::exists(knee + "/sessions") || std::filesystem::is_empty(knee + "/sessions"))
+      return {};
+    return *std::filesystem::directory_iterator(knee + "/sessions");
+  };
+  const auto result = run_program(
+      {"navigate", knee, "--video",
+       "gst:videotestsrc is-live=true ! video/x-raw,width=640,height=480,framerate=30/1 ! appsink",
+       "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json", "--fixed-lens", "--no-copy"},
+      {.interrupts_when = [&] {
+        const auto folder = session();
+        return !folder.empty() && std::filesystem::exists(folder / "session.sqlite");
+      }});
+  EXPECT_EQ(result.exit_code, 4) << result.errors;  // no marker was seen
+  EXPECT_THAT(result.output, HasSubstr("the source ended: stopped by hand"));
+  EXPECT_TRUE(std::filesystem::exists(session() / "poses.csv"));
+  for (const auto& file : std::filesystem::directory_iterator(session()))
+    EXPECT_NE(file.path().extension(), ".part") << file.path();
+  const auto verified = run_program({"verify", knee, "--session", session().filename()});
+  EXPECT_EQ(verified.exit_code, 0) << verified.errors;
+}
+
 }  // namespace
 }  // namespace arthronaut
