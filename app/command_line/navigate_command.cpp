@@ -8,6 +8,7 @@
 #include "app/command_line/medium_option.h"
 #include "app/command_line/navigation_report.h"
 #include "app/command_line/option_checks.h"
+#include "app/command_line/picture_size.h"
 #include "app/command_line/tracker_option.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
@@ -235,6 +236,7 @@ void navigate(Context& context, const NavigateArguments& arguments,
   }
   const std::shared_ptr<sources::FrameSource> source =
       open_for(arguments.video, options.source.pipeline.calibration.image_size_px);
+  refuse_other_size(arguments.video, *source, options.source.pipeline.calibration);
   context.say("working medium: " + camera::medium_to_text(options.source.pipeline.refractive_index));
 
   std::optional<openigtlink::IgtlServer> igtl;

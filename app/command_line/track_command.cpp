@@ -4,6 +4,7 @@
 #include "app/command_line/frame_dump.h"
 #include "app/command_line/medium_option.h"
 #include "app/command_line/option_checks.h"
+#include "app/command_line/picture_size.h"
 #include "app/command_line/tracking_report.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/pipeline/track_video.h"
@@ -29,6 +30,7 @@ void track(Context& context, const TrackArguments& arguments) {
     throw InvalidInput(arguments.tools, "tracker",
                        "the tools are seen by an outside tracker: no marker is looked for in pictures");
   const auto source = sources::open_video(arguments.video);
+  refuse_other_size(arguments.video, *source, camera.calibration);
 
   pipeline::ViewTrackerOptions options;
   options.calibration = camera.calibration;

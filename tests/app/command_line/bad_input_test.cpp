@@ -54,7 +54,8 @@ TEST_F(BadInput, CameraOfAnotherPictureSize) {
   spoil("camera.json", "[640, 480]", "[1920, 1080]");
   const auto result = run_program(track(folder_ / "poses.csv"));
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_THAT(result.errors, AllOf(HasSubstr("640 x 480"), HasSubstr("1920 x 1080")));
+  EXPECT_THAT(result.errors,
+              AllOf(HasSubstr("clip.mkv: frame 0"), HasSubstr("640 x 480"), HasSubstr("1920 x 1080")));
   EXPECT_THAT(folder_.names(), ElementsAre("camera.json", "clip.mkv", "tools.json"));
 }
 
