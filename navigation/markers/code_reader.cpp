@@ -14,6 +14,8 @@ constexpr double kMinExplained = 0.75;  // share of the cells' variance
 constexpr int kMaxWrongInside = 1, kMaxWrong = 2;
 // With cells that say nothing.
 constexpr int kMinInside = 10, kMinKnown = 22;
+// A code that explains that share of the variance by a light that slopes explains this of it by an even one.
+constexpr double kMinExplainedEvenly = 0.15;
 constexpr float kUnknown = -1, kSaturatedLight = 255;
 
 using CellLight = std::array<float, kMaxCells * kMaxCells>;
@@ -67,18 +69,35 @@ bool fits(const CellLight& light, const std::array<bool, kMaxCells * kMaxCells>&
     const int cell = turned_cell(row, column, turn, cells);
     return light[cell] != kUnknown && !(is_tainted[cell] && !code.is_bright(row, column));
   };
+  // First by an even light, which is quick: most squares are no marker.
+  double bright_sum = 0;
+  int bright = 0;
+  for (int row = 0; row < cells; ++row) {
+    for (int column = 0; column < cells; ++column) {
+      if (!is_used(row, column)) continue;
+      const double value = light[turned_cell(row, column, turn, cells)];
+      sum += value;
+      squares += value * value;
+      ++known;
+      if (!code.is_bright(row, column)) continue;
+      bright_sum += value;
+      ++bright;
+    }
+  }
+  if (has_unknown && known < kMinKnown * cells * cells / 36) return false;
+  const double variance = squares - sum * sum / std::max(1, known);
+  const double lead = bright_sum - bright * sum / std::max(1, known);
+  if (lead <= 0 ||
+      lead * lead < kMinExplainedEvenly * variance * bright * (1 - bright / std::max(1.0, 1.0 * known)))
+    return false;
   const auto place = [cells](int k) { return (k + 0.5) / cells - 0.5; };
   for (int row = 0; row < cells; ++row) {
     for (int column = 0; column < cells; ++column) {
       if (!is_used(row, column)) continue;
       const double value = light[turned_cell(row, column, turn, cells)];
       fit.add(1, place(column), place(row), value, code.is_bright(row, column));
-      sum += value;
-      squares += value * value;
-      ++known;
     }
   }
-  if (has_unknown && known < kMinKnown * cells * cells / 36) return false;
   fit.solve(0);
   double residual = 0;
   int wrong_inside = 0, inside = 0;
@@ -102,7 +121,6 @@ bool fits(const CellLight& light, const std::array<bool, kMaxCells * kMaxCells>&
     }
   }
   if (has_unknown && (wrong_inside > 0 || inside < kMinInside * (cells - 2) * (cells - 2) / 16)) return false;
-  const double variance = squares - sum * sum / std::max(1, known);
   return wrong_inside <= kMaxWrongInside && wrong <= kMaxWrong && residual < (1 - kMinExplained) * variance;
 }
 

@@ -17,8 +17,8 @@ namespace {
 using geometry::RigidTransform;
 
 constexpr std::size_t kLikelyCandidates = 256;  // memory set aside
-// Direct fits in one frame, counted in small ones; three of these make a whole one.
-constexpr int kFitsAFrame = 200;
+// The work of fits in one frame, counted in small direct ones; three of these make a whole one.
+constexpr int kFitsAFrame = 80;
 // Squares with its code in which a marker is looked for, in one frame.
 constexpr int kMostSquares = 3;
 constexpr std::size_t kSearchesForCovered = 3;

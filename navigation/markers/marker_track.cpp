@@ -18,9 +18,15 @@ constexpr int kMaxPasses = 4;
 constexpr double kMaxNewMotionPx = 5;
 // Two starts that lead so near to each other lead to the same.
 constexpr double kSameEdgesPx = 0.1, kSameMotionPx = 0.5;
+// A search's start whose edges are not found by so much, along x and y together, leads nowhere.
+constexpr double kMinStartShare = 1;
+// Of small direct fits: what it costs to look at its edges.
+constexpr int kEdgesAsFits = 2;
 constexpr double kSoft = 1.4;
 // A pose tilted the other way whose edges scatter by less than this share of the fit's is the right one.
 constexpr double kMuchBetter = 0.5;
+
+double misfit_of(const EdgePose& fit) { return std::max(1.0, fit.scale) / (fit.share[0] + fit.share[1]); }
 
 }  // namespace
 
@@ -48,20 +54,26 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
   Smear picture;
   SmearTrend trend;
   const EdgePose fit = fit_edges(frame, start, is_found, picture, trend);
-  // Both poses that the corners of a square allow often lead to one pose of its edges.
-  if (is_found && fit.converged && refused_) {
-    const double px_per_mm = cell * cells_ / marker_.size_mm;
-    const Vector6d apart =
-        geometry::log(refused_->edges.camera_from_marker.inverse() * fit.camera_from_marker);
-    const Vector6d apart_moving = refused_->motion - picture.motion;
+  frame.fits_left -= is_found ? kEdgesAsFits : 1;
+  // Most starts that lead nowhere show it here, before what is dear.
+  if (is_found && (!fit.converged || fit.share[0] + fit.share[1] < kMinStartShare)) {
+    observation.state = reason_of_loss(start, measurements_, cell);
+    return false;
+  }
+  // Both poses that the corners of a square allow, and several squares, often lead to one pose of its edges.
+  const double px_per_mm = cell * cells_ / marker_.size_mm;
+  const std::size_t refusals = is_found ? std::min(refused_count_, refused_.size()) : 0;
+  for (const Refused& refused : std::span(refused_).first(refusals)) {
+    const Vector6d apart = geometry::log(refused.edges.camera_from_marker.inverse() * fit.camera_from_marker);
+    const Vector6d apart_moving = refused.motion - picture.motion;
     if (px_per_mm * (apart.head<3>().norm() + marker_.size_mm * apart.tail<3>().norm()) < kSameEdgesPx &&
         px_per_mm * apart_moving.head<3>().norm() < kSameMotionPx) {
-      observation = refused_->observation;
+      observation = refused.observation;
       return false;
     }
   }
   if (measure_from_edges(frame, start, is_found, fit, picture, trend, observation)) return true;
-  if (is_found && fit.converged) refused_ = Refused{fit, picture.motion, observation};
+  if (is_found) refused_[refused_count_++ % refused_.size()] = Refused{fit, picture.motion, observation};
   return false;
 }
 
@@ -108,6 +120,7 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
         direct.pose.velocity.head<3>().norm() * px_per_mm > options_.max_new_smear_cells * cell &&
         !goes_on_from_published(frame, direct.pose.camera_from_marker)) {
       observation.state = MarkerState::Blur;
+      go_on_from(direct.pose.camera_from_marker, 1 / (fit.converged ? fit.share[0] + fit.share[1] : 1));
       return false;
     }
     const bool is_motion_new = is_found || is_motion_guessed_;
@@ -146,7 +159,7 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
         return true;
       }
       observation.state = edges_motion_px > options_.smeared_px ? MarkerState::Blur : MarkerState::Covered;
-      go_on_from(fit);
+      go_on_from(fit.camera_from_marker, misfit_of(fit));
       return false;
     }
   }
@@ -349,7 +362,7 @@ RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fi
     if (rival) observation.state = MarkerState::Ambiguous;
     if (rival && rival->scale < kMuchBetter * fit.scale) {
       observation.state = MarkerState::Doubtful;  // what is ambiguous is gone on from
-      go_on_from(*rival);
+      go_on_from(rival->camera_from_marker, misfit_of(*rival));
     }
   }
   const double cell = cell_px(frame, fit.camera_from_marker);
@@ -359,7 +372,7 @@ RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fi
   if (is_found && observation.is_tracked() &&
       picture.motion.head<3>().norm() * cell * cells_ > kMaxNewMotionPx * marker_.size_mm) {
     observation.state = MarkerState::Blur;
-    go_on_from(fit);
+    go_on_from(fit.camera_from_marker, misfit_of(fit));
   }
   return rows;
 }

@@ -2,6 +2,7 @@
 // measure it at a supposed pose.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -25,7 +26,7 @@ struct TrackedFrame {
   std::int64_t interval_ns = 0;  // from frame to frame
   CameraSmear& smear;
   DirectFit* direct = nullptr;  // none: edge profiles alone
-  // Direct fits that may still be made in this frame, counted in small ones: they take most of the time. What
+  // Fits that may still be made in this frame, counted in small direct ones: they take most of the time. What
   // is not measured in one frame is in the next.
   int& fits_left;
   std::span<const MarkerCode> codes;  // of all declared markers
@@ -139,8 +140,8 @@ class MarkerTrack {
   [[nodiscard]] bool goes_on_from_published(const TrackedFrame& frame,
                                             const geometry::RigidTransform& pose) const;
   // A pose that is good enough to go on from, not to stand for; of several in one frame, the one whose edges
-  // agree best.
-  void go_on_from(const EdgePose& fit);
+  // agree best: by their scatter over the share that is found.
+  void go_on_from(const geometry::RigidTransform& pose, double misfit);
 
   MarkerTrackOptions options_;
   DeclaredMarker marker_;
@@ -157,13 +158,15 @@ class MarkerTrack {
   };
   std::optional<Guess> guess_;      // of this frame, until it is final
   bool is_motion_guessed_ = false;  // what is known of the motion comes from a pose that did not stand
-  // What a search led to in this frame that did not stand: another start that leads there is the same.
+  // What a search led to in this frame that did not stand, the last few: another start that leads there is
+  // the same.
   struct Refused {
     EdgePose edges;
     geometry::Vector6d motion;
     MarkerObservation observation;
   };
-  std::optional<Refused> refused_;
+  std::array<Refused, 4> refused_;
+  std::size_t refused_count_ = 0;
   // A pose that explained this frame's picture and yet did not stand: another one that does is no better.
   std::optional<geometry::RigidTransform> explained_;
   // Something that might have been it could not be looked at to the end in this frame: nothing else stands in

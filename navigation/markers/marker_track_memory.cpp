@@ -35,9 +35,8 @@ bool MarkerTrack::goes_on_from_published(const TrackedFrame& frame, const RigidT
          turned_rad <= options_.turn_slack_rad + options_.max_turn_rad_s * passed_s;
 }
 
-void MarkerTrack::go_on_from(const EdgePose& fit) {
-  const double misfit = std::max(1.0, fit.scale) / (fit.share[0] + fit.share[1]);
-  if (!guess_ || misfit < guess_->misfit) guess_ = Guess{fit.camera_from_marker, misfit};
+void MarkerTrack::go_on_from(const RigidTransform& pose, double misfit) {
+  if (!guess_ || misfit < guess_->misfit) guess_ = Guess{pose, misfit};
 }
 
 void MarkerTrack::follow(const MarkerObservation& observation, std::int64_t timestamp_ns) {
@@ -51,7 +50,7 @@ void MarkerTrack::follow(const MarkerObservation& observation, std::int64_t time
     published_ = MarkerMotion::Sighting{observation.camera_from_marker, timestamp_ns};
   if (is_measured || guess_) is_motion_guessed_ = !is_measured;
   guess_.reset();
-  refused_.reset();
+  refused_count_ = 0;
   explained_.reset();
   is_undecided_ = false;
 }
@@ -60,7 +59,7 @@ void MarkerTrack::forget() {
   motion_ = MarkerMotion();
   published_.reset();
   guess_.reset();
-  refused_.reset();
+  refused_count_ = 0;
   explained_.reset();
   is_undecided_ = is_motion_guessed_ = false;
   is_duplicate = false;

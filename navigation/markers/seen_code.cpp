@@ -18,11 +18,17 @@ constexpr double kMinAgreeing = 0.45;
 constexpr int kMinAgreeingInside = 7, kMaxOppositeInside = 3, kClearLead = 4, kLead = 5;
 constexpr int kMinCoveredScore = 6;
 constexpr int kSeePasses = 4;
+// Seen by the light of border and margin alone, which all codes have alike, a code that could agree in the
+// end is about right already.
+constexpr int kMinHopefulInside = 4, kMaxHopefulOpposite = 6, kHopefulPasses = 3;
 // Of a cell that a highlight may hide a part of: its parts, how far from its middle they reach, so that its
 // neighbours' smear does not, how many of them have to be dark, and how many how bright. Where a highlight
 // fades over a dark cell there is a band of any brightness, but it is narrow.
 constexpr int kPartsAcross = 6, kMinDarkParts = 4, kMinBrightParts = 15;
 constexpr double kPartsReach = 0.3, kPartAgrees = 0.2;
+// A bright cell is nowhere this dark, so one that is by so many parts is dark under what the highlight adds.
+constexpr double kNoBright = 0.6;
+constexpr int kMinNoBrightParts = 6;
 
 // A cell, or one of the margin, as the picture shows it.
 struct SeenCell {
@@ -125,53 +131,96 @@ Shade shade_of(const SeenCell& cell, const SeenSquare& seen, const LightFit& fit
                                            : Shade::Neither;
   }
   const CellParts& parts = seen.parts[cell.parts];
-  int dark = 0, bright = 0;
+  int dark = 0, bright = 0, no_bright = 0;
   for (int k = 0; k < parts.count; ++k) {
     const double level = (parts.light[k] - bias) / gain;
     dark += level < kAgrees;
+    no_bright += level < kNoBright;
     bright += std::abs(level - 1) < kPartAgrees;
   }
-  if (dark >= kMinDarkParts) return Shade::Dark;
+  if (dark >= kMinDarkParts || no_bright >= kMinNoBrightParts) return Shade::Dark;
   return dark == 0 && bright >= kMinBrightParts ? Shade::Bright : Shade::Unseen;
 }
 
-// What the cells say of one code whose top-left is corner `turn` of what they were seen on. What covers is
-// left out step by step, beginning with the light that most of the cells agree on.
-SeenCode judge_cells(const SeenSquare& seen, std::span<const MarkerCode> codes, std::size_t index, int turn) {
-  const MarkerCode& code = codes[index];
-  const int cells = code.cells;
-  // The marker's cell that is seen here.
-  const auto expected = [cells](const MarkerCode& of, const SeenCell& cell, int turned) {
-    if (cell.is_margin) return Shade::Bright;
-    const int there = turned_cell(cell.row, cell.column, (4 - turned) % 4, cells);
-    return of.is_bright(there / cells, there % cells) ? Shade::Bright : Shade::Dark;
-  };
-  LightFit fit;
-  for (int pass = 0; pass < kSeePasses; ++pass) {
+// The marker's cell that is seen here, its top-left being corner `turn` of what is looked at.
+Shade expected_shade(const MarkerCode& code, const SeenCell& cell, int turn) {
+  if (cell.is_margin) return Shade::Bright;
+  const int there = turned_cell(cell.row, cell.column, (4 - turn) % 4, code.cells);
+  return code.is_bright(there / code.cells, there % code.cells) ? Shade::Bright : Shade::Dark;
+}
+
+// The light that most of the cells that are taken agree on: what covers is left out step by step. False when
+// there is none.
+template <typename Taken, typename Bright>
+bool fit_light(const SeenSquare& seen, int passes, const Taken& is_taken, const Bright& is_bright,
+               LightFit& fit) {
+  for (int pass = 0; pass < passes; ++pass) {
     const LightFit last = fit;
     const double range = last.gain(0, 0);
     fit = LightFit();
     for (const SeenCell& cell : seen.cells()) {
-      if (cell.is_white) continue;
-      const bool is_bright = expected(code, cell, turn) == Shade::Bright;
+      if (cell.is_white || !is_taken(cell)) continue;
+      const bool bright = is_bright(cell);
       double weight = 1;
       if (pass > 0) {
-        const double error = (cell.value - last.light(cell.x, cell.y, is_bright)) / (kAgrees * range);
+        const double error = (cell.value - last.light(cell.x, cell.y, bright)) / (kAgrees * range);
         weight = 1 / ((1 + error * error) * (1 + error * error));
       }
-      fit.add(weight, cell.x, cell.y, cell.value, is_bright);
+      fit.add(weight, cell.x, cell.y, cell.value, bright);
     }
     // A slope of the light is not expected to be larger than the light.
     fit.solve(0.3);
-    if (!(fit.gain(0, 0) > kMinRange)) return {};
+    if (!(fit.gain(0, 0) > kMinRange)) return false;
   }
+  return true;
+}
+
+// The codes and turns that are worth a judgement: most of what is looked at is no marker. Where border and
+// margin don't tell the light, all are.
+class HopefulCodes {
+ public:
+  explicit HopefulCodes(const SeenSquare& seen) : seen_(seen) {
+    LightFit fit;
+    knows_light_ = fit_light(
+        seen, kHopefulPasses, [](const SeenCell& cell) { return !cell.is_inside; },
+        [](const SeenCell& cell) { return cell.is_margin; }, fit);
+    if (!knows_light_) return;
+    for (int i = 0; i < seen.count; ++i)
+      shades_[i] = seen.all[i].is_inside ? shade_of(seen.all[i], seen, fit) : Shade::Unseen;
+  }
+  [[nodiscard]] bool may_be(const MarkerCode& code, int turn) const {
+    if (!knows_light_) return true;
+    int agreeing = 0, opposite = 0;
+    for (int i = 0; i < seen_.count; ++i) {
+      if (shades_[i] == Shade::Unseen || shades_[i] == Shade::Neither) continue;
+      const bool agrees = shades_[i] == expected_shade(code, seen_.all[i], turn);
+      agreeing += agrees;
+      opposite += !agrees;
+    }
+    return agreeing >= kMinHopefulInside && opposite <= kMaxHopefulOpposite;
+  }
+
+ private:
+  const SeenSquare& seen_;
+  bool knows_light_ = false;
+  Shades shades_{};
+};
+
+// What the cells say of one code whose top-left is corner `turn` of what they were seen on.
+SeenCode judge_cells(const SeenSquare& seen, std::span<const MarkerCode> codes, std::size_t index, int turn) {
+  const MarkerCode& code = codes[index];
+  LightFit fit;
+  if (!fit_light(
+          seen, kSeePasses, [](const SeenCell&) { return true; },
+          [&](const SeenCell& cell) { return expected_shade(code, cell, turn) == Shade::Bright; }, fit))
+    return {};
   SeenCode result;
   Shades shades;
   for (int i = 0; i < seen.count; ++i) {
     const SeenCell& cell = seen.all[i];
     shades[i] = shade_of(cell, seen, fit);
     if (shades[i] == Shade::Unseen) continue;
-    const Shade should = expected(code, cell, turn);
+    const Shade should = expected_shade(code, cell, turn);
     ++result.seen;
     result.agreeing += shades[i] == should;
     if (!cell.is_inside) continue;
@@ -187,7 +236,7 @@ SeenCode judge_cells(const SeenSquare& seen, std::span<const MarkerCode> codes, 
       int score = 0;
       for (int i = 0; i < seen.count; ++i) {
         if (!seen.all[i].is_inside || shades[i] == Shade::Unseen || shades[i] == Shade::Neither) continue;
-        score += shades[i] == expected(codes[other], seen.all[i], other_turn) ? 1 : -1;
+        score += shades[i] == expected_shade(codes[other], seen.all[i], other_turn) ? 1 : -1;
       }
       other_score = std::max(other_score, score);
     }
@@ -243,10 +292,12 @@ std::optional<ReadCode> read_covered_code(const LinearImage& image, const camera
   see_cells(image, camera, cells, at, seen);
   if (margin_contrast(seen) < kMinRange) return std::nullopt;
   see_parts(image, camera, cells, at, seen);
+  const HopefulCodes hopeful(seen);
   std::optional<ReadCode> best;
   int most = 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {
     for (int turn = 0; turn < 4; ++turn) {
+      if (!hopeful.may_be(codes[i], turn)) continue;
       const SeenCode code = judge_cells(seen, codes, i, turn);
       const int score = code.agreeing_inside - 2 * code.opposite_inside;
       if (!code.is_confirmed() || score < kMinCoveredScore || score <= most) continue;

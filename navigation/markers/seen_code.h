@@ -1,8 +1,9 @@
 // A code of which a part may be hidden: what each of its cells says by itself.
 //
 // A highlight only adds light. So an inner cell that is saturated, or beside one that is, is told by its
-// parts: where some are as dark as the dark, it is dark, whatever shines beside them; where none is dark and
-// many are just as bright as the bright, it is bright; else it says nothing.
+// parts: where some are as dark as the dark, or more are darker than anything bright, it is dark, whatever
+// shines on it or beside them; where none is dark and many are just as bright as the bright, it is bright;
+// else it says nothing.
 #pragma once
 
 #include <optional>

@@ -132,6 +132,7 @@ void SquareSearch::shrink(const camera::GrayView& frame, const camera::CameraMod
   first_.resize(std::max(width_, height_));
   last_.resize(std::max(width_, height_));
   white_pixels_ = 0;
+  sums_are_ = Sums::None;
   for (int y = 0; y < height_; ++y) {
     std::uint8_t* out = &small_[static_cast<std::size_t>(y) * width_];
     shrink_ == kShrink
@@ -143,7 +144,9 @@ void SquareSearch::shrink(const camera::GrayView& frame, const camera::CameraMod
 
 // Without white: what was before it in the row stands in for a white pixel.
 void SquareSearch::sum_rows(bool without_white) {
-  if (width_ <= 0) return;
+  const Sums wanted = without_white ? Sums::WithoutWhite : Sums::OfAll;
+  if (width_ <= 0 || sums_are_ == wanted) return;
+  sums_are_ = wanted;
   std::fill_n(sums_.begin(), width_ + 1, 0U);
   for (int y = 0; y < height_; ++y) {
     const std::uint8_t* in = &small_[static_cast<std::size_t>(y) * width_];

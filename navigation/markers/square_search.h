@@ -99,8 +99,9 @@ class SquareSearch {
   int left_ = 0, top_ = 0;      // of the shrunk picture's first pixel, in frame pixels
   int width_ = 0, height_ = 0;  // of the shrunk picture
   std::vector<std::uint8_t> small_;
-  std::vector<std::uint16_t> column_sums_;     // of the frame's rows that make one of small_
-  std::vector<std::uint32_t> sums_;            // integral image of small_, one row and column larger
+  std::vector<std::uint16_t> column_sums_;  // of the frame's rows that make one of small_
+  std::vector<std::uint32_t> sums_;         // integral image of small_, one row and column larger
+  enum class Sums { None, OfAll, WithoutWhite } sums_are_ = Sums::None;
   std::vector<std::uint8_t> dark_, was_dark_;  // was_dark_: before white was marked, too
   int white_pixels_ = 0;
   std::vector<int> labels_, parents_;
