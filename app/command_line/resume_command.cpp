@@ -1,5 +1,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "app/command_line/command.h"
 #include "navigation/recording/resumable.h"
@@ -18,9 +19,12 @@ struct ResumeArguments {
   bool json = false;
 };
 
-nlohmann::ordered_json json_of(const recording::Resumable& found) {
+nlohmann::ordered_json json_of(const std::optional<recording::Resumable>& resumable) {
+  nlohmann::ordered_json json = {
+      {"format", "arthronaut.resumable"}, {"version", 1}, {"is_found", resumable.has_value()}};
+  if (!resumable) return json;
+  const recording::Resumable& found = *resumable;
   const operation::ResumeOperation& was = found.operation;
-  nlohmann::ordered_json json;
   json["session"] = was.session;
   json["bone"] = bones::to_text(found.header.bone);
   json["source"] = found.header.source_kind;
@@ -77,7 +81,7 @@ void resume(Context& context, const ResumeArguments& arguments) {
   const auto found = recording::find_resumable(arguments.case_folder, kind,
                                                bones::mesh_sha256(bone->second.mesh), knee.plan.of(kind));
   if (arguments.json)
-    files::write_json("-", found ? json_of(*found) : nlohmann::ordered_json());
+    files::write_json("-", json_of(found));
   else if (found)
     say(context, *found);
   if (!found)
@@ -99,7 +103,8 @@ void add_resume_command(CLI::App& app, Context& context) {
   command->add_option("--bone", arguments->bone, "femur or tibia")
       ->check(CLI::IsMember({"femur", "tibia"}))
       ->capture_default_str();
-  command->add_flag("--json", arguments->json, "As JSON on standard output; null when there is nothing");
+  command->add_flag("--json", arguments->json,
+                    "As JSON on standard output; \"is_found\" is false when there is nothing");
   command->callback([&context, arguments] { resume(context, *arguments); });
 }
 

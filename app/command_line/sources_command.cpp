@@ -90,16 +90,16 @@ void list_sources(Context& context, const SourcesArguments& arguments) {
   } else {
     throw InvalidInput(arguments.camera, "", "is no camera: /dev/video0");
   }
-  json list = json::array();
+  json document = {{"format", "arthronaut.sources"}, {"version", 1}, {"cameras", json::array()}};
   for (const sources::CameraAddress& address : addresses) {
     const CameraFacts facts = sources::camera_facts(address);
     if (!arguments.camera.empty() && !facts.trouble.empty()) throw DeviceError(facts.trouble);
     if (arguments.as_json)
-      list.push_back(json_of(facts));
+      document["cameras"].push_back(json_of(facts));
     else
       print(context, facts);
   }
-  if (arguments.as_json) files::write_json("-", list);
+  if (arguments.as_json) files::write_json("-", document);
   if (addresses.empty() && !arguments.as_json) context.say("No camera is connected.");
 }
 

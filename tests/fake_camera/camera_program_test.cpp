@@ -53,7 +53,9 @@ TEST_F(CameraProgram, ListsWhatIsConnected) {
   EXPECT_THAT(listed.output, HasSubstr("mjpeg   640 x 480  at 60 30 pictures/s\n"));
   EXPECT_THAT(listed.output, HasSubstr("is opened as 640 x 480, 60/s, mjpeg\n"));
   EXPECT_THAT(listed.output, HasSubstr("standards [PAL] NTSC\n  ! no signal: check the cable"));
-  const auto list = nlohmann::json::parse(run_program({"sources", "--json"}).output);
+  const auto document = nlohmann::json::parse(run_program({"sources", "--json"}).output);
+  EXPECT_EQ(document.at("format"), "arthronaut.sources");
+  const auto list = document.at("cameras");
   ASSERT_EQ(list.size(), 2U);
   EXPECT_EQ(list[0]["source"], "/dev/video0");
   EXPECT_EQ(list[0]["modes"].size(), 3U);

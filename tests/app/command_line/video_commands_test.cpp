@@ -125,7 +125,9 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   // Nobody was at its pedal: there is no operation to go on with.
   const auto resumed = run_program({"resume", knee, "--json"});
   EXPECT_EQ(resumed.exit_code, 4) << resumed.errors;
-  EXPECT_EQ(resumed.output, "null\n");
+  const auto told = nlohmann::json::parse(resumed.output);
+  EXPECT_EQ(told.at("format"), "arthronaut.resumable");
+  EXPECT_FALSE(told.at("is_found"));
   EXPECT_THAT(resumed.errors, HasSubstr("no operation on the femur was left in the middle"));
 
   sqlite3* database = nullptr;
