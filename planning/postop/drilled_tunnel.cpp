@@ -30,6 +30,7 @@ constexpr double kMostBend_mm = 0.6, kPiece_mm = 8, kPieceKnown_mm = 0.2;
 // Beyond the end of a socket there is no wall.
 constexpr double kBeyondFrom_mm = 2, kBeyondTo_mm = 10, kAsWide_mm = 1;
 constexpr double kMetalOfPiece = 0.05;
+constexpr double kPlugSeen = 0.3;  // of a stretch's wall, to be a plug's
 // Of a stretch, from which on it says nothing of the wall.
 constexpr double kMetalFilled = 0.5;
 // Bone beside a screw, not graft.
@@ -214,6 +215,16 @@ class Finder {
                                      c.fit.diameter_sigma_mm, kMostDiameterSigma_mm));
     if (c.bend_mm > kMostBend_mm)
       doubts.push_back(files::format("it is not straight: pieces of it lie %.1f mm off its axis", c.bend_mm));
+    // Its edge is as round as the tunnel's wall, which may lie close beside it.
+    const auto plug = std::find_if(c.fit.stretches.begin(), c.fit.stretches.end(), [&](const Stretch& s) {
+      return !c.is_by_screw && !c.fit.profile.has_rim() && s.metal_share < kMetalOfPiece &&
+             s.seen_share > kPlugSeen && s.inside_hu > std::max(s.outside_hu, kMostSoft_hu);
+    });
+    if (plug != c.fit.stretches.end())
+      doubts.push_back(
+          files::format("%.0f mm from its entry it holds what is denser than the bone around "
+                        "it, as a plug of bone: the wall that is seen may be the plug's",
+                        plug->from_entry_mm));
     const double diameter = 2 * c.fit.radius_mm;
     if (diameter < kLeastDiameter_mm || diameter > kMostDiameter_mm)
       doubts.push_back(files::format("its diameter of %.1f mm is none of a tunnel", diameter));

@@ -29,6 +29,7 @@ constexpr double kCorrelated = 10;
 struct Edge {
   bool is_in_view = false;
   std::optional<double> outward_mm;  // of the sample's place
+  double height_hu = 0;              // from what lies beside it to the cortex
 };
 
 Edge edge_at(const images::VolumeSampler& postop, const Vector3d& q, const Vector3d& outward,
@@ -61,7 +62,9 @@ Edge edge_at(const images::VolumeSampler& postop, const Vector3d& q, const Vecto
   if (at < 0) return edge;
   const auto begin = profile.begin() + at - kSide, middle = profile.begin() + at,
              end = profile.begin() + at + kSide + 1;
-  const double level = 0.5 * (*std::max_element(begin, middle + 1) + *std::min_element(middle, end));
+  const double cortex = *std::max_element(begin, middle + 1), beside = *std::min_element(middle, end),
+               level = 0.5 * (cortex + beside);
+  edge.height_hu = cortex - beside;
   double nearest = std::numeric_limits<double>::infinity();
   for (int i = at - kSide; i < at + kSide; ++i) {
     const double inner = profile[static_cast<std::size_t>(i)],
@@ -76,7 +79,7 @@ Edge edge_at(const images::VolumeSampler& postop, const Vector3d& q, const Vecto
 
 struct Seen {
   Vector3d q, normal;
-  double outward_mm;
+  double outward_mm, height_hu;
 };
 
 struct Look {
@@ -91,7 +94,7 @@ Look look(const images::VolumeSampler& postop, std::span<const SurfaceSample> sa
     const Vector3d q = pose * sample.point_mm, n = pose.rotate(sample.normal);
     const Edge edge = edge_at(postop, q, n, reach_mm);
     result.in_view += edge.is_in_view ? 1 : 0;
-    if (edge.outward_mm) result.edges.push_back({q, n, *edge.outward_mm});
+    if (edge.outward_mm) result.edges.push_back({q, n, *edge.outward_mm, edge.height_hu});
   }
   return result;
 }
@@ -132,19 +135,25 @@ Matrix6d step(const std::vector<Seen>& edges, double scale_mm, const Vector3d& c
   return normal;
 }
 
-// Of the fit of a pose, a strain and an offset all over (another threshold, another scanner) at once.
+// Of the fit of a pose, a strain, an offset all over (another threshold, another scanner), and an offset
+// where the cortex is thin, at once: through the scanner's blur a thin cortex is lower, and half-way down
+// lies further out. Where it is thin differs from place to place, which would pass for a strain.
 double stretch_of(const std::vector<Seen>& edges, double most_mm) {
-  using Row = Eigen::Matrix<double, 13, 1>;
-  Eigen::Matrix<double, 13, 13> normal = Eigen::Matrix<double, 13, 13>::Identity() * 1e-9;
+  using Row = Eigen::Matrix<double, 14, 1>;
+  Eigen::Matrix<double, 14, 14> normal = Eigen::Matrix<double, 14, 14>::Identity() * 1e-9;
   Row right = Row::Zero();
   const Vector3d center = middle_of(edges);
   constexpr double kUnit_mm = 40;  // keeps the columns alike
+  std::vector<double> heights;
+  for (const Seen& edge : edges) heights.push_back(edge.height_hu);
+  const double full = std::max(1.0, geometry::quantile(std::move(heights), 0.9, 0));
   for (const Seen& edge : edges) {
     if (std::abs(edge.outward_mm) > most_mm) continue;
     const Vector3d x = (edge.q - center) / kUnit_mm, &n = edge.normal;
     Row row;
     row << n, x.cross(n), n.x() * x.x(), n.y() * x.y(), n.z() * x.z(), n.x() * x.y() + n.y() * x.x(),
-        n.y() * x.z() + n.z() * x.y(), n.z() * x.x() + n.x() * x.z(), 1;
+        n.y() * x.z() + n.z() * x.y(), n.z() * x.x() + n.x() * x.z(), 1,
+        std::max(0.0, 1 - edge.height_hu / full);
     normal += row * row.transpose();
     right += edge.outward_mm * row;
   }

@@ -8,6 +8,7 @@
 
 #include "planning/geometry/quantile.h"
 #include "planning/postop/fit_spread.h"
+#include "planning/postop/wall_levels.h"
 
 namespace arthronaut::postop {
 
@@ -15,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kSectors = 8;
+constexpr std::size_t kSectors = WallLevels::kSectors;
 constexpr double kStretch_mm = 4;
 constexpr double kBin_mm = 2;  // of the levels
 // From the wall inwards, and from it or from the rim about it outwards.
@@ -35,6 +36,7 @@ constexpr double kSeenSigmas = 3, kSeen_hu = 15;
 // Radii of neighbouring stretches differ by this, one sigma.
 constexpr double kRadiusChange_mm = 0.4;
 constexpr double kHuber = 2.5;
+constexpr double kNoRim_hu = -1e4;  // less dense than anything: what is beyond the wall begins at it
 
 struct Axis {
   Vector3d middle, direction, u, v;
@@ -50,25 +52,6 @@ struct Placed {
   double along, off;          // from the axis' middle; from the axis
   double across_u, across_v;  // unit
   std::size_t stretch, bin, sector;
-};
-
-struct Level {
-  double sum = 0, squares = 0;
-  int count = 0;
-  void add(double v) {
-    sum += v;
-    squares += v * v;
-    ++count;
-  }
-  void add(const Level& other) {
-    sum += other.sum;
-    squares += other.squares;
-    count += other.count;
-  }
-  [[nodiscard]] double mean() const { return count > 0 ? sum / count : 0; }
-  [[nodiscard]] double variance() const {
-    return count > 1 ? std::max(0.0, squares / count - mean() * mean()) : 1e6;
-  }
 };
 
 class Fit {
@@ -95,7 +78,7 @@ class Fit {
       profile_.wall_sigma_mm = seen.wall_sigma_mm;
       if (!seen.has_rim() && !had_rim) break;
       profile_ = seen.has_rim() ? seen : WallProfile{.wall_sigma_mm = seen.wall_sigma_mm};
-      for (double& radius : radius_) radius += seen.wall_mm;
+      for (double& radius : radius_) radius += seen.wall_mm + seems_nearer_mm(radius);
       if (!settle(profile_.blur_mm)) return {};
     }
     return result();
@@ -135,21 +118,21 @@ class Fit {
       placed.across_u = a / placed.off;
       placed.across_v = b / placed.off;
     }
-    placed.sector = static_cast<std::size_t>((std::atan2(b, a) / M_PI + 1) * 0.5 * kSectors) % kSectors;
+    placed.sector =
+        static_cast<std::size_t>((std::atan2(b, a) / M_PI + 1) * 0.5 * static_cast<double>(kSectors)) %
+        kSectors;
     return placed;
   }
 
   // Means well inside and well outside the wall, and the noise about what they predict.
   void take_levels(double blur) {
-    inside_.assign(bins_, {});
+    levels_.assign(bins_, {});
     metal_of_bin_.assign(bins_, {});
     for (const WallVoxel& voxel : voxels_) {
       const auto placed = place(voxel.p_mm);
       if (placed && placed->off < radius_[placed->stretch] + kBesideWall_mm)
         metal_of_bin_[placed->bin].add(voxel.is_metal ? 1 : 0);
     }
-    outside_.assign(bins_ * kSectors, {});
-    rim_.assign(bins_ * kSectors, {});
     metal_.assign(stretches_, {});
     placed_.clear();
     for (std::size_t i = 0; i < voxels_.size(); ++i) {
@@ -158,13 +141,15 @@ class Fit {
       const double off = placed->off - radius_[placed->stretch];
       if (off < -0.4) metal_[placed->stretch].add(voxels_[i].is_metal ? 1 : 0);
       const double beyond = off - profile_.rim_mm;
-      const std::size_t cell = placed->bin * kSectors + placed->sector;
       if (!counts(voxels_[i], *placed) || beyond > kOutward_mm || off < -kInward_mm - 1) continue;
-      if (off < -kBesideWallFrom_mm) inside_[placed->bin].add(voxels_[i].hu);
-      if (beyond > kBesideWallFrom_mm) outside_[cell].add(voxels_[i].hu);
-      if (off > 0 && beyond < 0) rim_[cell].add(voxels_[i].hu);
+      WallLevels& levels = levels_[placed->bin];
+      const WallGrey grey = grey_at(*placed, profile_.blur_mm);
+      if (off < -kBesideWallFrom_mm) levels.add_inside(voxels_[i].hu, grey);
+      if (beyond > kBesideWallFrom_mm) levels.add_outside(placed->sector, voxels_[i].hu, grey);
+      if (off > 0 && beyond < 0) levels.add_rim(placed->sector, voxels_[i].hu);
       if (off > -kInward_mm) placed_.emplace_back(*placed, voxels_[i].hu);
     }
+    for (WallLevels& levels : levels_) levels.part(profile_.has_rim() ? profile_.rim_hu : kNoRim_hu);
     std::vector<double> off_model;
     for (const auto& [placed, hu] : placed_) {
       if (const auto model = model_at(placed, blur)) off_model.push_back(std::abs(hu - model->value));
@@ -177,13 +162,23 @@ class Fit {
     double variance;      // of what the levels are made of: beside a cortex that slants there is no one level
   };
   [[nodiscard]] std::optional<Model> model_at(const Placed& placed, double blur) const {
-    const Level &in = inside_[placed.bin], &out = outside_[placed.bin * kSectors + placed.sector];
-    if (in.count < 8 || out.count < 4) return std::nullopt;
-    const WallGrey grey = wall_grey(placed.off - radius_[placed.stretch], profile_.rim_mm, blur);
-    const double a = in.mean(), b = out.mean(), rim = rim_hu(b);
+    const WallLevels& levels = levels_[placed.bin];
+    if (!levels.has_inside() || !levels.has_outside(placed.sector)) return std::nullopt;
+    const WallGrey grey = grey_at(placed, blur);
+    const double a = levels.inside_hu(), b = levels.outside_hu(placed.sector), rim = rim_hu(b);
     return Model{a * grey.inside + rim * grey.rim + b * grey.beyond,
                  a * grey.inside_slope + rim * grey.rim_slope + b * grey.beyond_slope,
-                 std::max(in.variance(), out.variance())};
+                 std::max(levels.inside().variance(), levels.outside(placed.sector).variance())};
+  }
+
+  [[nodiscard]] WallGrey grey_at(const Placed& placed, double blur) const {
+    const double radius = radius_[placed.stretch];
+    return wall_grey(placed.off - radius + seems_nearer_mm(radius), profile_.rim_mm, blur);
+  }
+  // A round wall looks as a flat one does that lies nearer to the axis: at a circle's edge less than half of
+  // what the blur brings there comes from within.
+  [[nodiscard]] double seems_nearer_mm(double radius) const {
+    return profile_.blur_mm * profile_.blur_mm / (2 * radius);
   }
 
   // Of the rim where `beyond_hu` is beyond it: in bone that is denser there is none.
@@ -195,10 +190,12 @@ class Fit {
   // as much into every point, so the levels are means of theirs, and wall and rim are theirs.
   [[nodiscard]] std::vector<WallPoint> mean_profile() const {
     std::vector<double> sizes, greys, off_greys;
-    for (const Level& out : outside_) {
-      if (out.count < 4) continue;
-      sizes.push_back(out.count);
-      greys.push_back(out.mean());
+    for (const WallLevels& levels : levels_) {
+      for (std::size_t sector = 0; sector < kSectors; ++sector) {
+        if (!levels.has_outside(sector)) continue;
+        sizes.push_back(levels.outside(sector).count);
+        greys.push_back(levels.outside(sector).mean());
+      }
     }
     const double full = 0.5 * geometry::median(std::move(sizes), 0), grey = geometry::median(greys, 0);
     for (const double one : greys) off_greys.push_back(std::abs(one - grey));
@@ -207,8 +204,9 @@ class Fit {
     for (const WallVoxel& voxel : voxels_) {
       const auto placed = place(voxel.p_mm);
       if (!placed || !counts(voxel, *placed)) continue;
-      const Level &in = inside_[placed->bin], &out = outside_[placed->bin * kSectors + placed->sector];
-      if (in.count < 8 || out.count < full || std::abs(out.mean() - grey) > far_off) continue;
+      const Level& out = levels_[placed->bin].outside(placed->sector);
+      if (!levels_[placed->bin].has_inside() || out.count < full || std::abs(out.mean() - grey) > far_off)
+        continue;
       const double at = (placed->off - radius_[placed->stretch] + kInward_mm) / kPoint_mm;
       if (at < 0 || at >= static_cast<double>(means.size())) continue;
       means[static_cast<std::size_t>(at)].add(voxel.hu);
@@ -291,12 +289,13 @@ class Fit {
     std::vector<Level> within(stretches_), beside(stretches_ * kSectors), beyond(stretches_ * kSectors);
     for (std::size_t bin = 0; bin < bins_; ++bin) {
       const std::size_t s = std::min(stretches_ - 1, (2 * bin + 1) * stretches_ / (2 * bins_));
-      within[s].add(inside_[bin]);
+      within[s].add(levels_[bin].inside());
       for (std::size_t sector = 0; sector < kSectors; ++sector) {
         // A wall with a rim is seen where the rim is.
-        const std::size_t from = bin * kSectors + sector, to = s * kSectors + sector;
-        beside[to].add(profile_.has_rim() ? rim_[from] : outside_[from]);
-        beyond[to].add(outside_[from]);
+        const std::size_t to = s * kSectors + sector;
+        const Level& outside = levels_[bin].outside(sector);
+        beside[to].add(profile_.has_rim() ? levels_[bin].rim(sector) : outside);
+        beyond[to].add(outside);
       }
     }
     for (std::size_t s = 0; s < stretches_; ++s) {
@@ -383,7 +382,8 @@ class Fit {
   Axis axis_{};
   std::size_t stretches_ = 1, bins_ = 1;
   std::vector<double> radius_;
-  std::vector<Level> inside_, rim_, outside_, metal_, metal_of_bin_;
+  std::vector<WallLevels> levels_;  // by bins
+  std::vector<Level> metal_, metal_of_bin_;
   std::vector<std::pair<Placed, float>> placed_;
   double noise_hu_ = 25;
   WallProfile profile_;

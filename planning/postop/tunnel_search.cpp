@@ -15,7 +15,6 @@ constexpr int kSectors = 8, kSegments = 3, kStations = 4;
 constexpr double kStationStep_mm = 2.25, kFirstStation_mm = 1.0;
 // A hard cortex counts for no more than this, or one side of a bore in it would outweigh the rest.
 constexpr double kMostContrast_hu = 250;
-constexpr double kMostSoft_hu = 120;  // of a graft
 constexpr double kLeastDepth_mm = 0.4;
 constexpr std::size_t kRefined = 40, kReturned = 8;
 

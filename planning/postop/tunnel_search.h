@@ -11,6 +11,8 @@ namespace arthronaut::postop {
 
 // How far from the plan is looked.
 inline constexpr double kSearched_mm = 18, kSearched_deg = 35;
+// Of a graft. What is denser than this and than the bone around it is a plug of bone.
+inline constexpr double kMostSoft_hu = 120;
 
 struct Bore {
   Eigen::Vector3d entry_mm;   // where its axis enters the bone, to a cell

@@ -54,6 +54,34 @@ TEST_P(AnyLie, BothBonesAreFound) {
 }
 INSTANTIATE_TEST_SUITE_P(Turns, AnyLie, ::testing::Values(0, 35, 170));
 
+// A cortex that is thin on both sides of a bone and thick in front and behind: through the blur its edges lie
+// further out where it is thin, as if the bone were broader than it was. It is the patient's all the same.
+TEST(BonePose, AnUnevenCortexIsNoOtherBone) {
+  const geometry::TriangleMesh& femur = knee().femur.mesh;
+  const geometry::Surface surface(femur);
+  const RigidTransform truth = test::lying(20, {1, 2, 3}, {30, -20, 60}), plan_from_postop = truth.inverse();
+  const Eigen::Vector3d middle = geometry::bounds_of(femur).center_mm();
+  test::KnownCtOptions options = half_fine();
+  options.blur_mm = 0.5;
+  options.operate = [&](images::Volume& volume) {
+    constexpr double kThin_mm = 0.6, kAside_mm = 22;
+    std::size_t v = 0;
+    for (int k = 0; k < volume.size.z(); ++k)
+      for (int j = 0; j < volume.size.y(); ++j)
+        for (int i = 0; i < volume.size.x(); ++i, ++v) {
+          if (volume.values[v] < 1100) continue;
+          const Eigen::Vector3d p = plan_from_postop * (volume.lps_from_index * Eigen::Vector3d(i, j, k));
+          if (std::abs(p.x() - middle.x()) > kAside_mm &&
+              (surface.closest_point(p).point_mm - p).norm() > kThin_mm)
+            volume.values[v] = static_cast<float>(options.marrow_hu);
+        }
+  };
+  const FoundBone found =
+      found_in(test::postop_ct({femur}, {}, truth, options), knee(), bones::BoneKind::Femur);
+  EXPECT_TRUE(found.reliable) << testing::PrintToString(found.reasons);
+  EXPECT_LT(off_mm(found, truth, knee().femoral_tunnel.entry_mm), 0.15);
+}
+
 // Other knees, so much alike that nearly all of their surface lies within 1 mm of this one's; and the other
 // side's.
 TEST(BonePose, AnotherPatientsBoneIsNotReliable) {

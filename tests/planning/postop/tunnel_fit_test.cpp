@@ -17,6 +17,7 @@ using Eigen::Vector3d;
 constexpr double kRadius_mm = 4.5, kLength_mm = 28, kBore_hu = 80;
 
 struct Scan {
+  double radius_mm = kRadius_mm;
   double rim_mm = 0, rim_hu = 0, blur_mm = 0.3;
   double marrow_hu = 160, grain_hu = 0;
   unsigned seed = 5;
@@ -48,18 +49,20 @@ std::vector<WallVoxel> scanned(const Scan& scan) {
   }
   const auto off_axis = [&](const Vector3d& p) { return (p - kEntry).cross(kDirection).norm(); };
   const auto hu_at = [&](double off) {
-    return off < kRadius_mm ? kBore_hu : off < kRadius_mm + scan.rim_mm ? scan.rim_hu : scan.marrow_hu;
+    return off < scan.radius_mm                 ? kBore_hu
+           : off < scan.radius_mm + scan.rim_mm ? scan.rim_hu
+                                                : scan.marrow_hu;
   };
   std::vector<WallVoxel> voxels;
   for (double z = 0; z < kLength_mm + 2; z += spacing.z()) {
     for (double y = -14; y < 14; y += spacing.y()) {
       for (double x = -14; x < 14; x += spacing.x()) {
         const Vector3d p(x, y, z);
-        if (off_axis(p) > kRadius_mm + 4) continue;
+        if (off_axis(p) > scan.radius_mm + 4) continue;
         double sum = 0;
         for (const Vector3d& s : spread) sum += hu_at(off_axis(p + s));
         double hu = sum / static_cast<double>(spread.size()) + 25 * normal(random);
-        if (scan.grain_hu > 0 && off_axis(p) > kRadius_mm + scan.rim_mm) {
+        if (scan.grain_hu > 0 && off_axis(p) > scan.radius_mm + scan.rim_mm) {
           double grain = 0;
           for (std::size_t w = 0; w < waves.size(); ++w) grain += std::cos(waves[w].dot(p) + phases[w]);
           hu += scan.grain_hu * std::sqrt(2.0 / static_cast<double>(waves.size())) * grain;
@@ -74,7 +77,8 @@ std::vector<WallVoxel> scanned(const Scan& scan) {
 // From a bore that is off by as much as the search leaves it.
 TunnelFit fitted(const Scan& scan) {
   const Vector3d u = kDirection.unitOrthogonal();
-  return fit_tunnel(scanned(scan), {kEntry + 0.6 * u, (kDirection + 0.03 * u).normalized(), 4.1, 0}, 0,
+  return fit_tunnel(scanned(scan),
+                    {kEntry + 0.6 * u, (kDirection + 0.03 * u).normalized(), scan.radius_mm - 0.4, 0}, 0,
                     kLength_mm, Wall::Clear);
 }
 
@@ -93,9 +97,19 @@ TEST(TunnelFit, ADenseRimIsNotTakenForTheBore) {
     ASSERT_TRUE(fit.is_fitted);
     EXPECT_LT((kEntry - fit.point_mm).cross(fit.direction).norm(), 0.3) << scan.rim_mm;
     EXPECT_LT(geometry::deg_from_rad(angle_rad(fit)), 0.5) << scan.rim_mm;
-    EXPECT_NEAR(2 * fit.radius_mm, 2 * kRadius_mm, 0.3) << scan.rim_mm;
+    EXPECT_NEAR(2 * fit.radius_mm, 2 * scan.radius_mm, 0.3) << scan.rim_mm;
     EXPECT_EQ(fit.profile.has_rim(), scan.rim_mm > 0) << scan.rim_mm;
     EXPECT_LT(fit.diameter_sigma_mm, 0.15) << scan.rim_mm;
+  }
+}
+
+// The edge of a blurred circle lies within it, and beside it the blur has mixed what is inside and beyond:
+// such bores came out 0.10 to 0.13 mm too thin. Tolerance: a tenth of what is asked of a diameter.
+TEST(TunnelFit, ThroughTheBlurARoundBoreIsAsWideAsItIs) {
+  for (const double radius_mm : {3.5, 4.5}) {
+    const TunnelFit fit = fitted({.radius_mm = radius_mm, .blur_mm = 0.5, .marrow_hu = kBore_hu + 400});
+    ASSERT_TRUE(fit.is_fitted);
+    EXPECT_NEAR(2 * fit.radius_mm, 2 * radius_mm, 0.03);
   }
 }
 
