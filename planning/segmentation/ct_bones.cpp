@@ -8,6 +8,7 @@
 #include "planning/geometry/error.h"
 #include "planning/segmentation/bone_solid.h"
 #include "planning/segmentation/edge_surface.h"
+#include "planning/segmentation/fibula.h"
 #include "planning/segmentation/joint_space.h"
 
 namespace arthronaut::segmentation {
@@ -103,7 +104,7 @@ void keep_one_knee(Found& found, const CtBonesOptions& options) {
     middle = 0.5 * (across[i] + across[i + 1]);
   }
   if (!are_two) return;
-  if (!options.side) throw InvalidInput("shows both knees: add --side left or --side right");
+  if (!options.side) throw InvalidInput(std::string(kShowsBothKnees) + ": add --side left or --side right");
   const bool is_left = *options.side == Side::Left;
   std::erase_if(all, [&](const Candidate& c) { return (c.profile.center_mm.x() > middle) != is_left; });
   std::erase_if(found.slender, [&](const Slender& s) { return (s.center_mm.x() > middle) != is_left; });
@@ -205,8 +206,28 @@ Chosen chosen_of(Found& found) {
   return chosen;
 }
 
-CtBone surface_of(const Volume& volume, BoneKind kind, Candidate& candidate, const Candidate* other,
-                  std::vector<Eigen::Vector3d> appendage, const CtBonesOptions& options) {
+// What hung on a bone and is no part of it.
+struct Appendage {
+  std::vector<Eigen::Vector3d> taken_mm;
+  bool stays = false;  // it is seen, and could not be parted
+};
+
+Appendage take_off(const Volume& volume, BoneKind kind, Candidate& candidate) {
+  Appendage appendage;
+  bool is_seen = false;
+  if (kind == BoneKind::Tibia) {  // by a neck alone its shaft would be parted from its head
+    PartedFibula parted = part_fibula(volume, candidate.solid);
+    appendage.taken_mm = std::move(parted.taken_mm);
+    is_seen = parted.outcome == PartedFibula::Outcome::NotParted;
+  }
+  if (appendage.taken_mm.empty()) appendage.taken_mm = take_off_appendage(volume, candidate.solid);
+  appendage.stays = is_seen && appendage.taken_mm.empty();
+  if (!appendage.taken_mm.empty()) candidate.profile = profile_of(volume, candidate.solid);
+  return appendage;
+}
+
+CtBone surface_of(const Volume& volume, BoneKind kind, const Candidate& candidate, const Candidate* other,
+                  const Appendage& appendage, const CtBonesOptions& options) {
   CtBone bone;
   bone.kind = kind;
   const BoneSolid& solid = candidate.solid;
@@ -224,7 +245,7 @@ CtBone surface_of(const Volume& volume, BoneKind kind, Candidate& candidate, con
     }
   }
   const Eigen::Affine3d index_from_lps = volume.lps_from_index.inverse();
-  for (const Eigen::Vector3d& p : appendage) {
+  for (const Eigen::Vector3d& p : appendage.taken_mm) {
     const Eigen::Vector3i at = (index_from_lps * p).array().round().cast<int>().matrix() - solid.box.first;
     others.inside[others.index(at.x(), at.y(), at.z())] = 1;
   }
@@ -233,7 +254,9 @@ CtBone surface_of(const Volume& volume, BoneKind kind, Candidate& candidate, con
   bone.notes.push_back(
       files::format("threshold %.0f HU, surface at the local edge; %.0f ml, marrow filled in",
                     options.threshold_for(volume), candidate.profile.volume_mm3 / 1000));
-  if (!appendage.empty())
+  if (appendage.stays)
+    bone.doubts.push_back("the fibula hangs on it and could not be parted from it: look at its outer side");
+  if (!appendage.taken_mm.empty())
     bone.notes.push_back(kind == BoneKind::Tibia ? "the fibula, which touches, was taken off"
                                                  : "a bone that touches (the patella) was taken off");
   return bone;
@@ -279,7 +302,7 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
     throw InvalidInput("shows no " + std::string(bones::to_text(*options.only)) + ", only a " +
                        (chosen.femur ? "femur" : "tibia"));
   }
-  std::vector<std::vector<Eigen::Vector3d>> appendages(wanted.size());
+  std::vector<Appendage> appendages(wanted.size());
   const auto for_each_bone = [&](const auto& work) {
     std::vector<std::future<void>> others;  // waited for where work(0) throws, too
     for (std::size_t i = 1; i < wanted.size(); ++i)
@@ -287,7 +310,7 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
     work(0);
     for (auto& other : others) other.get();
   };
-  for_each_bone([&](std::size_t i) { appendages[i] = take_off_appendage(volume, wanted[i].second->solid); });
+  for_each_bone([&](std::size_t i) { appendages[i] = take_off(volume, wanted[i].first, *wanted[i].second); });
   tell(options, 0.8);
   result.bones.resize(wanted.size());
   for_each_bone([&](std::size_t i) {
@@ -300,12 +323,16 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
   }
   // Lateral is where the fibula is: the tallest slender piece beside the tibia, or what hung on it.
   if (chosen.tibia) {
-    const SectionProfile tibia = profile_of(volume, chosen.tibia->solid);
+    const SectionProfile& tibia = chosen.tibia->profile;
+    bool hangs_on_it = false;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      if (wanted[i].first != BoneKind::Tibia || appendages[i].empty()) continue;
+      const std::vector<Eigen::Vector3d>& taken = appendages[i].taken_mm;
+      if (wanted[i].first != BoneKind::Tibia) continue;
+      hangs_on_it = appendages[i].stays;
+      if (taken.empty()) continue;
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-      for (const Eigen::Vector3d& p : appendages[i]) sum += p;
-      found.slender.push_back({sum / static_cast<double>(appendages[i].size()), 1e3});
+      for (const Eigen::Vector3d& p : taken) sum += p;
+      found.slender.push_back({sum / static_cast<double>(taken.size()), 1e3});
     }
     double tallest = 25;
     for (const Slender& s : found.slender) {
@@ -316,6 +343,10 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
       tallest = s.height_mm;
       result.side_by_fibula = aside > 0 ? Side::Left : Side::Right;
     }
+    for (CtBone& bone : result.bones)
+      if (bone.kind == BoneKind::Tibia && !result.side_by_fibula && !hangs_on_it)
+        bone.notes.push_back(
+            "no fibula is seen apart from it: it lies outside of the images, or is a part of this bone");
   }
   tell(options, 1);
   return result;

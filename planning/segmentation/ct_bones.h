@@ -43,6 +43,9 @@ struct CtBones {
   std::optional<bones::Side> side_by_fibula;
 };
 
+// The reason why a volume of both knees is refused where nobody says which one is meant begins with this.
+inline constexpr std::string_view kShowsBothKnees = "shows both knees";
+
 // Throws InvalidInput when no bone of a knee, or not the one that was asked for, is in the volume.
 [[nodiscard]] CtBones bones_of_ct(const images::Volume& volume, const CtBonesOptions& options = {});
 
