@@ -3,6 +3,7 @@
 
 #include "app/widgets/list_rows.h"
 #include "app/widgets/source_banner.h"
+#include "app/window/whose_knee.h"
 #include "app/window/workstation_window.h"
 
 namespace arthronaut::window {
@@ -39,32 +40,26 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   }
   if (case_ != nullptr) {
     const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
-    const std::string side = std::string(bones::to_text(knee.side)) + " knee", beside = "  \u2013  " + side;
-    const std::string patient = case_->identity() ? case_->identity()->in_words() : "";
     const float right = area.x + area.width - ui.theme.px(448), room = right - x - ui.theme.px(8);
-    ImFont* const strong = ui.theme.strong;
-    const float row = strong->FontSize;
+    const std::vector<WhoseLine> lines = whose_knee(case_->identity(), knee.name, knee.side);
+    ImFont* const font = lines.size() > 2 ? ui.theme.body : ui.theme.strong;  // three have no more room
+    const float row = font->FontSize;
     const auto width_of = [&](const std::string& words) {
-      return strong->CalcTextSizeA(row, 1e9F, 0, words.c_str()).x;
+      return font->CalcTextSizeA(row, 1e9F, 0, words.c_str()).x;
     };
-    // A name that is too long is cut short; the side, which stands behind it, never.
-    const auto line = [&](float y, ImU32 color, const std::string& words_before,
-                          const std::string& rest = "") {
-      const std::string words = widgets::fitting(strong, words_before, room - width_of(rest)) + rest;
+    float y = middle - row * static_cast<float>(lines.size()) / 2;
+    std::string whole;
+    for (const WhoseLine& line : lines) {
+      const std::string words =
+          widgets::fitting(font, line.may_be_cut, room - width_of(line.rest)) + line.rest;
       const ImVec2 at{right - width_of(words), y};
-      draw.AddText(strong, row, at, color, words.c_str());
+      const bool is_quiet = !line.is_of_patient && lines.size() > 1;
+      draw.AddText(font, row, at, is_quiet ? widgets::kQuietText : widgets::kText, words.c_str());
       ui.log.note("app.whose", at, {right, y + row});
-    };
-    // Whose knee it is stands over the name of the case; a long name over the side.
-    if (!patient.empty()) {
-      line(middle - row, widgets::kText, patient);
-      line(middle, widgets::kQuietText, knee.name, beside);
-    } else if (width_of(knee.name + beside) > room) {
-      line(middle - row, widgets::kText, knee.name);
-      line(middle, widgets::kText, side);
-    } else {
-      line(middle - row / 2, widgets::kText, knee.name, beside);
+      whole += (whole.empty() ? "" : " / ") + words;
+      y += row;
     }
+    ui.log.note_state("whose", whole);
   }
   x = area.x + area.width - ui.theme.px(12);
   for (const auto& [id, size] : {std::pair{"app.quit", 150.F}, {"app.keys", 126.F}, {"app.cases", 126.F}}) {
@@ -124,18 +119,25 @@ void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& 
     ui.log.note("app.notice", at, {at.x + width, at.y + 2 * font->FontSize});
     rest.width = at.x - gap - rest.x;
   }
-  // Whose knee it is: the patient as far as known, the case and the side. A long name is cut short.
+  // Whose knee it is: the side, and the patient as far as known. A long name is cut short, no birth date.
   const cases::Case& knee = model()->knee();
   const std::string side_words = std::string(bones::to_text(knee.side)) + " knee";
-  const std::string patient = case_->identity() ? case_->identity()->in_words() : knee.name;
-  const auto line = [&](const char* id, ImFont* of, float y, ImU32 color, const std::string& whole) {
-    const std::string words = widgets::fitting(of, whole, rest.width);
+  std::string name = knee.name, born;
+  if (const auto& identity = case_->identity()) {
+    name = identity->name_in_words();
+    for (const std::string& part : {identity->patient_id, identity->birth_date_in_words()})
+      if (!part.empty()) born += (name.empty() && born.empty() ? "" : " \u00B7 ") + part;
+  }
+  const auto line = [&](const char* id, ImFont* of, float y, ImU32 color, const std::string& may_be_cut,
+                        const std::string& whole) {
+    const float kept = of->CalcTextSizeA(of->FontSize, 1e9F, 0, whole.c_str()).x;
+    const std::string words = widgets::fitting(of, may_be_cut, rest.width - kept) + whole;
     draw.AddText(of, of->FontSize, {rest.x, y}, color, words.c_str());
     ui.log.note(id, {rest.x, y},
                 {rest.x + of->CalcTextSizeA(of->FontSize, 1e9F, 0, words.c_str()).x, y + of->FontSize});
   };
-  line("app.side", ui.theme.title, rest.y, widgets::kText, side_words);
-  line("app.whose", ui.theme.strong, rest.y + ui.theme.title->FontSize, widgets::kQuietText, patient);
+  line("app.side", ui.theme.title, rest.y, widgets::kText, "", side_words);
+  line("app.whose", ui.theme.strong, rest.y + ui.theme.title->FontSize, widgets::kQuietText, name, born);
   const float left = foot.x + (has_room ? standing : 0);
   const std::string words = warns ? widgets::fitting(font, text, foot.x + foot.width - left) : "";
   ui.log.note_state("header_notice", words);

@@ -16,7 +16,7 @@ constexpr std::string_view kIdentityFormat = "arthronaut.identity";
 constexpr int kIdentityVersion = 1;
 
 // "Muster^Anna^^Dr." as "Muster, Anna, Dr."; a second alphabet ("=") is left out.
-std::string name_in_words(const std::string& dicom_name) {
+std::string name_of(const std::string& dicom_name) {
   std::string words, part;
   for (const char c : dicom_name.substr(0, dicom_name.find('=')) + "^") {
     if (c != '^') {
@@ -29,7 +29,7 @@ std::string name_in_words(const std::string& dicom_name) {
   return words;
 }
 
-std::string date_in_words(const std::string& date) {
+std::string date_of(const std::string& date) {
   const bool is_dicom =
       date.size() == 8 && std::all_of(date.begin(), date.end(), [](char c) { return c >= '0' && c <= '9'; });
   return is_dicom ? date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6) : date;
@@ -37,9 +37,13 @@ std::string date_in_words(const std::string& date) {
 
 }  // namespace
 
+std::string Identity::name_in_words() const { return name_of(patient_name); }
+
+std::string Identity::birth_date_in_words() const { return date_of(birth_date); }
+
 std::string Identity::in_words() const {
   std::string words;
-  for (const std::string& part : {name_in_words(patient_name), patient_id, date_in_words(birth_date)}) {
+  for (const std::string& part : {name_in_words(), patient_id, birth_date_in_words()}) {
     if (!part.empty()) words += (words.empty() ? "" : " · ") + part;
   }
   return words;

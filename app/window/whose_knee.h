@@ -1,0 +1,23 @@
+// Whose knee is on the screen, in lines of which a part may be cut short and the rest never: two patients of
+// one name are told apart by their birth dates, and a wrong side is a wrong operation.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning/bones/bone.h"
+#include "planning/cases/identity.h"
+
+namespace arthronaut::window {
+
+struct WhoseLine {
+  std::string may_be_cut, rest;
+  bool is_of_patient = false;
+};
+
+// The patient as far as known, the name of the case with its side. At most three lines.
+[[nodiscard]] std::vector<WhoseLine> whose_knee(const std::optional<cases::Identity>& identity,
+                                                const std::string& case_name, bones::Side side);
+
+}  // namespace arthronaut::window

@@ -1,0 +1,36 @@
+#include "app/window/whose_knee.h"
+
+#include <gtest/gtest.h>
+
+namespace arthronaut::window {
+namespace {
+
+std::string kept_of(const std::vector<WhoseLine>& lines) {
+  std::string all;
+  for (const WhoseLine& line : lines) all += line.rest + "\n";
+  return all;
+}
+
+// Two patients of one name are told apart by it: what is too long is cut elsewhere.
+TEST(WhoseKnee, NeitherBirthDateNorSideIsCutShort) {
+  const auto lines =
+      whose_knee(cases::Identity{"Muster-Beispielhausen^Anna Maria", "471100812345", "19900131"},
+                 "Knee 2026-11-24, second opinion", bones::Side::Left);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0].may_be_cut, "Muster-Beispielhausen, Anna Maria");
+  EXPECT_EQ(lines[1].may_be_cut, "471100812345");
+  const std::string kept = kept_of(lines);
+  EXPECT_NE(kept.find("1990-01-31"), std::string::npos) << kept;
+  EXPECT_NE(kept.find("left knee"), std::string::npos) << kept;
+}
+
+TEST(WhoseKnee, OnlyWhatIsKnownHasALine) {
+  EXPECT_EQ(whose_knee(std::nullopt, "Knee", bones::Side::Right).size(), 1U);
+  const auto lines = whose_knee(cases::Identity{"", "", "19900131"}, "Knee", bones::Side::Right);
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].may_be_cut, "");
+  EXPECT_EQ(lines[0].rest, "1990-01-31");
+}
+
+}  // namespace
+}  // namespace arthronaut::window
