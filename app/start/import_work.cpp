@@ -6,6 +6,7 @@
 #include "app/case/case_opening.h"
 #include "planning/files/private_folder.h"
 #include "planning/import/case_import.h"
+#include "planning/segmentation/ct_bones.h"
 
 namespace arthronaut::start {
 
@@ -164,7 +165,7 @@ void ImportWork::cancel() {
 }
 
 void ImportWork::set_side(bones::Side side) {
-  if (state_ == State::Asking) result_.side = side;
+  if (state_ == State::Asking) importing::say_side(result_, side);
 }
 
 void ImportWork::save(const fs::path& folder, const std::string& name) {
@@ -194,6 +195,10 @@ void ImportWork::poll() {
       state_ = State::Asking;
     }
   }
+}
+
+bool ImportWork::found_both_knees() const {
+  return failure_.find(segmentation::kShowsBothKnees) != std::string::npos;
 }
 
 bool ImportWork::is_busy() const {

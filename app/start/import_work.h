@@ -65,6 +65,8 @@ class ImportWork {
   [[nodiscard]] std::vector<std::string> doubts() const;
   // Why the last step was refused or cancelled; empty when it was not.
   [[nodiscard]] const std::string& failure() const { return failure_; }
+  // The failure is that the images show both knees, and nobody has said which one is meant.
+  [[nodiscard]] bool found_both_knees() const;
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }  // Done: the case
 
  private:

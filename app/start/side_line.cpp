@@ -7,6 +7,11 @@ using widgets::Severity;
 SideLine side_line(const importing::BoneImport& import, std::optional<bones::Side> side, bool was_said) {
   if (!side) return {Severity::Caution, "neither names nor images tell: press R or L"};
   const std::string word(bones::to_text(*side));
+  if (was_said && import.side_was_seen && import.side != side)
+    return {import.side_is_by_shape ? Severity::Caution : Severity::Bad,
+            word + ", as you say, but " +
+                (import.side_is_by_shape ? "the bones are shaped" : "the fibula lies") + " as in a " +
+                std::string(bones::to_text(*import.side)) + " knee: look at the picture"};
   if (was_said) return {Severity::Good, word + ", as you say"};
   if (import.side_was_guessed)
     return {Severity::Caution, word + ", by the name of the source: is that so? Press R or L"};

@@ -13,8 +13,8 @@ struct SideLine {
   widgets::Severity severity = widgets::Severity::Caution;
   std::string text;
 };
-// was_said: a person chose it, before the import or after. Good where a person or the fibula says it; what a
-// name or the bones' shape alone tells is to be looked at.
+// was_said: a person chose it, before the import or after. Good where a person or the fibula says it, Bad
+// where they say different things; what a name or the bones' shape alone tells is to be looked at.
 [[nodiscard]] SideLine side_line(const importing::BoneImport& import, std::optional<bones::Side> side,
                                  bool was_said);
 

@@ -102,11 +102,22 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
                                            : "What was found. Take one, then make the bones");
   widgets::draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
                      widgets::fitting(ui.theme.body, found.root.string(), head.width));
-  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-                        {"start.import", "start.paint", "start.tick", "start.right", "start.left",
-                         "start.side_unknown", "start.back"});
+  const widgets::Rect buttons = rest.cut_bottom(ui.theme.px(56), ui.theme.px(12));
+  if (work_.found_both_knees())
+    widgets::draw_buttons(
+        ui, buttons,
+        {"start.import", "start.paint", "start.tick", "start.right", "start.left", "start.back"});
+  else
+    widgets::draw_buttons(ui, buttons, {"start.import", "start.paint", "start.tick", "start.back"});
   widgets::begin_panel(ui, "start.sources", rest);
-  if (!work_.failure().empty()) widgets::status_row(ui, Severity::Bad, "Refused", work_.failure());
+  if (work_.found_both_knees())
+    widgets::status_row(ui, Severity::Caution, "Both knees",
+                        "The images show both. Which one is it to be? Press R or L, then Enter" +
+                            std::string(!state_.side                         ? ""
+                                        : *state_.side == bones::Side::Right ? "  \u2013  the right one"
+                                                                             : "  \u2013  the left one"));
+  else if (!work_.failure().empty())
+    widgets::status_row(ui, Severity::Bad, "Refused", work_.failure());
   const float height = ui.theme.px(132), picture = ui.theme.px(116);
   for (std::size_t i = 0; i < found.sources.size(); ++i) {
     const ImportSource& source = found.sources[i];
@@ -161,6 +172,8 @@ void StartView::draw_result(const widgets::Ui& ui, const widgets::Rect& area) {
                                       : "The bones are made, but look before you rely on them");
   widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
                         {"start.save", "start.right", "start.left", "start.back"});
+  if (const auto clicked = made_.draw(ui, rest.cut_right(0.4F * rest.width, ui.theme.px(12)), state_.side))
+    say_side(*clicked);
   widgets::begin_panel(ui, "start.result", rest);
   widgets::text_in(ui.theme.strong, widgets::kQuietText,
                    "Name of the case (no patient's name: it stands in exports)");

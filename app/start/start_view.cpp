@@ -14,12 +14,14 @@ namespace arthronaut::start {
 namespace fs = std::filesystem;
 using State = ImportWork::State;
 
-StartView::StartView(std::function<void(const fs::path&)> open, std::function<void()> wake)
+StartView::StartView(std::function<void(const fs::path&)> open, std::function<void()> wake,
+                     std::function<void()> make_current)
     : open_([this, open = std::move(open)](const fs::path& folder) {
         leave();
         open(folder);
       }),
       work_(wake),
+      made_(std::move(make_current), wake),
       cases_(open_, wake),
       pacs_([this](const fs::path& folder) { take(folder); }, wake) {}
 
@@ -87,6 +89,7 @@ void StartView::tick() {
   }
   if (before == State::Running && now == State::Asking) {
     state_.side = work_.result().side;
+    made_.show(work_.result());
     state_.name = "Knee " + files::utc_now_as("%Y-%m-%d");
   }
   if (before == State::Saving && now == State::Done) {
@@ -350,19 +353,15 @@ void StartView::add_import_actions(widgets::Actions& actions) {
                [this, asks] { return asks() && state_.side.has_value(); },
                {},
                [this] { save_import(); }});
-  const auto can_say_side = [chooses, asks] { return chooses() || asks(); };
+  // Asked once: of what was made, or before where the images show both knees.
+  const auto can_say_side = [this, chooses, asks] {
+    return (chooses() && work_.found_both_knees()) || asks();
+  };
   actions.add({"start.right", "Right knee", "The images are of a right knee", GLFW_KEY_R, 0, false,
                can_say_side, [this] { return state_.side == bones::Side::Right; },
                [this] { say_side(bones::Side::Right); }});
   actions.add({"start.left", "Left knee", "The images are of a left knee", GLFW_KEY_L, 0, false, can_say_side,
                [this] { return state_.side == bones::Side::Left; }, [this] { say_side(bones::Side::Left); }});
-  actions.add({"start.side_unknown", "As the images tell",
-               "The side is read from names and images, and asked for where they do not tell", GLFW_KEY_U, 0,
-               false, chooses, [this] { return !state_.side; },
-               [this] {
-                 state_.side.reset();
-                 state_.side_was_said = false;
-               }});
 }
 
 }  // namespace arthronaut::start

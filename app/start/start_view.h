@@ -13,6 +13,7 @@
 #include "app/folders/folder_browser.h"
 #include "app/start/case_list.h"
 #include "app/start/import_work.h"
+#include "app/start/made_bones.h"
 #include "app/start/pacs_pane.h"
 #include "app/widgets/controls.h"
 #include "app/widgets/grey_texture.h"
@@ -22,7 +23,8 @@ namespace arthronaut::start {
 class StartView {
  public:
   // open: opens a case; an empty path is the built-in knee.
-  StartView(std::function<void(const std::filesystem::path&)> open, std::function<void()> wake);
+  StartView(std::function<void(const std::filesystem::path&)> open, std::function<void()> wake,
+            std::function<void()> make_current);
 
   void add_actions(widgets::Actions& actions);  // all start with "start."
   // Comes to the front, on the list of cases. can_close: a case is open that one can go back to.
@@ -82,6 +84,7 @@ class StartView {
 
   std::function<void(const std::filesystem::path&)> open_;
   ImportWork work_;
+  MadeBones made_;
   CaseList cases_;
   PacsPane pacs_;
   folders::FolderBrowser browser_{"start.entry"};

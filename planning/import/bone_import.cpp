@@ -177,6 +177,12 @@ void import_labels(const Volume& volume, const std::map<BoneKind, int>& labels,
   if (result.bones.empty()) throw InvalidInput("--label does not name the bone of --bone");
 }
 
+std::string other_side_by_fibula(bones::Side fibula, bones::Side said) {
+  const std::string seen(bones::to_text(fibula));
+  return "the fibula lies on the " + seen + " of the tibia, as in a " + seen + " knee, but the side is " +
+         std::string(bones::to_text(said)) + ": check the side";
+}
+
 // Returns whether a fibula told the side.
 bool import_ct(const Volume& volume, const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
   segmentation::CtBonesOptions ct;
@@ -192,10 +198,7 @@ bool import_ct(const Volume& volume, const BoneImportOptions& options, BoneImpor
     imported.lines.insert(imported.lines.begin(), bone.notes.begin(), bone.notes.end());
     imported.doubts.insert(imported.doubts.begin(), bone.doubts.begin(), bone.doubts.end());
     if (found.side_by_fibula && result.side && *found.side_by_fibula != *result.side) {
-      const std::string seen(bones::to_text(*found.side_by_fibula));
-      imported.doubts.push_back("the fibula lies on the " + seen + " of the tibia, as in a " + seen +
-                                " knee, but the side is " + std::string(bones::to_text(*result.side)) +
-                                ": check the side");
+      imported.doubts.push_back(other_side_by_fibula(*found.side_by_fibula, *result.side));
     }
   }
   if (!options.kind && found.bones.size() == 1) {
@@ -273,6 +276,14 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
 }
 
 }  // namespace
+
+void say_side(BoneImport& import, bones::Side side) {
+  if (import.side == side) return;  // known as it was known
+  if (import.side_was_seen && !import.side_is_by_shape)
+    for (ImportedBone& bone : import.bones) bone.doubts.push_back(other_side_by_fibula(*import.side, side));
+  import.side = side;
+  import.side_was_guessed = import.side_was_seen = import.side_is_by_shape = false;
+}
 
 BoneImport import_bones(const std::filesystem::path& source, const BoneImportOptions& options,
                         const Tell& listener) {

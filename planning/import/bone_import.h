@@ -82,6 +82,9 @@ struct BoneImport {
   }
 };
 
+// A person says the side. Where the fibula says another one that is a doubt of the bones from then on.
+void say_side(BoneImport& import, bones::Side side);
+
 // Throws IoError or InvalidInput; a bone that cannot be told from the name is InvalidInput that says which
 // option to add. `tell` is called on the same thread whenever there is progress. For files from elsewhere use
 // ImportProcess, which does this where it can do no harm.

@@ -35,10 +35,18 @@ TEST(SideLineTest, AFibulaAndAPersonAreSure) {
   const SideLine fibula = side_line(import_of(false, true, false), Side::Left, false);
   EXPECT_EQ(fibula.severity, Severity::Good);
   EXPECT_EQ(fibula.text, "left, by the fibula");
-  // Said against the shape: what a person says counts, and is what is shown.
-  const SideLine said = side_line(import_of(false, true, true), Side::Right, true);
-  EXPECT_EQ(said.severity, Severity::Good);
-  EXPECT_EQ(said.text, "right, as you say");
+  EXPECT_EQ(side_line(import_of(false, true, false), Side::Left, true).severity, Severity::Good);
+  EXPECT_EQ(side_line(import_of(false, false, false), Side::Right, true).text, "right, as you say");
+}
+
+// What a person says counts, but not unsaid against the anatomy: a wrong side is a wrong operation.
+TEST(SideLineTest, APersonAgainstTheAnatomyIsTold) {
+  const SideLine fibula = side_line(import_of(false, true, false), Side::Right, true);
+  EXPECT_EQ(fibula.severity, Severity::Bad);
+  EXPECT_EQ(fibula.text, "right, as you say, but the fibula lies as in a left knee: look at the picture");
+  const SideLine shape = side_line(import_of(false, true, true), Side::Right, true);
+  EXPECT_EQ(shape.severity, Severity::Caution);
+  EXPECT_NE(shape.text.find("shaped as in a left knee"), std::string::npos) << shape.text;
 }
 
 }  // namespace

@@ -40,8 +40,11 @@ TEST_F(StartWindow, ImportsAFolderAsksForTheSideAndFindsTheCaseAgain) {
     ASSERT_TRUE(app.wait_for_state("import", "choosing", 120));
     EXPECT_EQ(app.state("case"), "none");
     ASSERT_TRUE(app.wait_for_widget("start.source.1"));
+    EXPECT_FALSE(app.widgets().contains("start.left")) << "the side is asked for once, with a picture";
     app.press("Return");
     ASSERT_TRUE(app.wait_for_state("import", "asking", 240));
+    EXPECT_TRUE(app.wait_for_state("made_bones", "shown"));
+    ASSERT_TRUE(app.wait_for_widget("start.sketch_left"));
     app.press("l");
     app.press("Return");
     ASSERT_TRUE(app.wait_for_state("case", "open", 240));

@@ -146,6 +146,21 @@ TEST(BoneImport, Hazard46ABoneThatTheEdgeOfTheImagesCutsRaisesADoubt) {
   EXPECT_THAT(doubts_at("whole.nrrd"), Not(Contains(HasSubstr("cut off flat"))));
 }
 
+// A person is believed, but what the fibula says against it is not forgotten.
+TEST(BoneImport, ASideThatIsSaidAgainstTheFibulaStaysADoubt) {
+  BoneImport import;
+  import.bones.resize(1);
+  import.side = bones::Side::Left;
+  import.side_was_seen = true;
+  say_side(import, bones::Side::Left);
+  EXPECT_TRUE(import.bones[0].doubts.empty());
+  EXPECT_TRUE(import.side_was_seen);
+  say_side(import, bones::Side::Right);
+  EXPECT_EQ(import.side, bones::Side::Right);
+  ASSERT_EQ(import.bones[0].doubts.size(), 1U);
+  EXPECT_THAT(import.bones[0].doubts[0], HasSubstr("as in a left knee, but the side is right"));
+}
+
 TEST(BoneImport, WhatIsNotSaidIsAskedFor) {
   const TemporaryFolder folder;
   test::write_bytes(folder / "bone.stl", test::binary_stl(test::ellipsoid({40, 30, 25}, 2)));

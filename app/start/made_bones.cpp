@@ -1,0 +1,158 @@
+#include "app/start/made_bones.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include "app/scene/scene_content.h"
+#include "app/widgets/list_rows.h"
+
+namespace arthronaut::start {
+
+namespace {
+
+using bones::Side;
+
+struct Point {
+  float x, y;
+};
+// A knee from in front of the patient, as lines in a square from (-1, -1) at the top left; a right knee,
+// whose outer side then is at the left.
+constexpr std::array<Point, 15> kFemur{{{-0.24F, -1},
+                                        {-0.22F, -0.55F},
+                                        {-0.36F, -0.35F},
+                                        {-0.48F, -0.2F},
+                                        {-0.48F, -0.02F},
+                                        {-0.34F, 0.08F},
+                                        {-0.16F, 0.06F},
+                                        {-0.06F, -0.06F},
+                                        {0.06F, -0.06F},
+                                        {0.16F, 0.1F},
+                                        {0.34F, 0.12F},
+                                        {0.48F, 0},
+                                        {0.48F, -0.2F},
+                                        {0.24F, -0.55F},
+                                        {0.2F, -1}}};
+constexpr std::array<Point, 10> kTibia{{{-0.18F, 1},
+                                        {-0.22F, 0.55F},
+                                        {-0.46F, 0.36F},
+                                        {-0.48F, 0.2F},
+                                        {-0.1F, 0.2F},
+                                        {0, 0.14F},
+                                        {0.12F, 0.2F},
+                                        {0.48F, 0.22F},
+                                        {0.44F, 0.38F},
+                                        {0.16F, 1}}};
+constexpr std::array<Point, 8> kFibula{{{-0.4F, 1},
+                                        {-0.42F, 0.6F},
+                                        {-0.46F, 0.5F},
+                                        {-0.5F, 0.42F},
+                                        {-0.6F, 0.44F},
+                                        {-0.62F, 0.54F},
+                                        {-0.54F, 0.62F},
+                                        {-0.52F, 1}}};
+
+void draw_sketch(const widgets::Ui& ui, const widgets::Rect& area, Side side, bool is_chosen) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const float mirror = side == Side::Right ? 1.F : -1.F, words = ui.theme.body->FontSize + ui.theme.px(6);
+  draw.AddRectFilled(area.min(), area.max(), widgets::kBackground, ui.theme.px(6));
+  draw.AddRect(area.min(), area.max(), is_chosen ? widgets::kAccent : widgets::kPanelEdge, ui.theme.px(6), 0,
+               ui.theme.px(is_chosen ? 3 : 1));
+  const float size = std::min(area.width, area.height - 2 * words - ui.theme.px(16)) / 2;
+  const ImVec2 middle{area.center().x, area.y + words + ui.theme.px(8) + size};
+  const auto outline = [&](const auto& points, ImU32 color, float wide) {
+    std::array<ImVec2, 16> at{};
+    std::transform(points.begin(), points.end(), at.begin(), [&](const Point& p) {
+      return ImVec2{middle.x + mirror * size * p.x, middle.y + size * p.y};
+    });
+    draw.AddPolyline(at.data(), static_cast<int>(points.size()), color, 0, ui.theme.px(wide));
+  };
+  outline(kFemur, widgets::kQuietText, 2);
+  outline(kTibia, widgets::kQuietText, 2);
+  outline(kFibula, widgets::kAccent, 3);
+  const auto centered = [&](ImFont* font, float y, ImU32 color, const std::string& text) {
+    const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
+    widgets::draw_text(draw, font, area.center().x - wide / 2, y, color, text);
+  };
+  centered(ui.theme.strong, area.y + ui.theme.px(4), widgets::kText,
+           side == Side::Right ? "Right knee (R)" : "Left knee (L)");
+  centered(ui.theme.body, area.y + area.height - words, widgets::kQuietText,
+           side == Side::Right ? "fibula at the left of the picture" : "fibula at the right of the picture");
+}
+
+// LPS: x grows to the patient's left.
+std::string side_of_picture(const scene::SceneCamera& camera, bool is_left_edge) {
+  const double across = (camera.focus_mm - camera.position_mm).cross(camera.up).normalized().x();
+  if (std::abs(across) < 0.5) return "";  // turned until both lie one behind the other
+  return (across > 0) == is_left_edge ? "patient's right" : "patient's left";
+}
+
+}  // namespace
+
+MadeBones::MadeBones(std::function<void()> make_current, std::function<void()> wake)
+    : wake_(std::move(wake)), pane_(std::move(make_current)) {}
+
+void MadeBones::show(const importing::BoneImport& import) {
+  is_there_ = false;
+  std::vector<geometry::TriangleMesh> meshes;
+  for (const importing::ImportedBone& bone : import.bones) meshes.push_back(bone.bone.mesh);
+  thinning_.start(
+      [meshes = std::move(meshes)] {
+        Meshes thin;
+        for (const geometry::TriangleMesh& mesh : meshes) thin.push_back(scene::simplified(mesh));
+        return thin;
+      },
+      wake_);
+}
+
+std::optional<Side> MadeBones::draw(const widgets::Ui& ui, const widgets::Rect& area,
+                                    std::optional<Side> side) {
+  widgets::Rect rest = area;
+  widgets::Rect sketches = rest.cut_bottom(ui.theme.px(230), ui.theme.px(8));
+  if (thinning_.is_ready()) {
+    const Meshes meshes = thinning_.take();
+    scene::SceneContent content;
+    geometry::Bounds bounds;
+    for (const auto& mesh : meshes) {
+      const geometry::Bounds own = geometry::bounds_of(*mesh);
+      bounds = content.bones.empty()
+                   ? own
+                   : geometry::Bounds{bounds.min_mm.cwiseMin(own.min_mm), bounds.max_mm.cwiseMax(own.max_mm)};
+      content.bones.push_back({mesh, scene::kBoneColor, 1.0, {}});
+    }
+    is_there_ = !meshes.empty();
+    if (is_there_) {
+      pane_.show(content);
+      // The side turns nothing in a view from in front.
+      pane_.look(scene::look_from(scene::ViewDirection::Anterior, Side::Right, bounds,
+                                  rest.width / std::max(rest.height, 1.F)));
+    }
+  }
+  ui.log.note_state("made_bones", is_there_ ? "shown" : "none");
+  if (is_there_) {
+    (void)pane_.draw(ui, "start.bones", rest);
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const std::string left = side_of_picture(pane_.camera(), true),
+                      right = side_of_picture(pane_.camera(), false);
+    ImFont* const font = ui.theme.body;
+    const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, right.c_str()).x, edge = ui.theme.px(10);
+    widgets::draw_text(draw, font, rest.x + edge, rest.center().y, widgets::kCaution, left);
+    widgets::draw_text(draw, font, rest.x + rest.width - wide - edge, rest.center().y, widgets::kCaution,
+                       right);
+  }
+  std::optional<Side> clicked;
+  const float half = (sketches.width - ui.theme.px(8)) / 2;
+  const widgets::Rect first = sketches.cut_left(half, ui.theme.px(8));
+  for (const auto& [place, of] : {std::pair{first, Side::Right}, std::pair{sketches, Side::Left}}) {
+    draw_sketch(ui, place, of, side == of);
+    ImGui::SetCursorScreenPos(place.min());
+    const std::string name = "start.sketch_" + std::string(bones::to_text(of));
+    if (ImGui::InvisibleButton(name.c_str(), {place.width, place.height})) clicked = of;
+    ui.log.note(name, place.min(), place.max());
+  }
+  return clicked;
+}
+
+}  // namespace arthronaut::start

@@ -1,0 +1,36 @@
+// What an import has made, to be looked at before it becomes a case: the bones from in front of the patient,
+// and what a right and a left knee look like from there.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "app/widgets/scene_pane.h"
+#include "navigation/worker/awaited.h"
+#include "planning/bones/bone.h"
+#include "planning/import/bone_import.h"
+
+namespace arthronaut::start {
+
+class MadeBones {
+ public:
+  // wake: ends the window's wait, from any thread.
+  MadeBones(std::function<void()> make_current, std::function<void()> wake);
+
+  void show(const importing::BoneImport& import);  // copies what it draws; may be empty
+  // side: that is chosen. Returns the one that was clicked on.
+  std::optional<bones::Side> draw(const widgets::Ui& ui, const widgets::Rect& area,
+                                  std::optional<bones::Side> side);
+
+ private:
+  using Meshes = std::vector<std::shared_ptr<const geometry::TriangleMesh>>;
+
+  std::function<void()> wake_;
+  widgets::ScenePane pane_;
+  worker::Awaited<Meshes> thinning_;
+  bool is_there_ = false;
+};
+
+}  // namespace arthronaut::start
