@@ -98,6 +98,20 @@ void PlanModel::set_landmarks(bones::BoneKind kind, landmarks::Landmarks landmar
   ++revision_;
 }
 
+const std::optional<landmarks::Proposal>& PlanModel::proposal(bones::BoneKind kind) const {
+  const BoneModel& bone = bones_.at(kind);
+  if (bone.proposal) return bone.proposal;
+  LateProposal& late = late_[kind];
+  // The surface keeps the mesh, whatever becomes of this model.
+  if (!late.coming.valid())
+    late.coming = std::async(std::launch::async, [surface = bone.review.surface, kind, side = knee_.side] {
+      return landmarks::propose(surface->mesh(), kind, {.side = side});
+    });
+  if (!late.there && late.coming.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+    late.there = late.coming.get();
+  return late.there;
+}
+
 default_plan::DefaultTunnel PlanModel::default_tunnel(const tunnels::TunnelKey& key,
                                                       const std::stop_token& stop) const {
   const bones::BoneKind kind = key.bone;

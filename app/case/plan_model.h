@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -80,10 +81,10 @@ class PlanModel {
   // as above.
   [[nodiscard]] const landmarks::Landmarks& landmarks(bones::BoneKind kind) const;
   [[nodiscard]] const landmarks::LandmarkStates& landmark_states(bones::BoneKind kind) const;
-  // What the shape alone gives, with its doubts; nullopt where somebody confirmed what the grid asks for.
-  [[nodiscard]] const std::optional<landmarks::Proposal>& proposal(bones::BoneKind kind) const {
-    return bones_.at(kind).proposal;
-  }
+  // What the shape alone gives, with its doubts. Where somebody confirmed what the grid asks for nothing
+  // waits for it: it is begun, beside the caller, by the first who asks, and nullopt for the seconds until it
+  // is there.
+  [[nodiscard]] const std::optional<landmarks::Proposal>& proposal(bones::BoneKind kind) const;
   // Where the ligament, or the bundle, is expected by the norm; null where the landmarks give no grid.
   // Precondition: has_bone(key.bone).
   [[nodiscard]] const norms::ExpectedFootprint* footprint(const tunnels::TunnelKey& key) const {
@@ -119,6 +120,10 @@ class PlanModel {
     std::optional<landmarks::Proposal> proposal;
     std::string mesh_sha256;
   };
+  struct LateProposal {
+    std::shared_future<landmarks::Proposal> coming;
+    std::optional<landmarks::Proposal> there;
+  };
   struct Checked {
     std::uint64_t revision = 0;
     std::vector<tunnels::PlanCheck> checks;
@@ -135,6 +140,7 @@ class PlanModel {
   std::uint64_t revision_ = 1;
   // Every frame asks, and every change costs a dozen milliseconds.
   mutable std::map<tunnels::TunnelKey, Checked> checked_;
+  mutable std::map<bones::BoneKind, LateProposal> late_;
 };
 
 }  // namespace arthronaut::open_case

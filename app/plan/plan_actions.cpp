@@ -228,7 +228,9 @@ void PlanView::add_view_actions(widgets::Actions& actions) {
   for (const Side& side : sides)
     actions.add({side.id, side.label, std::string("Look from ") + side.label, side.key, 0, false,
                  [this, side] { return model_ != nullptr && (!side.of || model_->has_bone(*side.of)); },
-                 [this, side] { return model_ != nullptr && bones_.is_seen_from(side.view); },
+                 [this, side] {
+                   return model_ != nullptr && !state_.shows_lateral && bones_.is_seen_from(side.view);
+                 },
                  [this, side] { look_from(side.view); }});
   actions.add({"plan.grid", "Grid",
                "The published grid and where studies found the ligament: Bernard and Hertel on the femur, "

@@ -56,12 +56,12 @@ void draw_numbers(const widgets::Ui& ui, const tunnels::Tunnel& tunnel,
   ImGui::Dummy({width, height});
 }
 
-void button_pair(const widgets::Ui& ui, const char* left, const char* right) {
-  const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const float width = (ImGui::GetContentRegionAvail().x - gap) / 2;
-  widgets::action_button(ui, left, width);
+// share: of the width, for the left one.
+void button_pair(const widgets::Ui& ui, const char* left, const char* right, float share = 0.5F) {
+  const float gap = ImGui::GetStyle().ItemSpacing.x, width = ImGui::GetContentRegionAvail().x - gap;
+  widgets::action_button(ui, left, share * width);
   ImGui::SameLine();
-  widgets::action_button(ui, right, width);
+  widgets::action_button(ui, right, (1 - share) * width);
 }
 
 void draw_saved(const widgets::Ui& ui, const open_case::PlanStatus& status) {
@@ -260,7 +260,7 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
         widgets::action_button(ui, "plan.roof", ImGui::GetContentRegionAvail().x);
       }
       button_pair(ui, "plan.landmark_confirm", "plan.landmark_place");
-      button_pair(ui, "plan.landmark_reset", "plan.landmark_confirm_all");
+      button_pair(ui, "plan.landmark_reset", "plan.landmark_confirm_all", 0.4F);
       break;
     }
     case PanelPage::Steps:

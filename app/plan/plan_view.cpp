@@ -162,7 +162,8 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("hint", state_.hint.text);
   ui.log.note_state("volume", volume_.in_words(slices_.reason()));
   const auto& from = bones_.looked_from();
-  ui.log.note_state("view_direction", !from                        ? "a landmark"
+  ui.log.note_state("view_direction", state_.shows_lateral         ? "the radiograph"
+                                      : !from                      ? "a landmark"
                                       : bones_.is_seen_from(*from) ? scene::to_text(*from)
                                                                    : "turned by hand");
   ui.log.note_state("tunnel", tunnels::name_of(state_.key));

@@ -30,7 +30,7 @@ RoofLine roof_line(const open_case::PlanModel& model) {
   // The model asks for RoofConvention::Ends.
   if (runs_through(marks, proposal->landmarks)) return RoofLine::Ends;
   if (runs_through(marks, proposal->by_other_roof)) return RoofLine::Flat;
-  return RoofLine::ByHand;
+  return RoofLine::Neither;
 }
 
 std::string roof_line_in_words(const open_case::PlanModel& model) {
@@ -44,8 +44,8 @@ std::string roof_line_in_words(const open_case::PlanModel& model) {
     case RoofLine::Flat:
       words += "along the flat of the roof, its hill left out";
       break;
-    case RoofLine::ByHand:
-      words += "laid by hand";
+    case RoofLine::Neither:
+      words += "as its landmarks lie, by neither convention";
       break;
   }
   const landmarks::Proposal& proposal = *model.proposal(kFemur);

@@ -9,17 +9,17 @@
 namespace arthronaut::plan {
 
 enum class RoofLine {
-  NotKnown,  // the case's own, of which nobody says how they were laid
+  NotKnown,  // the shape tells none, or is still looked at
   Ends,      // landmarks::RoofConvention
   Flat,
-  ByHand,  // moved since it was proposed
+  Neither,  // moved by hand, or from elsewhere
 };
 // As the femur's landmarks have it. Precondition: the model has a femur.
 [[nodiscard]] RoofLine roof_line(const open_case::PlanModel& model);
 // "Blumensaat's line: from end to end of the roof, in which a small hill of 1.3 mm stands"
 [[nodiscard]] std::string roof_line_in_words(const open_case::PlanModel& model);
 
-// The femur's landmarks with the line laid by the other convention than it is, by Ends where it is by hand;
+// The femur's landmarks with the line laid by the other convention than it is, by Ends where it is neither;
 // nullopt where the shape gives no such line. Those that move are proposals again.
 struct LaidRoof {
   landmarks::Landmarks landmarks;

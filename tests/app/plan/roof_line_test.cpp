@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "planning/phantom/phantom_case.h"
 
 namespace arthronaut::plan {
@@ -46,20 +49,46 @@ TEST(RoofLine, OfOneThatWasMovedByHandIsSaid) {
   landmarks::Landmarks moved = model.landmarks(BoneKind::Femur);
   moved.at("blumensaat_anterior").z() += 1;
   model.set_landmarks(BoneKind::Femur, moved, model.landmark_states(BoneKind::Femur));
-  EXPECT_EQ(roof_line(model), RoofLine::ByHand);
-  EXPECT_THAT(roof_line_in_words(model), HasSubstr("laid by hand"));
+  EXPECT_EQ(roof_line(model), RoofLine::Neither);
+  EXPECT_THAT(roof_line_in_words(model), HasSubstr("by neither convention"));
   const auto laid = with_other_roof(model);
   ASSERT_TRUE(laid);
   EXPECT_EQ(laid->line, RoofLine::Ends);
   EXPECT_EQ(landmarks::state_of(laid->states, "blumensaat_anterior"), landmarks::LandmarkState::Proposed);
 }
 
-// A case that brings confirmed landmarks does not say how its line was laid.
-TEST(RoofLine, OfConfirmedLandmarksIsNotGuessed) {
+// Waits for what goes on beside the model; the first who asks begins it.
+RoofLine roof_line_when_known(const open_case::PlanModel& model) {
+  for (int i = 0; i < 2'000 && roof_line(model) == RoofLine::NotKnown; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return roof_line(model);
+}
+
+// Confirmed, saved and opened again it is still the one that was chosen, and can be laid the other way.
+TEST(RoofLine, OfConfirmedLandmarksIsKnownWhenOpenedAgain) {
+  const open_case::PlanModel first = proposed_model();
+  const auto flat = with_other_roof(first);
+  ASSERT_TRUE(flat);
+  for (const auto& [marks, line] : {std::pair{first.landmarks(BoneKind::Femur), RoofLine::Ends},
+                                    std::pair{flat->landmarks, RoofLine::Flat}}) {
+    cases::Case knee = first.knee();
+    knee.landmarks[BoneKind::Femur] = marks;
+    for (const auto& [name, at] : marks)
+      knee.landmark_states[BoneKind::Femur][name] = landmarks::LandmarkState::Confirmed;
+    const open_case::PlanModel again(std::move(knee));
+    EXPECT_EQ(roof_line_when_known(again), line);
+    EXPECT_TRUE(with_other_roof(again));
+  }
+}
+
+// A case that brings landmarks from elsewhere does not say how its line was laid.
+TEST(RoofLine, OfLandmarksFromElsewhereIsNotGuessed) {
   const open_case::PlanModel model(
       phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "roof"));
-  EXPECT_EQ(roof_line(model), RoofLine::NotKnown);
-  EXPECT_FALSE(with_other_roof(model));
+  EXPECT_EQ(roof_line(model), RoofLine::NotKnown) << "opening a case waits for no proposal";
+  EXPECT_THAT(roof_line_in_words(model), HasSubstr("as its landmarks lie"));
+  EXPECT_EQ(roof_line_when_known(model), RoofLine::Neither);
+  EXPECT_THAT(roof_line_in_words(model), HasSubstr("by neither convention"));
 }
 
 }  // namespace
