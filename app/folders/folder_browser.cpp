@@ -104,6 +104,10 @@ std::optional<fs::path> FolderBrowser::draw(const widgets::Ui& ui, widgets::Rect
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      std::to_string(listing_.other_files) +
                          " other files. Images without an ending are found by " + take_folder + ".");
+  if (listing_.failure.empty() && listing_.entries.empty() && listing_.other_files == 0)
+    widgets::text_in(
+        ui.theme.body, widgets::kQuietText,
+        "This folder is empty, or all that is in it is hidden. Backspace goes to the one above.");
   widgets::end_panel();
   ui.log.note_state("selected", selected());
   return opens ? open_selected() : std::nullopt;

@@ -18,13 +18,17 @@ constexpr std::size_t kMostFiles = 50000, kMostSlices = 200000;
 std::vector<fs::path> files_below(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
+  fs::path place = folder;  // that is listed next
   for (auto at = fs::recursive_directory_iterator(folder, error);
        !error && at != fs::recursive_directory_iterator(); at.increment(error)) {
-    if (at->is_regular_file(error)) files.push_back(at->path());
+    place = at->path();
+    if (at->is_regular_file(error)) files.push_back(place);
     if (files.size() > kMostFiles)
-      throw InvalidInput(folder, "", "holds more files than a study of a knee has");
+      throw InvalidInput(folder, "",
+                         "holds more than " + std::to_string(kMostFiles) +
+                             " files, which no study of a knee has: choose the folder of the study alone");
   }
-  if (error) throw IoError(folder, "cannot list: " + error.message());
+  if (error) throw IoError(place, "cannot be listed: " + error.message());
   // The folder's order is the file system's: the same folder must give the same volume everywhere.
   std::sort(files.begin(), files.end());
   if (files.empty()) throw InvalidInput(folder, "", "is empty");

@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <new>
 #include <thread>
 
@@ -17,6 +18,8 @@
 namespace arthronaut::importing {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLongestRequest_bytes = 1 << 20;
 
@@ -65,6 +68,11 @@ void end_with(int socket) {
   }).detach();
 }
 
+// As every other error: the library's words begin with the call that failed.
+std::string in_words(const fs::filesystem_error& error) {
+  return IoError(error.path1(), error.code().message()).what();
+}
+
 std::string needs_more(const ChildRequest& request) {
   constexpr double kGib = 1024.0 * 1024 * 1024;
   return files::format("needs more than the %.3g GiB of memory that an import may take",
@@ -87,6 +95,8 @@ SeriesPicture picture_of(const images::ImageSeries& series, const ChildRequest& 
     return {images::thumbnail_of(series, kLongestPictureSide), ""};
   } catch (const std::bad_alloc&) {
     return {{}, needs_more(request)};
+  } catch (const fs::filesystem_error& error) {
+    return {{}, in_words(error)};
   } catch (const std::exception& error) {
     return {{}, error.what()};
   }
@@ -116,6 +126,8 @@ void answer(int socket, const ChildRequest& request) {
       look_through(socket, request);
   } catch (const std::bad_alloc&) {
     send_all(socket, failure_message(request.source.string() + ": " + needs_more(request)));
+  } catch (const fs::filesystem_error& error) {
+    send_all(socket, failure_message(in_words(error)));
   } catch (const std::exception& error) {
     send_all(socket, failure_message(error.what()));
   }

@@ -134,6 +134,22 @@ TEST_F(BadInput, FolderThatIsReadOnly) {
   EXPECT_THAT(folder_.names(), ElementsAre("camera.json", "clip.mkv", "tools.json"));
 }
 
+// Of images: the folder that may not be looked into is named, be it one within the study.
+TEST_F(BadInput, FolderWithoutRightsIsNamed) {
+  if (::geteuid() != 0) GTEST_SKIP() << "needs root, to give up its rights";
+  namespace fs = std::filesystem;
+  const fs::path closed = folder_ / "study/closed";
+  fs::create_directories(closed);
+  fs::permissions(folder_.path(), fs::perms{0755});
+  fs::permissions(closed, fs::perms{0700});
+  for (const fs::path& asked : {closed, folder_ / "study"}) {
+    const auto result = run_program({"series", asked}, {.as_nobody = true});
+    EXPECT_EQ(result.exit_code, 3) << result.errors;
+    EXPECT_THAT(result.errors, AllOf(HasSubstr(closed.string()), HasSubstr("Permission denied"),
+                                     testing::Not(HasSubstr("filesystem error"))));
+  }
+}
+
 TEST_F(BadInput, FolderThatIsNotThere) {
   const auto result = run_program(track(folder_ / "nowhere/poses.csv"));
   EXPECT_EQ(result.exit_code, 3);
