@@ -66,8 +66,10 @@ Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedT
                  std::chrono::system_clock::time_point now) {
   const recording::Resumable& found = left.found;
   const operation::ResumeOperation& was = found.operation;
-  Card card{
-      "navigate.resume", "Resume the operation that was left?", {}, "Space: resume    Esc: begin afresh"};
+  Card card{"navigate.resume",
+            "Resume the operation that was left?",
+            {},
+            "Space: resume    Page up or Esc: begin afresh"};
   card.lines.push_back({Severity::Quiet, "Session",
                         was.session + ", " + std::string(bones::to_text(found.header.bone)) + ", " +
                             (found.was_finished ? "ended " : "cut off ") + ago(now - found.last_written)});

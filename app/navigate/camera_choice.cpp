@@ -59,6 +59,12 @@ void CameraChoice::choose_next() {
   wants_focus_ = chosen_ == offered_.size();
 }
 
+void CameraChoice::choose_next_offered() {
+  if (offered_.empty()) return;
+  chosen_ = chosen_ + 1 < offered_.size() ? chosen_ + 1 : 0;
+  wants_focus_ = false;
+}
+
 std::optional<LivePictures> CameraChoice::chosen() const {
   return is_open_ && chosen_ < offered_.size() ? std::optional(offered_[chosen_]) : std::nullopt;
 }
@@ -88,7 +94,7 @@ std::optional<LivePictures> CameraChoice::take_address(std::string typed) {
 }
 
 std::string_view CameraChoice::keys() const {
-  if (!wants_text()) return "K: the next one    Space, or a click: open it    Esc: none";
+  if (!wants_text()) return "K or V: the next one    Space, or a click: open it    Page up or Esc: none";
   return offered_.empty() ? "Enter: open it    Esc: none" : "Enter, or a click: open it    Esc: none";
 }
 

@@ -45,6 +45,8 @@ class CameraChoice {
   [[nodiscard]] bool is_open() const { return is_open_; }
   // In turn; after the last one the field, in which an address is typed.
   void choose_next();
+  // The same for a foot, which types nothing: past the field, where it would be caught.
+  void choose_next_offered();
   // Empty: nothing is on offer, or the field is chosen.
   [[nodiscard]] std::optional<LivePictures> chosen() const;
   [[nodiscard]] std::size_t count() const { return offered_.size(); }

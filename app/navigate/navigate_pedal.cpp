@@ -228,7 +228,9 @@ void NavigateView::take_step_back() {
   }
   if (cameras_.is_open()) return cameras_.close();
   if (depth_.is_open()) return depth_.close();
-  if (resume_.is_looking() || left_behind() != nullptr || choices_.goes_to_other_bone) return;
+  // What was offered can be had again: it is in the case, and is offered when the case is opened anew.
+  if (left_behind() != nullptr) return decline_resume();
+  if (resume_.is_looking() || choices_.goes_to_other_bone) return;
   choices_.looked_at = step_before(choices_.looked_at.value_or(step_of_now(rail())));
 }
 

@@ -91,7 +91,7 @@ TEST(ResumeCard, Hazard12SaysAllThatWouldBeBroughtBack) {
   EXPECT_EQ(line_of(card, "Kept as history").text, "12 strokes (412 mm), 1 touch, the control point");
   EXPECT_EQ(line_of(card, "Plan").severity, Severity::Quiet);
   EXPECT_EQ(line_of(card, "Camera and tools").text, "the case's");
-  EXPECT_EQ(card.keys, "Space: resume    Esc: begin afresh");
+  EXPECT_EQ(card.keys, "Space: resume    Page up or Esc: begin afresh");
 }
 
 // What differs from the case of now, and what is not brought back, stands out with its reason.

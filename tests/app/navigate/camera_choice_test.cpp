@@ -53,13 +53,31 @@ TEST(CameraChoice, WithoutAnyTheFieldWaits) {
   EXPECT_TRUE(choice.wants_text());
 }
 
+// A foot goes round among what is offered, and is never caught in the field.
+TEST(CameraChoice, AFootGoesPastTheField) {
+  CameraChoice choice;
+  choice.open({{2, "Capture card"}}, {"rtsp://tower/scope"});
+  for (const char* name : {"rtsp://tower/scope", "Capture card", "rtsp://tower/scope"}) {
+    choice.choose_next_offered();
+    ASSERT_TRUE(choice.chosen());
+    EXPECT_EQ(choice.chosen()->name, name);
+    EXPECT_FALSE(choice.wants_text());
+  }
+  choice.choose_field();
+  choice.choose_next_offered();
+  EXPECT_EQ(choice.chosen()->name, "Capture card");
+  choice.open({}, {});
+  choice.choose_next_offered();
+  EXPECT_TRUE(choice.wants_text()) << "nothing is offered: the field waits";
+}
+
 // In the field K writes a k, and Space a space.
 TEST(CameraChoice, SaysWhatTheKeysDoNow) {
   CameraChoice choice;
   choice.open({{0, "Webcam"}}, {});
-  EXPECT_NE(choice.keys().find("K: the next one"), std::string_view::npos);
+  EXPECT_NE(choice.keys().find("K or V: the next one"), std::string_view::npos);
   choice.choose_field();
-  EXPECT_EQ(choice.keys().find("K:"), std::string_view::npos);
+  EXPECT_EQ(choice.keys().find("K or"), std::string_view::npos);
   EXPECT_EQ(choice.keys().find("Space"), std::string_view::npos);
   EXPECT_NE(choice.keys().find("Enter"), std::string_view::npos);
 }

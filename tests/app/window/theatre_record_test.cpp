@@ -178,7 +178,7 @@ TEST_F(Theatre, Hazard12WhatWasLeftCanBeDeclined) {
   RunningWorkstation app(display, folder_.path());
   show_navigate(app);
   ASSERT_TRUE(app.wait_for_state("resume", left, 60));
-  app.press("Escape");
+  app.press("Prior");  // by pedal alone
   EXPECT_TRUE(app.wait_for_state("resume", "none"));
   EXPECT_TRUE(app.wait_for_state("next", "start the simulated operation"));
   EXPECT_EQ(app.state("resumed"), "none");
