@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "navigation/camera/camera_file.h"
+#include "navigation/camera/doubted_camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
@@ -81,6 +82,9 @@ std::string calibration_in_words(bool is_simulated, const fs::path& case_folder,
     return tool.provenance.origin != provenance::Origin::Nominal;
   });
   std::string words = is_built_in ? "camera built in" : "camera " + in_words(all.camera, now_utc), nominal;
+  if (!is_built_in)
+    for (const std::string& doubt : camera::read_camera_doubts(cases::camera_file(case_folder)))
+      words += ", NOT RELIABLE: " + doubt;
   if (!is_any_calibrated) return words + "; tools nominal";
   for (const NamedProvenance& tool : all.tools) {
     if (tool.provenance.origin == provenance::Origin::Nominal)

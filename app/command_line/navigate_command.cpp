@@ -10,6 +10,7 @@
 #include "app/command_line/option_checks.h"
 #include "app/command_line/picture_size.h"
 #include "app/command_line/tracker_option.h"
+#include "app/command_line/tracking_report.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
 #include "navigation/openigtlink/igtl_server.h"
@@ -73,12 +74,13 @@ void adopt(const std::string& given, const fs::path& of_case) {
   files::write_atomically(of_case, files::read_text(given));
 }
 
-pipeline::PipelineOptions pipeline_options(const NavigateArguments& arguments, const cases::Case& knee) {
+pipeline::PipelineOptions pipeline_options(const Context& context, const NavigateArguments& arguments,
+                                           const cases::Case& knee) {
   pipeline::PipelineOptions options;
   const fs::path folder = arguments.case_folder;
-  options.calibration =
-      camera::read_camera_file(file_to_use(arguments.camera, cases::camera_file(folder), "--camera"))
-          .calibration;
+  const fs::path camera_file = file_to_use(arguments.camera, cases::camera_file(folder), "--camera");
+  options.calibration = camera::read_camera_file(camera_file).calibration;
+  say_camera_doubts(context, camera_file);
   const fs::path tools_file = file_to_use(arguments.tools, cases::tools_file(folder), "--tools");
   options.tools = tools::read_tools_file(tools_file);
   use_tracker(arguments.tracker, tools_file, arguments.video, options.tools);
@@ -161,7 +163,7 @@ theatre::NavigateOptions navigate_options(const Context& context, const Navigate
   options.source.kind = sources::kind_of_source(arguments.video);
   if (arguments.duration_s > 0) options.duration_s = arguments.duration_s;
   options.source.title = arguments.video;
-  options.source.pipeline = pipeline_options(arguments, knee);
+  options.source.pipeline = pipeline_options(context, arguments, knee);
   const bones::BoneKind bone = options.source.pipeline.bone;
   const auto found = knee.bones.find(bone);
   if (found == knee.bones.end())

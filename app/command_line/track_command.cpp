@@ -25,6 +25,7 @@ void track(Context& context, const TrackArguments& arguments) {
   refuse_before_the_work(
       {.read = {arguments.camera, arguments.tools, arguments.video}, .written = {arguments.output}});
   const camera::CalibrationRecord camera = camera::read_camera_file(arguments.camera);
+  if (arguments.output != "-") say_camera_doubts(context, arguments.camera);
   const tools::ToolSet tools = tools::read_tools_file(arguments.tools);
   if (tools.tracker)
     throw InvalidInput(arguments.tools, "tracker",

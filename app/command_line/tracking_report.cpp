@@ -1,5 +1,7 @@
 #include "app/command_line/tracking_report.h"
 
+#include "navigation/camera/doubted_camera_file.h"
+
 namespace arthronaut::command_line {
 
 namespace {
@@ -10,6 +12,11 @@ std::string share(long part, long whole) {
 }
 
 }  // namespace
+
+void say_camera_doubts(const Context& context, const std::filesystem::path& camera_file) {
+  for (const std::string& reason : camera::read_camera_doubts(camera_file))
+    context.say(camera_file.string() + ": the calibration is not reliable: " + reason);
+}
 
 void say_statistics(const Context& context, const pipeline::ViewStatistics& statistics) {
   for (const pipeline::MarkerStatistics& marker : statistics.markers) {

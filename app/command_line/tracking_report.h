@@ -1,6 +1,8 @@
-// How well markers and lens were seen, in lines for the user: the same words in track, navigate and demo.
+// How well markers and lens were seen, and by which camera, in lines for the user: the same words in track,
+// navigate and demo.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "app/command_line/command.h"
@@ -9,6 +11,8 @@
 
 namespace arthronaut::command_line {
 
+// Why the camera of this file, which is tracked with, is not reliable, where the file says so.
+void say_camera_doubts(const Context& context, const std::filesystem::path& camera_file);
 void say_statistics(const Context& context, const pipeline::ViewStatistics& statistics);
 
 using files::format;

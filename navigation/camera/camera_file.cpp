@@ -78,6 +78,15 @@ CalibrationRecord read_camera_file(const std::filesystem::path& file) {
   return record;
 }
 
+std::vector<std::string> read_camera_doubts(const std::filesystem::path& file) {
+  const auto root = files::read_json(file, kFormat, kVersion);
+  if (!root.has("reliable") || root.boolean("reliable")) return {};
+  std::vector<std::string> reasons;
+  if (root.has("reasons")) reasons = root.texts("reasons");
+  if (reasons.empty()) reasons.emplace_back("no reason given");
+  return reasons;
+}
+
 void write_camera_file(const std::filesystem::path& file, const CalibrationRecord& record) {
   write_doubted_camera_file(file, record, {});
 }

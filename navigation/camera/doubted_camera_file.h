@@ -13,5 +13,7 @@ namespace arthronaut::camera {
 // As write_camera_file(); without reasons the very same file.
 void write_doubted_camera_file(const std::filesystem::path& file, const CalibrationRecord& record,
                                const std::vector<std::string>& reasons);
+// What such a file says against its calibration; empty: nothing. Throws as read_camera_file().
+[[nodiscard]] std::vector<std::string> read_camera_doubts(const std::filesystem::path& file);
 
 }  // namespace arthronaut::camera

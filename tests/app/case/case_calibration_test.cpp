@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "navigation/camera/camera_file.h"
+#include "navigation/camera/doubted_camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
@@ -62,6 +63,24 @@ TEST_F(CaseCalibration, TheSimulationUsesWhatItsSetUpAdopted) {
   EXPECT_NE(words().find("; probe measured 2026-11-22; nominal: femoral guide, "), std::string::npos)
       << words();
   EXPECT_TRUE(camera_is_kept(kSimulated, folder_).empty());
+}
+
+// Before anything is guided by it the screen says what speaks against a calibration that was kept.
+TEST_F(CaseCalibration, ADoubtedCameraIsSaidToBeNotReliable) {
+  camera::CalibrationRecord record;
+  record.calibration = simulator::standard_camera();
+  record.scope_name = "Scope 30";
+  record.date_utc = "2026-11-21T10:00:00Z";
+  const auto file = cases::camera_file(folder_);
+  camera::write_doubted_camera_file(file, record, {"the lens was not turned"});
+  EXPECT_NE(calibration_in_words(kReal, folder_, "2026-11-22T10:00:00Z")
+                .find("NOT RELIABLE: the lens was not turned"),
+            std::string::npos);
+  EXPECT_EQ(camera::read_camera_doubts(file), std::vector<std::string>{"the lens was not turned"});
+  camera::write_camera_file(file, record);
+  EXPECT_TRUE(camera::read_camera_doubts(file).empty());
+  EXPECT_EQ(calibration_in_words(kReal, folder_, "2026-11-22T10:00:00Z").find("NOT RELIABLE"),
+            std::string::npos);
 }
 
 // A real scope's files are of no use to the simulation, which does not replace them either.
