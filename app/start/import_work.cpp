@@ -28,6 +28,7 @@ void ImportWork::look_into(const fs::path& root) {
   sources_ = {};
   sources_.root = root;
   result_ = {};
+  said_side_.reset();
   failure_.clear();
   noted_ = 0;
   state_ = State::Looking;  // until poll(), whatever it is: the window sees every step
@@ -92,6 +93,7 @@ void ImportWork::start(const ImportWishes& wishes) {
   wishes_ = wishes;
   next_ = 0;
   result_ = {};
+  said_side_.reset();
   failure_.clear();
   state_ = State::Running;
   start_next();
@@ -165,16 +167,19 @@ void ImportWork::cancel() {
 }
 
 void ImportWork::set_side(bones::Side side) {
-  if (state_ == State::Asking) importing::say_side(result_, side);
+  if (state_ == State::Asking) said_side_ = side;
 }
 
 void ImportWork::save(const fs::path& folder, const std::string& name) {
-  if (state_ != State::Asking || !result_.side) return;
+  if (state_ != State::Asking) return;
+  importing::BoneImport import = result_;
+  if (said_side_) importing::say_side(import, *said_side_);
+  if (!import.side) return;
   state_ = State::Saving;
   failure_.clear();
   folder_ = folder;
   saving_.start(
-      [folder, name, import = result_, root = sources_.root] {
+      [folder, name, import = std::move(import), root = sources_.root] {
         files::create_private_folder(folder.parent_path());
         importing::add_to_case(folder, import, name, root);
       },

@@ -46,7 +46,8 @@ class ImportWork {
   void start(const ImportWishes& wishes);             // Choosing; without a source: nothing
   // Running, Asking: back to Choosing. Looking: Idle. Choosing: no more pictures are made.
   void cancel();
-  // Asking. The side must be known then. Name: of the case, empty for "Knee" and the date.
+  // Asking. The side must be known then, or said; the one that is said last holds, and becomes of the case
+  // alone: result() tells what was found. Name: of the case, empty for "Knee" and the date.
   void set_side(bones::Side side);
   void save(const std::filesystem::path& folder, const std::string& name);
   void poll();
@@ -88,6 +89,7 @@ class ImportWork {
   std::unique_ptr<importing::ImportProcess> process_;
   importing::ImportProgress progress_;
   importing::BoneImport result_;
+  std::optional<bones::Side> said_side_;  // of result_, by a person
   std::string failure_;
 };
 

@@ -72,6 +72,9 @@ TEST_F(ImportWorkTest, MakesACaseOfTwoMeshesAndAsksForTheSide) {
     work_.save(target, "Knee");
     EXPECT_EQ(work_.state(), State::Asking) << "without a side nothing is written";
   }
+  const auto found = work_.result().side;
+  work_.set_side(bones::Side::Left);  // by mistake
+  EXPECT_EQ(work_.result().side, found) << "what is said takes nothing from what was found";
   work_.set_side(bones::Side::Right);
   work_.save(target, "Knee");
   ASSERT_TRUE(reach(State::Done)) << work_.failure();
