@@ -17,8 +17,8 @@ struct DemoOptions {
 };
 
 // Says each step with its numbers, and those against the truth of the simulation. Sets the exit code to 4,
-// with the reasons, when a step is not reliable. When it throws, or is stopped by
-// Ctrl+C, the case folder is gone again.
+// with the reasons, when a step is not reliable. When it throws, or is stopped by Ctrl+C, the case folder is
+// gone again.
 void run_demo(Context& context, const DemoOptions& options);
 
 }  // namespace arthronaut::command_line
