@@ -13,6 +13,7 @@
 #include <iostream>
 #include <utility>
 
+#include "planning/files/format.h"
 #include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 
@@ -77,8 +78,8 @@ fs::path folder_of(const fs::path& target) {
 
 fs::path temporary_beside(const fs::path& target) {
   static std::atomic<unsigned> counter{0};
-  return target.parent_path() / ("." + target.stem().string() + "." + std::to_string(::getpid()) + "-" +
-                                 std::to_string(counter++) + ".partial" + target.extension().string());
+  return target.parent_path() / format(".%s.%d-%u.partial%s", target.stem().c_str(),
+                                       static_cast<int>(::getpid()), counter++, target.extension().c_str());
 }
 
 // A device or a pipe (/dev/full, /dev/stdout) is written to; renaming over it would replace it.
