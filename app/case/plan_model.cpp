@@ -37,6 +37,7 @@ geometry::Bounds joined(geometry::Bounds all, const geometry::Bounds& other) {
 
 // Of a view a few hundred pixels wide, with its normals smoothed: the outline is what suffers first.
 constexpr std::size_t kMovingTriangles = 6000;
+
 }  // namespace
 
 PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
@@ -56,7 +57,6 @@ PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
     if (bone.mesh.empty()) continue;
     BoneModel& made = bones_[kind];
     made.drawn = scene::simplified(bone.mesh);
-    made.moving = scene::simplified(*made.drawn, kMovingTriangles);
     made.review.surface = std::make_shared<const geometry::Surface>(bone.mesh);
     made.bounds = geometry::bounds_of(bone.mesh);
     made.mesh_sha256 = bones::mesh_sha256(bone.mesh);
@@ -101,15 +101,16 @@ void PlanModel::set_landmarks(bones::BoneKind kind, landmarks::Landmarks landmar
 const std::optional<landmarks::Proposal>& PlanModel::proposal(bones::BoneKind kind) const {
   const BoneModel& bone = bones_.at(kind);
   if (bone.proposal) return bone.proposal;
-  LateProposal& late = late_[kind];
   // The surface keeps the mesh, whatever becomes of this model.
-  if (!late.coming.valid())
-    late.coming = std::async(std::launch::async, [surface = bone.review.surface, kind, side = knee_.side] {
-      return landmarks::propose(surface->mesh(), kind, {.side = side});
-    });
-  if (!late.there && late.coming.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-    late.there = late.coming.get();
-  return late.there;
+  return late_proposals_[kind].ask([surface = bone.review.surface, kind, side = knee_.side] {
+    return landmarks::propose(surface->mesh(), kind, {.side = side});
+  });
+}
+
+const std::shared_ptr<const geometry::TriangleMesh>& PlanModel::moving_mesh(bones::BoneKind kind) const {
+  const auto& drawn = drawn_mesh(kind);
+  const auto& made = late_moving_[kind].ask([drawn] { return scene::simplified(*drawn, kMovingTriangles); });
+  return made ? *made : drawn;
 }
 
 default_plan::DefaultTunnel PlanModel::default_tunnel(const tunnels::TunnelKey& key,

@@ -6,6 +6,7 @@
 // is taken to be of the mesh that it is opened with.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <future>
 #include <map>
@@ -43,10 +44,9 @@ class PlanModel {
   [[nodiscard]] const std::shared_ptr<const geometry::TriangleMesh>& drawn_mesh(bones::BoneKind kind) const {
     return bones_.at(kind).drawn;
   }
-  // Far coarser, for a view that moves where the processor draws: there each triangle costs.
-  [[nodiscard]] const std::shared_ptr<const geometry::TriangleMesh>& moving_mesh(bones::BoneKind kind) const {
-    return bones_.at(kind).moving;
-  }
+  // Far coarser, for a view that moves where the processor draws: there each triangle costs. Begun beside the
+  // caller by the first who asks, and drawn_mesh() until it is there.
+  [[nodiscard]] const std::shared_ptr<const geometry::TriangleMesh>& moving_mesh(bones::BoneKind kind) const;
 
   [[nodiscard]] std::optional<tunnels::Tunnel> tunnel(const tunnels::TunnelKey& key) const;
   // As planned and measured, all on bones of the case.
@@ -113,16 +113,25 @@ class PlanModel {
 
  private:
   struct BoneModel {
-    std::shared_ptr<const geometry::TriangleMesh> drawn, moving;
+    std::shared_ptr<const geometry::TriangleMesh> drawn;
     plan_review::ReviewedBone review;
     geometry::Bounds bounds, joint_bounds;
     landmarks::AnatomicalAxes axes;
     std::optional<landmarks::Proposal> proposal;
     std::string mesh_sha256;
   };
-  struct LateProposal {
-    std::shared_future<landmarks::Proposal> coming;
-    std::optional<landmarks::Proposal> there;
+  // What is made in a thread of its own, begun by the first who asks.
+  template <typename Thing>
+  struct Late {
+    template <typename Make>
+    const std::optional<Thing>& ask(Make make) {
+      if (!coming.valid()) coming = std::async(std::launch::async, std::move(make));
+      if (!there && coming.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+        there = coming.get();
+      return there;
+    }
+    std::shared_future<Thing> coming;
+    std::optional<Thing> there;
   };
   struct Checked {
     std::uint64_t revision = 0;
@@ -140,7 +149,8 @@ class PlanModel {
   std::uint64_t revision_ = 1;
   // Every frame asks, and every change costs a dozen milliseconds.
   mutable std::map<tunnels::TunnelKey, Checked> checked_;
-  mutable std::map<bones::BoneKind, LateProposal> late_;
+  mutable std::map<bones::BoneKind, Late<landmarks::Proposal>> late_proposals_;
+  mutable std::map<bones::BoneKind, Late<std::shared_ptr<const geometry::TriangleMesh>>> late_moving_;
 };
 
 }  // namespace arthronaut::open_case
