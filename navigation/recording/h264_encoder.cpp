@@ -1,6 +1,7 @@
 #include "navigation/recording/h264_encoder.h"
 
 #include <algorithm>
+#include <string>
 
 #include "planning/geometry/error.h"
 
@@ -34,7 +35,7 @@ LibavPtr<AVCodecContext> described(const AVCodec& codec, int width, int height, 
 }
 
 // Null where there is no such device, or it does not encode such pictures.
-H264Encoder by_graphics_processor(int width, int height, AVRational rate) {
+H264Encoder by_graphics_processor(int width, int height, AVRational rate, H264For purpose) {
   const AVCodec* const codec = avcodec_find_encoder_by_name("h264_vaapi");
   AVBufferRef* device = nullptr;
   if (codec == nullptr || (width | height) % 2 != 0 ||
@@ -54,7 +55,8 @@ H264Encoder by_graphics_processor(int width, int height, AVRational rate) {
   h264.encoder = described(*codec, width, height, rate);
   h264.encoder->pix_fmt = AV_PIX_FMT_VAAPI;
   h264.encoder->hw_frames_ctx = av_buffer_ref(h264.frames.get());
-  h264.encoder->global_quality = 18;
+  constexpr int kCoarser = 8;  // on this encoder's scale
+  h264.encoder->global_quality = static_cast<int>(purpose) + kCoarser;
   if (avcodec_open2(h264.encoder.get(), codec, nullptr) < 0) return {};
   h264.reordered.reset(av_frame_alloc());
   h264.reordered->format = AV_PIX_FMT_NV12;
@@ -72,16 +74,18 @@ void copy_rows(const std::uint8_t* from, int from_stride, std::uint8_t* to, int 
 
 }  // namespace
 
-H264Encoder open_h264(const std::filesystem::path& file, int width, int height, AVRational rate) {
-  if (H264Encoder found = by_graphics_processor(width, height, rate); found.encoder != nullptr) return found;
+H264Encoder open_h264(const std::filesystem::path& file, int width, int height, AVRational rate,
+                      H264For purpose) {
+  if (H264Encoder found = by_graphics_processor(width, height, rate, purpose); found.encoder != nullptr)
+    return found;
   const AVCodec* const codec = avcodec_find_encoder_by_name("libx264");
   if (codec == nullptr) throw IoError(file, "cannot write the video: this libavcodec has no H.264 encoder");
   H264Encoder h264{described(*codec, width, height, rate)};
   h264.encoder->thread_count = 1;  // the other core tracks
-  // The quickest there is, at a quality at which poses differ by some thousandths of a millimetre.
+  // The quickest there is.
   av_opt_set(h264.encoder->priv_data, "preset", "ultrafast", 0);
   av_opt_set(h264.encoder->priv_data, "tune", "zerolatency", 0);
-  av_opt_set(h264.encoder->priv_data, "crf", "10", 0);
+  av_opt_set(h264.encoder->priv_data, "crf", std::to_string(static_cast<int>(purpose)).c_str(), 0);
   if (avcodec_open2(h264.encoder.get(), codec, nullptr) < 0)
     throw IoError(file, "cannot start the H.264 encoder");
   return h264;

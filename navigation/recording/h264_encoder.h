@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "navigation/recording/video_encoder.h"
 #include "navigation/sources/libav.h"
 
 extern "C" {
@@ -25,8 +26,8 @@ struct H264Encoder {
 
 // Takes 8-bit 4:2:0 in full range (4:4:4 where a size is odd, which libx264 alone does). Throws IoError where
 // there is neither encoder.
-[[nodiscard]] H264Encoder open_h264(const std::filesystem::path& file, int width, int height,
-                                    AVRational rate);
+[[nodiscard]] H264Encoder open_h264(const std::filesystem::path& file, int width, int height, AVRational rate,
+                                    H264For purpose);
 // A picture where the graphics processor looks for it; valid until the next one. Precondition: frames. Throws
 // IoError.
 [[nodiscard]] const AVFrame* uploaded(H264Encoder& h264, const AVFrame& picture,

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <stdexcept>
 
@@ -15,6 +17,7 @@
 #include "planning/files/format.h"
 #include "planning/files/free_space.h"
 #include "planning/files/private_folder.h"
+#include "planning/files/sha256.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
@@ -28,39 +31,31 @@ constexpr double kRate = 60;           // what the files say; which picture is w
 constexpr int kLeastSide = 16;         // of a copy, which encoders take
 constexpr std::uintmax_t kLeftFree = 4'000'000'000;
 
-// Another number for files of another name, size or time.
+// Another one for files of another name, size or time.
 std::string mark_of(const fs::path& folder, const std::vector<fs::path>& files) {
-  std::uint64_t mark = 0xcbf29ce484222325;
-  const auto mix = [&mark](std::uint64_t value) {
-    for (int byte = 0; byte < 8; ++byte) mark = (mark ^ (value >> (8 * byte) & 0xff)) * 0x100000001b3;
-  };
+  std::string text;
   for (const fs::path& file : files) {
     std::error_code error;
-    for (const char letter : file.lexically_relative(folder).string()) mix(static_cast<std::uint8_t>(letter));
-    mix(fs::file_size(file, error));
-    mix(static_cast<std::uint64_t>(fs::last_write_time(file, error).time_since_epoch().count()));
+    text += file.lexically_relative(folder).string() + "\n" + std::to_string(fs::file_size(file, error)) +
+            "\n" + std::to_string(fs::last_write_time(file, error).time_since_epoch().count()) + "\n";
   }
-  return files::format("%016llx", static_cast<unsigned long long>(mark));
+  return files::sha256_of(text).substr(0, 16);
 }
 
-// Half as wide and half as high: the mean of two by two pixels.
+// Half as wide and half as high.
 camera::Frame halved(const camera::Frame& picture) {
   std::vector<std::uint8_t> made;
-  const std::vector<std::uint8_t>& from = camera::bgr_of(picture, made);
+  const std::vector<std::uint8_t>& bgr = camera::bgr_of(picture, made);
   camera::Frame small;
   small.index = picture.index;
   small.width = picture.width / 2;
   small.height = picture.height / 2;
+  if (std::min(small.width, small.height) < kLeastSide) return small;
   small.bgr.resize(static_cast<std::size_t>(3) * static_cast<std::size_t>(small.width) *
                    static_cast<std::size_t>(small.height));
-  const std::ptrdiff_t row = std::ptrdiff_t{3} * picture.width;
-  std::uint8_t* to = small.bgr.data();
-  for (int y = 0; y < small.height; ++y) {
-    const std::uint8_t* at = from.data() + 2 * y * row;
-    for (int x = 0; x < small.width; ++x, at += 6)
-      for (int c = 0; c < 3; ++c)
-        *to++ = static_cast<std::uint8_t>((at[c] + at[c + 3] + at[row + c] + at[row + c + 3] + 2) / 4);
-  }
+  const cv::Mat from(picture.height, picture.width, CV_8UC3, const_cast<std::uint8_t*>(bgr.data()));
+  cv::Mat to(small.height, small.width, CV_8UC3, small.bgr.data());
+  cv::resize(from, to, to.size(), 0, 0, cv::INTER_AREA);
   return small;
 }
 
@@ -124,7 +119,7 @@ struct QuickPictures::State {
       if (picture == nullptr || !goes_on()) return false;
       const camera::Frame small = halved(*picture);
       if (std::min(small.width, small.height) < kLeastSide) return false;
-      if (!encoder) encoder.emplace(to, small.width, small.height, kRate, PicturesAs::H264);
+      if (!encoder) encoder.emplace(to, small.width, small.height, kRate, PicturesAs::H264, H264For::Looking);
       encoder->encode(small);
     }
     if (encoder) encoder->finish();

@@ -36,11 +36,12 @@ AVPixelFormat format_of(int width, int height) {
 }  // namespace
 
 struct VideoEncoder::State {
-  State(const std::filesystem::path& to, int width, int height, double frames_per_second, PicturesAs as)
+  State(const std::filesystem::path& to, int width, int height, double frames_per_second, PicturesAs as,
+        H264For h264_for)
       : file(to), writer(to), packet(av_packet_alloc()), picture(av_frame_alloc()) {
     const AVRational rate{static_cast<int>(std::lround(1000 * frames_per_second)), 1000};
     if (as == PicturesAs::H264) {
-      h264 = open_h264(file, width, height, rate);
+      h264 = open_h264(file, width, height, rate, h264_for);
       encoder = std::move(h264.encoder);
     } else {
       open_ut_video(width, height, rate);
@@ -137,8 +138,8 @@ struct VideoEncoder::State {
 };
 
 VideoEncoder::VideoEncoder(const std::filesystem::path& file, int width, int height, double frames_per_second,
-                           PicturesAs as)
-    : state_(std::make_unique<State>(file, width, height, frames_per_second, as)) {}
+                           PicturesAs as, H264For h264_for)
+    : state_(std::make_unique<State>(file, width, height, frames_per_second, as, h264_for)) {}
 
 VideoEncoder::~VideoEncoder() = default;
 

@@ -18,11 +18,16 @@
 
 namespace arthronaut::recording {
 
+// How coarse, on libx264's scale of rate factors: at the first poses that are tracked again differ by some
+// thousandths of a millimetre; the other is for the eye alone, at a ninth of the bytes.
+enum class H264For { Tracking = 10, Looking = 26 };
+
 class VideoEncoder {
  public:
-  // `as`: Lossless or H264. Throws IoError when the file cannot be created or this libavcodec has no encoder.
+  // `as`: Lossless or H264; h264_for: of the latter. Throws IoError when the file cannot be created or this
+  // libavcodec has no encoder.
   VideoEncoder(const std::filesystem::path& file, int width, int height, double frames_per_second,
-               PicturesAs as = PicturesAs::Lossless);
+               PicturesAs as = PicturesAs::Lossless, H264For h264_for = H264For::Tracking);
   ~VideoEncoder();
 
   // Throws IoError, and InvalidInput for another size than the first.
