@@ -19,11 +19,13 @@ struct CodePlace {
   double score = -1;  // correlation of the picture with the code, 1 at best
 };
 
-// Keeps its memory from call to call.
+// Has its memory from the beginning: a marker is lost for the first time in the middle of an operation.
 class CodeSearch {
  public:
   static constexpr double kMinScore = 0.55;
   static constexpr int kTogether = 16;  // places of a row that are scored at once
+
+  CodeSearch() { points_.reserve((kMaxCells + 2) * (kMaxCells + 2)); }
 
   // The best place within reach_px (frame pixels) of where the pose puts the marker; a score below kMinScore
   // is none. The wider the reach, the more turns and distances are tried.

@@ -9,9 +9,6 @@
 namespace arthronaut::markers {
 namespace {
 
-// By how much the frame is made smaller for the search: small pictures hold small markers.
-constexpr int kShrink = 4, kShrinkSmall = 2;
-constexpr int kSmallView = 700;  // in frame pixels
 // In shrunk pixels.
 constexpr int kMinSide = 8;
 constexpr int kRadius = 14;
@@ -58,29 +55,7 @@ bool drop_cheapest_edge(std::vector<Eigen::Vector2d>& polygon) {
   return true;
 }
 
-// Down first, then across: so the processor does many columns at a time.
-template <int kTimes>
-void average_row(const camera::GrayView& frame, int left, int top, int width, std::uint16_t* sums,
-                 std::uint8_t* out) {
-  const std::uint8_t* rows[kTimes];
-  for (int k = 0; k < kTimes; ++k) rows[k] = frame.row(top + k) + left;
-  for (int x = 0; x < kTimes * width; ++x) {
-    unsigned sum = 0;
-    for (int k = 0; k < kTimes; ++k) sum += rows[k][x];
-    sums[x] = static_cast<std::uint16_t>(sum);
-  }
-  for (int x = 0; x < width; ++x) {
-    unsigned sum = kTimes * kTimes / 2;
-    for (int i = 0; i < kTimes; ++i) sum += sums[kTimes * x + i];
-    out[x] = static_cast<std::uint8_t>(sum / (kTimes * kTimes));
-  }
-}
-
 }  // namespace
-
-void SquareSearch::look_at(const camera::GrayView& frame, const camera::CameraModel& camera) {
-  shrink(frame, camera);
-}
 
 std::span<const FoundSquare> SquareSearch::find(const camera::CameraModel& camera, Contrast contrast) {
   sum_rows(false);
@@ -108,58 +83,6 @@ bool SquareSearch::may_be_square(const Region& region, int least_filled) const {
   const int across = region.right - region.left + 1, down = region.bottom - region.top + 1;
   return std::min(across, down) >= kMinSide / 2 && std::max(across, down) >= kMinSide &&
          across <= width_ * 9 / 10 && down <= height_ * 9 / 10 && region.area >= across * down / least_filled;
-}
-
-// The bounding box of the view, four by four pixels to one.
-void SquareSearch::shrink(const camera::GrayView& frame, const camera::CameraModel& camera) {
-  int right = frame.width, bottom = frame.height;
-  left_ = top_ = 0;
-  if (const auto& circle = camera.boundary(); circle.radius_px > 0) {
-    left_ = std::clamp(static_cast<int>(circle.center_px.x() - circle.radius_px), 0, frame.width);
-    top_ = std::clamp(static_cast<int>(circle.center_px.y() - circle.radius_px), 0, frame.height);
-    right = std::clamp(static_cast<int>(circle.center_px.x() + circle.radius_px) + 1, left_, frame.width);
-    bottom = std::clamp(static_cast<int>(circle.center_px.y() + circle.radius_px) + 1, top_, frame.height);
-  }
-  shrink_ = std::max(right - left_, bottom - top_) > kSmallView ? kShrink : kShrinkSmall;
-  width_ = (right - left_) / shrink_;
-  height_ = (bottom - top_) / shrink_;
-  const std::size_t count = static_cast<std::size_t>(width_) * height_;
-  small_.resize(count);
-  column_sums_.resize(static_cast<std::size_t>(width_) * shrink_);
-  dark_.resize(count);
-  labels_.resize(count);
-  sums_.resize((static_cast<std::size_t>(width_) + 1) * (height_ + 1));
-  first_.resize(std::max(width_, height_));
-  last_.resize(std::max(width_, height_));
-  white_pixels_ = 0;
-  sums_are_ = Sums::None;
-  for (int y = 0; y < height_; ++y) {
-    std::uint8_t* out = &small_[static_cast<std::size_t>(y) * width_];
-    shrink_ == kShrink
-        ? average_row<kShrink>(frame, left_, top_ + shrink_ * y, width_, column_sums_.data(), out)
-        : average_row<kShrinkSmall>(frame, left_, top_ + shrink_ * y, width_, column_sums_.data(), out);
-    for (int x = 0; x < width_; ++x) white_pixels_ += out[x] >= kWhite;
-  }
-}
-
-// Without white: what was before it in the row stands in for a white pixel.
-void SquareSearch::sum_rows(bool without_white) {
-  const Sums wanted = without_white ? Sums::WithoutWhite : Sums::OfAll;
-  if (width_ <= 0 || sums_are_ == wanted) return;
-  sums_are_ = wanted;
-  std::fill_n(sums_.begin(), width_ + 1, 0U);
-  for (int y = 0; y < height_; ++y) {
-    const std::uint8_t* in = &small_[static_cast<std::size_t>(y) * width_];
-    const std::uint32_t* above = &sums_[static_cast<std::size_t>(y) * (width_ + 1)];
-    std::uint32_t* here = &sums_[static_cast<std::size_t>(y + 1) * (width_ + 1)];
-    std::uint32_t row_sum = 0, last = 0;
-    here[0] = 0;
-    for (int x = 0; x < width_; ++x) {
-      if (!without_white || in[x] < kWhite) last = in[x];
-      row_sum += last;
-      here[x + 1] = above[x + 1] + row_sum;
-    }
-  }
 }
 
 void SquareSearch::mark_dark_pixels(int radius, int percent) {

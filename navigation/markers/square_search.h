@@ -69,7 +69,8 @@ class SquareSearch {
     int left, right, top, bottom, area;
     bool has_white = false;
   };
-  void shrink(const camera::GrayView& frame, const camera::CameraModel& camera);
+  // For small pictures of up to this size.
+  void reserve(int width, int height);
   // Dark regions that may be of a square.
   void find_regions(Contrast contrast, bool across_white = false);
   void mark_white_pixels();
