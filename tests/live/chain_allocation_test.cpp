@@ -2,7 +2,9 @@
 // tracking, operation and publication. In a program of its own, since it replaces it.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <thread>
+#include <vector>
 
 #include "navigation/sources/capture_time.h"
 #include "navigation/sources/recovering_source.h"
@@ -51,6 +53,11 @@ TEST(ChainAllocation, NothingPerFrameFromSourceToPublication) {
   options.operation.plan->length_mm = 30;
   options.bone = []() -> operation::SurfaceIndexPtr { throw InvalidInput("no bone is needed here"); };
   options.live_stale_after_s = 10;
+  std::atomic<bool> had_news = false;
+  options.tell = [&, before = theatre::SourceTrouble::None](const theatre::LiveState& state) mutable {
+    if (state.trouble != theatre::SourceTrouble::None || state.trouble != before) had_news = true;
+    before = state.trouble;
+  };
   theatre::LiveOperation live(options, [] {});
   theatre::TheatreSource source;
   source.setup.kind = sources::SourceKind::Live;
@@ -76,14 +83,30 @@ TEST(ChainAllocation, NothingPerFrameFromSourceToPublication) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return live.latest()->operation->frame_count >= frame;
   };
-  // The buffers of frames, states and statistics get their size; then two seconds and more.
+  // The buffers of frames, states and statistics get their size; then two seconds and more. There are as many
+  // of them as were ever held at a time: here a screen that is slow holds more than a thread that is kept
+  // waiting for a core will.
+  std::vector<theatre::LiveStatePtr> held;
+  for (std::int64_t frame = 100; frame < 110; ++frame) {
+    ASSERT_TRUE(wait_for_frame(frame)) << live.latest()->message;
+    held.push_back(live.latest());
+  }
+  held.clear();
   ASSERT_TRUE(wait_for_frame(150)) << live.latest()->message;
   ASSERT_TRUE(live.latest()->operation->frame.guidance.is_valid());
-  const std::int64_t from = live.latest()->operation->frame_count;
-  start_counting_allocations();
-  ASSERT_TRUE(wait_for_frame(from + 200));
-  const long asked_for = stop_counting_allocations();
-  EXPECT_EQ(asked_for, 0) << "in " << live.latest()->operation->frame_count - from << " frames";
+  // A machine that is kept from its work meanwhile says that its pictures are late. Those words are news, and
+  // may take memory: frames without any are counted.
+  for (int times = 0; times < 20; ++times) {
+    had_news = false;
+    const std::int64_t from = live.latest()->operation->frame_count;
+    start_counting_allocations();
+    ASSERT_TRUE(wait_for_frame(from + 200));
+    const long asked_for = stop_counting_allocations();
+    if (had_news) continue;
+    EXPECT_EQ(asked_for, 0) << "in " << live.latest()->operation->frame_count - from << " frames";
+    return;
+  }
+  FAIL() << "no 200 frames in time: " << live.latest()->trouble_words;
 }
 
 }  // namespace
