@@ -9,6 +9,16 @@
 namespace arthronaut::test {
 namespace {
 
+// The 3D view is drawn once more, smoothly, when it has come to rest.
+bool rests(const RunningWorkstation& app) {
+  const auto frames = app.frames();
+  if (frames.size() < 4) return false;
+  const auto last = frames.end() - 4;
+  return std::all_of(last, frames.end(),
+                     [](const DrawnFrame& frame) { return frame.number("scenes") == 0; }) &&
+         frames.back().number("shown_s") > last->number("shown_s") + 0.5;
+}
+
 // A key is seen in the frame that takes it, whatever a frame costs: nothing that it does waits for another
 // one.
 TEST_F(Theatre, Hazard34AKeyIsSeenInTheFrameThatTakesIt) {
@@ -62,16 +72,7 @@ TEST_F(Theatre, Hazard34WhatStandsStillIsNotDrawnAgain) {
   RunningWorkstation app(display, folder_.path());
   start_simulation(app);
   ASSERT_TRUE(app.hold_until("Escape", "guidance", "The pictures have ended"));
-  // The 3D view is drawn once more, smoothly, when it has come to rest.
-  const auto rests = [&] {
-    const auto frames = app.frames();
-    if (frames.size() < 4) return false;
-    const auto last = frames.end() - 4;
-    return std::all_of(last, frames.end(),
-                       [](const DrawnFrame& frame) { return frame.number("scenes") == 0; }) &&
-           frames.back().number("shown_s") > last->number("shown_s") + 0.5;
-  };
-  ASSERT_TRUE(becomes(rests, 60));
+  ASSERT_TRUE(becomes([&] { return rests(app); }, 60));
   const std::size_t before = app.frames().size();
   for (int times = 0; times < 4; ++times) {
     const std::string was = app.state("overlay");
@@ -96,8 +97,7 @@ TEST_F(Theatre, Hazard34AScreenDrawnInPartsIsTheWholeScreen) {
   start_simulation(app);
   ASSERT_TRUE(app.hold_until("Escape", "guidance", "The pictures have ended"));
   for (const char* key : {"Return", "h", "u", "Return", "F10", "u", "F10", "v"}) app.press(key);
-  ASSERT_TRUE(becomes([&] { return app.frames().back().number("scenes") == 0; }, 60));
-  std::this_thread::sleep_for(std::chrono::seconds(1));
+  ASSERT_TRUE(becomes([&] { return rests(app); }, 60));
   const Picture in_parts = app.screenshot();
   const long all_px = 1280L * 720;
   const auto frames = app.frames();
@@ -113,7 +113,7 @@ TEST_F(Theatre, Hazard34AScreenDrawnInPartsIsTheWholeScreen) {
                        [&](const DrawnFrame& frame) { return frame.number("drawn_px") == all_px; });
   };
   ASSERT_TRUE(becomes(was_drawn_whole, 20));
-  std::this_thread::sleep_for(std::chrono::seconds(1));
+  ASSERT_TRUE(becomes([&] { return rests(app); }, 60));
   const Picture whole = app.screenshot();
   int left = 1280, right = 0, top = 720, bottom = 0;
   for (int y = 0; y < 720; ++y)
