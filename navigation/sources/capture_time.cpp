@@ -17,17 +17,19 @@ CaptureTime capture_time(double driver_ms, std::int64_t handed_over_ns) {
 }
 
 void StreamClock::arrived(std::int64_t stamp_ns, std::int64_t arrived_ns) {
-  constexpr std::int64_t kJump_ns = 2'000'000'000;
+  // Pictures that are put in order by their decoder go back by less.
+  constexpr std::int64_t kBack_ns = 500'000'000;
   // Two quartz clocks drift apart by less than 100 millionths. The estimate gives way twice as fast, so that
   // it follows a sender that runs slow.
   constexpr std::int64_t kDrift_ppm = 200;
   const std::int64_t apart_ns = arrived_ns - stamp_ns;
-  if (!has_begun_ || std::abs(apart_ns - apart_ns_) > kJump_ns) {
+  if (!has_begun_ || stamp_ns < stamp_ns_ - kBack_ns) {
     has_begun_ = true;
     apart_ns_ = apart_ns;
   } else {
     apart_ns_ = std::min(apart_ns, apart_ns_ + (arrived_ns - at_ns_) * kDrift_ppm / 1'000'000);
   }
+  stamp_ns_ = stamp_ns;
   at_ns_ = arrived_ns;
 }
 

@@ -28,15 +28,16 @@ struct CaptureTime {
 // or a decoder is seen to be as old as it is. What the quickest one took on its way is not seen.
 class StreamClock {
  public:
-  // Both of one piece of data; stamps need not come in order. A stamp that jumps by more than 2 s against the
-  // arrivals (a sender that was started again) begins anew.
+  // Both of one piece of data; stamps need not come quite in order. One that lies half a second before the
+  // one before it is of a sender that was started again, and begins anew. What only comes late never does,
+  // however late it is.
   void arrived(std::int64_t stamp_ns, std::int64_t arrived_ns);
   // On the steady clock, of a picture with this stamp. Precondition: something has arrived.
   [[nodiscard]] std::int64_t captured_ns(std::int64_t stamp_ns) const { return stamp_ns + apart_ns_; }
 
  private:
   bool has_begun_ = false;
-  std::int64_t apart_ns_ = 0, at_ns_ = 0;
+  std::int64_t apart_ns_ = 0, at_ns_ = 0, stamp_ns_ = 0;
 };
 
 }  // namespace arthronaut::sources

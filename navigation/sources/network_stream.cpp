@@ -1,5 +1,7 @@
 #include "navigation/sources/network_stream.h"
 
+#include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 
@@ -25,6 +27,8 @@ constexpr std::int64_t kOpensAgainWithin_ns = 2 * kSecond_ns;
 constexpr std::int64_t kSilence_ns = kSecond_ns;  // after so much the connection is made anew
 // Data that make no picture for so long are told of: by then everybody waits for one.
 constexpr std::int64_t kPictureless_ns = 300'000'000;
+// Older than that no picture is worth its decoding: what has waited is passed over, up to the next key frame.
+constexpr std::int64_t kBehind_ns = 2 * kSecond_ns, kCaughtUp_ns = 300'000'000;
 // x264 gives a key frame every 250 pictures unless it is told otherwise. If none helped by then, a new
 // decoder may.
 constexpr std::int64_t kKeyFrameWithin_ns = 15 * kSecond_ns;
@@ -33,6 +37,16 @@ struct FreeDictionary {
   AVDictionary* entries = nullptr;
   ~FreeDictionary() { av_dict_free(&entries); }
 };
+
+// How many later pictures have begun to arrive when libavformat gives one out. Where a picture ends is told
+// by the beginning of the next one alone, in what it parses (all but a codec whose RTP packets say so) and
+// once more in the packets of MPEG-TS, whose length senders leave open.
+std::size_t held_back(const AVFormatContext& container, AVCodecID codec) {
+  const bool is_parsed = codec == AV_CODEC_ID_H264 || codec == AV_CODEC_ID_HEVC ||
+                         codec == AV_CODEC_ID_MPEG2VIDEO || codec == AV_CODEC_ID_MPEG4;
+  const bool is_ts = std::string_view(container.iformat->name) == "mpegts";
+  return (is_parsed ? 1 : 0) + (is_ts ? 1 : 0);
+}
 
 // One connection: from the address to decoded pictures. What goes wrong in it ends it.
 class Connection {
@@ -69,6 +83,7 @@ class Connection {
     decoder_ = open_stream_decoder(*stream().codecpar, stream().time_base, problem);
     if (decoder_ == nullptr) fail(address, problem);
     packets_.begin(stream());
+    held_back_ = held_back(*container_, stream().codecpar->codec_id);
   }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -94,6 +109,8 @@ class Connection {
   [[nodiscard]] bool gives_data() const {
     return !has_ended_ && received_ns_ > 0 && steady_now_ns() - received_ns_ < kSilence_ns;
   }
+  // What waited too long is passed over.
+  [[nodiscard]] bool is_behind() const { return is_behind_; }
   // Since the connection was made: pictures that came, and were left out.
   [[nodiscard]] long damaged_count() const { return damaged_count_; }
   [[nodiscard]] std::int64_t received_ns() const { return received_ns_; }  // the newest of its data
@@ -138,12 +155,27 @@ class Connection {
 
   void take(AVPacket& packet) {
     received_ns_ = steady_now_ns();
-    if (packet.pts != AV_NOPTS_VALUE) clock_.arrived(stamp_ns(packet.pts), received_ns_);
+    std::shift_right(given_out_ns_.begin(), given_out_ns_.end(), 1);
+    given_out_ns_[0] = received_ns_;
+    // It was there already when the one that was held back for it was given out.
+    const std::int64_t there_ns = given_out_ns_[held_back_] > 0 ? given_out_ns_[held_back_] : received_ns_;
+    if (packet.pts != AV_NOPTS_VALUE) clock_.arrived(stamp_ns(packet.pts), there_ns);
     const std::int64_t time_ns =
         packet.pts == AV_NOPTS_VALUE ? received_ns_ : clock_.captured_ns(stamp_ns(packet.pts));
     decoder_->reordered_opaque = packets_.put(packet, time_ns, decoder_->has_b_frames);
+    if (passes_over(packet, received_ns_ - time_ns)) return;
     // What a damaged packet makes of a picture is seen when it is decoded.
     (void)avcodec_send_packet(decoder_.get(), &packet);
+  }
+
+  // A machine that decodes more slowly than pictures come would be ever further behind.
+  bool passes_over(const AVPacket& packet, std::int64_t age_ns) {
+    if (age_ns > kBehind_ns) is_behind_ = true;
+    if (!is_behind_) return false;
+    if (age_ns > kCaughtUp_ns || !may_begin_at(packet, *stream().codecpar)) return true;
+    is_behind_ = false;
+    avcodec_flush_buffers(decoder_.get());
+    return false;
   }
 
   EncodedPackets& packets_;
@@ -153,8 +185,10 @@ class Connection {
   LibavPtr<AVFrame> picture_;
   StreamClock clock_;
   std::int64_t data_by_ns_, received_ns_ = 0;
+  std::array<std::int64_t, 3> given_out_ns_{};  // the newest packets, the newest first; 0: none
+  std::size_t held_back_ = 0;                   // see there
   long damaged_count_ = 0;
-  bool has_ended_ = false;
+  bool has_ended_ = false, is_behind_ = false;
   int stream_index_ = -1;
 };
 
@@ -217,6 +251,8 @@ class NetworkStream final : public FrameSource {
   [[nodiscard]] std::string why_no_picture(const char* without_data) const {
     if (connection_->damaged_count() > damaged_before_)
       return info_.name + ": every picture comes damaged: check cable and network";
+    if (connection_->is_behind())
+      return info_.name + ": was more than 2 s behind; goes on with the next key frame";
     if (connection_->gives_data())
       return info_.name + ": gives data without a key frame, and no picture can begin without one";
     return info_.name + ": " + without_data;

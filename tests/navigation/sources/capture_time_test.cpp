@@ -72,5 +72,21 @@ TEST(StreamClock, FollowsASlowClockAndANewOne) {
   EXPECT_EQ(clock.captured_ns(0), 4000 * kSecond);
 }
 
+// A machine that is too busy falls behind its stream, however far: what is old is never called new.
+TEST(StreamClock, Hazard3WhatFallsBehindStaysOld) {
+  constexpr std::int64_t kInterval = 16'666'667;
+  StreamClock clock;
+  for (std::int64_t i = 0; i < 600; ++i) {
+    const std::int64_t captured = i * kInterval, arrived = captured + i * kInterval / 2;  // two for three
+    clock.arrived(captured, arrived);
+    EXPECT_NEAR(static_cast<double>(clock.captured_ns(captured) - captured), 0, 3e6) << i;
+  }
+  // Four seconds without any, and then what had waited meanwhile.
+  StreamClock stalled;
+  stalled.arrived(0, 0);
+  stalled.arrived(kInterval, 4'000'000'000);
+  EXPECT_NEAR(static_cast<double>(stalled.captured_ns(kInterval)), static_cast<double>(kInterval), 1e6);
+}
+
 }  // namespace
 }  // namespace arthronaut::sources
