@@ -20,15 +20,35 @@ constexpr double kShareOfRepeats = 0.8;
 // A dark or plain picture with the noise of a sensor without light; a lit scope has a rim and highlights.
 constexpr int kMostSpreadOfBlank = 24;
 constexpr double kShareOfSpecks = 0.001;
-// Five on end: a source that repeats three frames in four never does that.
-constexpr int kRepeatsOnEnd = 5;
-constexpr std::int64_t kRepeatingFor_ns = 80'000'000;
+// Two repeats more than the source is used to make: 67 ms at 30 pictures a second. Five, while nothing is
+// known of it or it repeats much: one that repeats three frames in four never does that.
+constexpr int kRepeatsTooMany = 2, kRepeatsOnEnd = 5;
+constexpr std::int64_t kRepeatingFor_ns = 60'000'000;
+constexpr std::size_t kKnownAfter = 30;  // frames
 constexpr int kSampledRowsPerTile = 8;
 // Half of the tiles show nothing but noise also while the scope moves: the mask, the dark, the out-of-focus.
 constexpr double kNoiseQuantile = 0.6;
 // Over a second of frames: a codec that refines a frozen picture for a few of them must not pass for a source
 // with less noise. (A scene that moves adds to what is seen; the limits above bound what comes of it.)
 constexpr double kLearning = 1.0 / 60;
+
+// More than the longest row of repeats before the newest one, which has so many. steps: a ring of which
+// step_count were written. What a source makes that hangs is no habit.
+template <typename Steps>
+int repeats_on_end(const Steps& steps, std::size_t step_count, std::size_t in_row) {
+  const std::size_t known = std::min(step_count, steps.size());
+  if (known < in_row + kKnownAfter) return kRepeatsOnEnd;
+  int longest = 0, count = 0;
+  for (std::size_t i = in_row; i < known; ++i) {
+    if (steps[(step_count - 1 - i) % steps.size()].repeats) {
+      ++count;
+    } else {
+      if (count < kRepeatsOnEnd) longest = std::max(longest, count);
+      count = 0;
+    }
+  }
+  return std::min(longest + kRepeatsTooMany, kRepeatsOnEnd);
+}
 
 }  // namespace
 
@@ -147,7 +167,9 @@ bool FrozenPicture::observe(const camera::GrayView& picture, std::int64_t timest
   row_.count += repeats ? 1 : 0;
   steps_[step_count_++ % kMostFrames] = {timestamp_ns, repeats};
 
-  signs_.is_repeating = row_.count >= kRepeatsOnEnd && timestamp_ns - row_.since_ns >= kRepeatingFor_ns;
+  signs_.is_repeating =
+      row_.count >= kRepeatsTooMany && timestamp_ns - row_.since_ns >= kRepeatingFor_ns &&
+      row_.count >= repeats_on_end(steps_, step_count_, static_cast<std::size_t>(row_.count));
   signs_.is_torn = torn_.observe(step, seam, height_, timestamp_ns);
   signs_.repeat_share = share_of_repeats(timestamp_ns - 1'000'000'000);
 

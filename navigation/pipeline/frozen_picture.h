@@ -42,7 +42,7 @@ class FrozenPicture {
   struct Signs {
     bool is_blank = false;      // one grey all over: no light, or no signal
     bool is_torn = false;       // see torn_picture.h
-    bool is_repeating = false;  // the same content five times on end for 80 ms: perhaps about to be frozen
+    bool is_repeating = false;  // repeats for 60 ms, twice more than its way is: perhaps about to freeze
     double repeat_share = 0;    // of the frames of the last second
   };
   [[nodiscard]] const Signs& signs() const { return signs_; }

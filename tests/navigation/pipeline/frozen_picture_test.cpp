@@ -152,5 +152,39 @@ TEST(FrozenPicture, EndsWhenThePictureLivesAgain) {
   }
 }
 
+// Pictures of a source, each sent so many times, at so many a second.
+struct SentAs {
+  int rate = 60, times = 1;
+};
+
+// How long the last live picture is shown on until it is said to repeat; it lives for so many seconds before.
+double seconds_until_repeating(const SentAs& sent, double lives_s) {
+  FrozenPicture frozen(kFrozenAfter_s);
+  const int live = static_cast<int>(lives_s * sent.rate);
+  for (int i = 0; i < live + sent.rate; ++i) {
+    const int shown = std::min(i, live - 1) / sent.times;
+    const std::vector<std::uint8_t> gray = gray_of(scene(1.5 * shown, 1.5, static_cast<unsigned>(shown)));
+    (void)frozen.observe({gray.data(), kWidth, kHeight, kWidth}, i * 1'000'000'000LL / sent.rate);
+    if (!frozen.signs().is_repeating) continue;
+    EXPECT_GE(i, live) << sent.rate << ' ' << sent.times;
+    return static_cast<double>(i - live + 1) / sent.rate;
+  }
+  return 1;
+}
+
+// Guidance is to be gone a tenth of a second after a source began to hang; 80 ms leave 20 for the work on
+// the picture that tells it.
+TEST(FrozenPicture, IsSuspectedWithin80MsAtEveryRate) {
+  for (const int rate : {25, 30, 50, 60}) EXPECT_LE(seconds_until_repeating({rate, 1}, 2), 0.08) << rate;
+}
+
+// What a converter repeats by habit is no sign; that it hangs is told all the same, and so is a source that
+// hangs before anything is known of it.
+TEST(FrozenPicture, IsNotSuspectedForARepeatingConverter) {
+  for (const SentAs sent : {SentAs{60, 2}, SentAs{60, 4}, SentAs{30, 2}})
+    EXPECT_LE(seconds_until_repeating(sent, 3), 0.17) << sent.rate << ' ' << sent.times;
+  EXPECT_LE(seconds_until_repeating({30, 1}, 0.3), 0.17);
+}
+
 }  // namespace
 }  // namespace arthronaut::pipeline
