@@ -129,7 +129,13 @@ VerdictEvidence evidence_for(const RegistrationSummary& summary, const TouchedCu
   return evidence;
 }
 
-std::vector<std::string> doubts(const RegistrationSummary& summary, const TouchedCurves& touched) {
+// How the pose stands at the middle of the strokes, where it is known best, and how far off the target lies.
+struct AtStrokes {
+  double predicted_error_mm, lead_needed, target_off_mm;
+};
+
+std::vector<std::string> doubts(const RegistrationSummary& summary, const TouchedCurves& touched,
+                                const AtStrokes& at_strokes) {
   const VerdictEvidence& evidence = summary.evidence;
   constexpr double kMinInliers = 0.5;
   std::vector<std::string> reasons;
@@ -144,17 +150,26 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, const Touche
         summary.misfit_mm, touched.white_noise_mm));
   }
   if (summary.inlier_fraction < kMinInliers) reasons.push_back("too few of the points lie on this bone");
-  if (summary.predicted_tre_mm > kMaxError_mm) {
+  const double lead = std::min(evidence.lead, kLeadAlone);
+  const bool is_held = summary.predicted_tre_mm <= kMaxError_mm,
+             is_held_at_strokes = at_strokes.predicted_error_mm <= kMaxError_mm,
+             leads_enough = lead >= evidence.lead_needed,
+             leads_enough_at_strokes = lead >= at_strokes.lead_needed;
+  if (!is_held && !is_held_at_strokes)
     reasons.push_back("the touched patch does not hold the bone fast: touch other faces of the notch too");
-  }
   if (evidence.lead < kClearLead) {
     reasons.push_back("two poses fit almost alike: touch other faces of the notch too");
-  } else if (std::min(evidence.lead, kLeadAlone) < evidence.lead_needed) {
+  } else if (!leads_enough && !leads_enough_at_strokes) {
     reasons.push_back(
         files::format("strokes that miss the surface by %.2f mm fit another bone too: draw more of them, "
                       "on other faces of the notch too",
                       summary.misfit_mm));
   }
+  if ((!is_held && is_held_at_strokes) || (!leads_enough && leads_enough_at_strokes))
+    reasons.push_back(
+        files::format("the target lies %.0f mm from the middle of the strokes, %.2f mm is its predicted "
+                      "error: touch nearer to it",
+                      at_strokes.target_off_mm, summary.predicted_tre_mm));
   return reasons;
 }
 
@@ -227,7 +242,8 @@ RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& po
   summary.covariance =
       about_origin(covariance_about(best, touched.points, bone, pool.prior(), pivot), pivot) +
       touched.drift * touched.drift.transpose();
-  summary.predicted_tre_mm = predicted_error_mm(summary, options.target_in_bone_mm.value_or(pivot));
+  const Eigen::Vector3d target = options.target_in_bone_mm.value_or(pivot);
+  summary.predicted_tre_mm = predicted_error_mm(summary, target);
   constexpr double kNoRival = 10;
   summary.runner_up_ratio =
       pool.runner_up() ? std::min(kNoRival, std::exp(pool.runner_up()->cost - best.cost)) : kNoRival;
@@ -245,7 +261,12 @@ RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& po
   const double lead =
       pool.runner_up() ? lead_of(best.cost, pool.runner_up()->cost, touched.points) : kLeadAlone;
   summary.evidence = evidence_for(summary, touched, lead);
-  summary.reasons = doubts(summary, touched);
+  const double error_at_strokes_mm = predicted_error_mm(summary, pivot);
+  summary.reasons = doubts(summary, touched,
+                           {error_at_strokes_mm,
+                            lead_needed(summary.evidence.excess_misfit_mm, error_at_strokes_mm,
+                                        touched.white_noise_mm, touched.length_mm),
+                            (target - pivot).norm()});
   if (!ShaftCollision(bone, touched.points)
            .is_possible(best.bone_from_marker.matrix().cast<float>(),
                         best.bone_from_marker.translation_mm.cast<float>())) {

@@ -12,7 +12,7 @@ namespace arthronaut::registration {
 namespace {
 
 // The verdict on the right pose of a dry trial, which no other one rivals.
-RegistrationSummary judged(const geometry::Vector6d& drift) {
+RegistrationSummary judged(const geometry::Vector6d& drift, double target_off_mm = 0) {
   const PhantomBone& bone = phantom_bone();
   const auto trial = bone.trial(experiments::TrialNoise::Dry, 1);
   const WeightedPoints points = choose_points(trial.curves, 800);
@@ -21,7 +21,7 @@ RegistrationSummary judged(const geometry::Vector6d& drift) {
   pool.refine_all(points, 12);
   const double white_noise_mm = white_noise_of(strokes::oriented_points(trial.curves));
   RegistrationOptions options;
-  options.target_in_bone_mm = bone.target_mm;
+  options.target_in_bone_mm = bone.target_mm + target_off_mm * Eigen::Vector3d::UnitZ();
   return summarise(
       bone.prepared->data(), pool,
       {trial.curves, points, strokes::smoothed_length_mm(trial.curves), white_noise_mm, {}, drift}, options);
@@ -41,6 +41,17 @@ TEST(Confidence, JudgesByWhatTheCartilageLeavesUncertainToo) {
   EXPECT_NEAR(doubted.predicted_tre_mm, std::hypot(sure.predicted_tre_mm, kShift_mm), 1e-9);
   EXPECT_NEAR(doubted.covariance(1, 1) - sure.covariance(1, 1), kShift_mm * kShift_mm, 1e-9);
   EXPECT_GT(doubted.evidence.lead_needed, sure.evidence.lead_needed);
+}
+
+// What is wrong with a target far along the shaft is not the strokes: they hold the bone, but not there.
+TEST(Confidence, SaysThatTheTargetIsFarFromTheStrokes) {
+  for (const double off_mm : {200.0, 1000.0}) {
+    const RegistrationSummary far = judged(geometry::Vector6d::Zero(), off_mm);
+    EXPECT_FALSE(far.reliable) << off_mm;
+    EXPECT_THAT(far.reasons, testing::ElementsAre(testing::AllOf(testing::HasSubstr("the target lies"),
+                                                                 testing::HasSubstr("touch nearer to it"))))
+        << off_mm;
+  }
 }
 
 }  // namespace arthronaut::registration
