@@ -62,7 +62,8 @@ SentFile described(const fs::path& file) {
 
 std::vector<fs::path> dicom_files_of(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder))
+  // Links to folders are not followed: they may lead round.
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file() && entry.path().filename() != "DICOMDIR" &&
         images::has_dicom_mark(entry.path()))
       files.push_back(entry.path());

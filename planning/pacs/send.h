@@ -50,9 +50,9 @@ struct SendSummary {
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Stored; }
 };
 
-// All DICOM files among `paths`, those of folders by name; looked at before anything is sent. Throws
-// InvalidInput for a file that is none, a folder without any, or two files that say they are the same
-// instance; IoError.
+// All DICOM files among `paths`, those of folders and of the folders in them by name; looked at before
+// anything is sent. Throws InvalidInput for a file that is none, a folder without any, or two files that say
+// they are the same instance; IoError.
 [[nodiscard]] std::vector<SentFile> files_to_send(const std::vector<std::filesystem::path>& paths);
 
 // Sends each as it is encoded; one that is not compressed may be sent in another order of bytes, which is

@@ -32,6 +32,13 @@ TEST(PacsSend, FilesAreLookedAtFirst) {
   files::write_atomically(folder / "ct/letter.txt", "Dear colleague");  // passed over
   fs::create_directory(folder / "empty");
   EXPECT_EQ(files_to_send({folder / "ct"}).size(), std::size_t{kImageCount});
+  // A study lies in a folder a series, as many programs write it.
+  fs::create_directories(folder / "study/a/b");
+  fs::rename(folder / "ct", folder / "study/a/b/ct");
+  fs::create_directory_symlink(folder / "study", folder / "study/a/round");
+  EXPECT_EQ(files_to_send({folder / "study"}).size(), std::size_t{kImageCount});
+  fs::rename(folder / "study/a/b/ct", folder / "ct");
+  EXPECT_THAT(refusal_of({folder / "study"}), HasSubstr("study: holds no DICOM file"));
   EXPECT_THAT(refusal_of({folder / "ct", folder / "letter.txt"}),
               HasSubstr("letter.txt: is not a DICOM file"));
   EXPECT_THAT(refusal_of({folder / "none"}), HasSubstr("none: does not exist"));
