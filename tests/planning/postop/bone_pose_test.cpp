@@ -54,12 +54,12 @@ TEST_P(AnyLie, BothBonesAreFound) {
 }
 INSTANTIATE_TEST_SUITE_P(Turns, AnyLie, ::testing::Values(0, 35, 170));
 
-// A cortex that is thin on both sides of a bone and thick in front and behind: through the blur its edges lie
-// further out where it is thin, as if the bone were broader than it was. It is the patient's all the same.
-TEST(BonePose, AnUnevenCortexIsNoOtherBone) {
+// The femur with a cortex that is thin on both sides and thick in front and behind: through the blur its
+// edges lie further out where it is thin, as if the bone were broader than it was.
+images::Volume with_uneven_cortex(const RigidTransform& truth) {
   const geometry::TriangleMesh& femur = knee().femur.mesh;
   const geometry::Surface surface(femur);
-  const RigidTransform truth = test::lying(20, {1, 2, 3}, {30, -20, 60}), plan_from_postop = truth.inverse();
+  const RigidTransform plan_from_postop = truth.inverse();
   const Eigen::Vector3d middle = geometry::bounds_of(femur).center_mm();
   test::KnownCtOptions options = half_fine();
   options.blur_mm = 0.5;
@@ -76,10 +76,24 @@ TEST(BonePose, AnUnevenCortexIsNoOtherBone) {
             volume.values[v] = static_cast<float>(options.marrow_hu);
         }
   };
-  const FoundBone found =
-      found_in(test::postop_ct({femur}, {}, truth, options), knee(), bones::BoneKind::Femur);
+  return test::postop_ct({femur}, {}, truth, options);
+}
+
+// It is the patient's all the same. One that is broader or narrower by a hundredth is not, which such a
+// cortex hides, or makes look wrong the other way round.
+TEST(BonePose, AnUnevenCortexIsNoOtherBoneAndHidesNone) {
+  const RigidTransform truth = test::lying(20, {1, 2, 3}, {30, -20, 60});
+  const images::Volume volume = with_uneven_cortex(truth);
+  const FoundBone found = found_in(volume, knee(), bones::BoneKind::Femur);
   EXPECT_TRUE(found.reliable) << testing::PrintToString(found.reasons);
   EXPECT_LT(off_mm(found, truth, knee().femoral_tunnel.entry_mm), 0.15);
+  for (const double broader : {0.99, 1.01}) {
+    auto other = knee();
+    for (Eigen::Vector3d& p : other.femur.mesh.vertices_mm) p.x() *= broader;
+    const FoundBone refused = found_in(volume, other, bones::BoneKind::Femur);
+    EXPECT_NEAR(refused.pose.stretch, 0.01, 0.002) << broader;
+    EXPECT_THAT(refused.reasons, testing::Contains(HasSubstr("longer or shorter"))) << broader;
+  }
 }
 
 // Other knees, so much alike that nearly all of their surface lies within 1 mm of this one's; and the other
