@@ -36,6 +36,12 @@ struct TimeLineZoom {
 // `least` of the session, all of it at most.
 [[nodiscard]] TimeLineZoom zoomed(const TimeLineZoom& zoom, double about, double factor, double least);
 
+struct NoteRoom {
+  float from = 0, to = 0;  // free of other notes, within the panel
+};
+// Where a mark's note begins: to its right, or to its left where it would run out of the panel. Pixels.
+[[nodiscard]] float note_left(float mark_x, float width, float gap, const NoteRoom& room);
+
 // Tracks, offset, what happened, marks, differences and the cursor; the frame that the mouse asks for. The
 // wheel zooms.
 [[nodiscard]] std::optional<std::size_t> draw_time_line(const widgets::Ui& ui, const widgets::Rect& area,

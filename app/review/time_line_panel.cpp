@@ -157,9 +157,11 @@ void draw_moment_row(const widgets::Ui& ui, ImDrawList& draw, const Scale& scale
 }
 
 void draw_mark_row(const widgets::Ui& ui, ImDrawList& draw, const Scale& scale, const Row& row,
-                   const ReviewScreen& screen) {
+                   const ReviewScreen& screen, float end) {
   ImFont* const font = ui.theme.body;
-  float free_from = 0;
+  float free_from = scale.left;
+  // A note that fits on neither side of its mark is cut off; it stands whole in the list of what happened.
+  draw.PushClipRect({scale.left, row.y}, {end, row.y + row.height}, true);
   for (const recording::SessionMark& mark : screen.marks) {
     const auto at = static_cast<double>(screen.timeline().at_index(mark.frame));
     if (!scale.shows(at)) continue;
@@ -168,11 +170,13 @@ void draw_mark_row(const widgets::Ui& ui, ImDrawList& draw, const Scale& scale, 
                            {x, row.top() + ui.theme.px(12)}, widgets::kCaution);
     draw.AddLine({x, row.top()}, {x, row.bottom()}, widgets::kCaution, ui.theme.px(2));
     if (x < free_from) continue;  // notes never lie over each other
-    const float text_x = x + ui.theme.px(16);
+    const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, mark.note.c_str()).x;
+    const float text_x = note_left(x, width, ui.theme.px(16), {free_from, end});
     draw.AddText(font, font->FontSize, {text_x, row.y + (row.height - font->FontSize) / 2}, widgets::kCaution,
                  mark.note.c_str());
-    free_from = text_x + font->CalcTextSizeA(font->FontSize, 1e9F, 0, mark.note.c_str()).x + ui.theme.px(12);
+    free_from = std::max(x, text_x + width) + ui.theme.px(12);
   }
+  draw.PopClipRect();
 }
 
 std::vector<Stretch> differing(const ReviewScreen& screen) {
@@ -203,6 +207,11 @@ std::string clock_text(double seconds) {
   const std::string rest = std::to_string(tenths / 10 % 60);
   return std::to_string(minutes) + ":" + (rest.size() < 2 ? "0" : "") + rest + "." +
          std::to_string(tenths % 10);
+}
+
+float note_left(float mark_x, float width, float gap, const NoteRoom& room) {
+  const float right = mark_x + gap, left = mark_x - gap - width;
+  return right + width <= room.to || left < room.from ? right : left;
 }
 
 TimeLineZoom zoomed(const TimeLineZoom& zoom, double about, double factor, double least) {
@@ -254,7 +263,7 @@ std::optional<std::size_t> draw_time_line(const widgets::Ui& ui, const widgets::
   draw_moment_row(ui, draw, scale, row, screen);
   next(1);
   draw_name(ui, draw, inner.x, row, "Marks");
-  draw_mark_row(ui, draw, scale, row, screen);
+  draw_mark_row(ui, draw, scale, row, screen, inner.x + inner.width);
   next(1);
   draw_name(ui, draw, inner.x, row, "Today differs");
   draw.AddRectFilled({scale.left, row.top()}, {scale.left + scale.width, row.bottom()}, kTrough);

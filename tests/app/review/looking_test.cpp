@@ -136,6 +136,14 @@ TEST_F(Looking, WritesNoMarkOverWhatItCannotRead) {
   EXPECT_FALSE(MarkBook(folder_.path(), "is open elsewhere").problem().empty());
 }
 
+// Within the panel where there is room on either side, and over no other note.
+TEST(TimeLine, NotesStayInThePanel) {
+  const NoteRoom room{100, 500};
+  EXPECT_EQ(note_left(200, 150, 10, room), 210);
+  EXPECT_EQ(note_left(490, 150, 10, room), 490 - 10 - 150);
+  EXPECT_EQ(note_left(200, 390, 10, room), 210) << "fits nowhere: cut off at its end";
+}
+
 // The place under the mouse stays under it; never less than asked for, never more than all.
 TEST(TimeLine, ZoomsAboutTheMouse) {
   TimeLineZoom zoom = zoomed({}, 0.25, 0.5, 0.01);
