@@ -61,9 +61,8 @@ void open_log(const Context& context, const std::vector<std::string>& arguments)
   log::info(line);
 }
 
-// Parses and does what was asked for; every exception but those of the parser becomes an exit code.
-int run_parsed(CLI::App& app, Context& context, const std::vector<std::string>& arguments,
-               const std::function<int()>& open) {
+int parse_and_do(CLI::App& app, const Context& context, const std::vector<std::string>& arguments,
+                 const std::function<int()>& open) {
   try {
     std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // what CLI11 expects
     app.parse(reversed);
@@ -73,6 +72,17 @@ int run_parsed(CLI::App& app, Context& context, const std::vector<std::string>& 
         error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
     app.exit(error);
     return asked_for ? kDone : kWrongUsage;
+  }
+}
+
+// Parses and does what was asked for; every exception but those of the parser becomes an exit code.
+int run_parsed(CLI::App& app, Context& context, const std::vector<std::string>& arguments,
+               const std::function<int()>& open) {
+  try {
+    const int exit_code = parse_and_do(app, context, arguments, open);
+    // What was said there is lost, and whoever reads it on must know.
+    if (!std::cout.flush()) throw IoError("standard output: cannot write");
+    return exit_code;
   } catch (const InvalidInput& error) {
     return report_error(error, kInvalidInput);
   } catch (const IoError& error) {

@@ -200,11 +200,20 @@ TEST(OutputFile, AFullDiskBehindStandardOutputIsTold) {
   const test::TemporaryFolder folder;
   const std::string knee = folder / "Knee.arthro";
   ASSERT_EQ(run_program({"phantom", "-o", knee}).exit_code, 0);
-  for (const std::string command : {"landmarks", "plan"}) {
-    const auto result = run_program({command, knee, "--json"}, {.output = "/dev/full"});
-    EXPECT_EQ(result.exit_code, 3) << command;
-    EXPECT_THAT(result.errors, HasSubstr("standard output: cannot write")) << command;
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"landmarks", knee, "--json"},
+                                                    {"plan", knee, "--json"},
+                                                    {"plan", knee},
+                                                    {"cases", "--add", knee},
+                                                    {"plan", "--help"},
+                                                    {"--version"}}) {
+    const auto result = run_program(arguments, {.output = "/dev/full"});
+    EXPECT_EQ(result.exit_code, 3) << testing::PrintToString(arguments);
+    EXPECT_THAT(result.errors, HasSubstr("standard output: cannot write"))
+        << testing::PrintToString(arguments);
   }
+  // Nothing is lost where nothing is said.
+  EXPECT_EQ(run_program({"phantom", "--quiet", "-o", folder / "b.arthro"}, {.output = "/dev/full"}).exit_code,
+            0);
 }
 
 }  // namespace
