@@ -153,11 +153,15 @@ void add_pivot_command(CLI::App& app, Context& context) {
       "Find the tip of a tool that was pivoted about a fixed point (or, with --spin, its axis)",
       "arthronaut pivot --marker 2 --poses poses.csv -o tip.json");
   const auto arguments = std::make_shared<PivotArguments>();
-  subcommand->add_option("--marker", arguments->marker_id, "Id of the tool's marker")->required();
+  subcommand->add_option("--marker", arguments->marker_id, "Id of the tool's marker")
+      ->required()
+      ->check(a_marker_id());
   subcommand->add_option("--poses", arguments->poses, "Poses as written by track")->required();
   CLI::Option* world =
-      subcommand->add_option("--world", arguments->world_id,
-                             "Id of the world marker (default: 0 or 1, whichever is seen with the tool)");
+      subcommand
+          ->add_option("--world", arguments->world_id,
+                       "Id of the world marker (default: 0 or 1, whichever is seen with the tool)")
+          ->check(a_marker_id());
   subcommand
       ->add_flag("--camera-fixed", arguments->camera_fixed, "The scope was clamped: use no world marker")
       ->excludes(world);

@@ -104,7 +104,8 @@ void add_ruler_options(CLI::App& command, RulerArguments& arguments) {
                   .add_option("--markers", arguments.ids,
                               "The ruler's two ids, first,second, where the tools declare more than two")
                   ->delimiter(',')
-                  ->expected(2);
+                  ->expected(2)
+                  ->check(a_marker_id());
   auto* spacing =
       command
           .add_option("--spacing-mm", arguments.spacing_mm,

@@ -137,6 +137,11 @@ TEST(CommandLine, AValueThatCannotBeRightIsWrongUsage) {
     expect_refused({command, "-o", "k"}, {"--seed", "-1"}, "--seed");
   expect_refused(with_bone, {"--seed", "-1"}, "--seed");
   expect_refused({"markers", "-o", "m.pdf"}, {"--ids", "3,50"}, "--ids");
+  expect_refused({"pivot", "--poses", "p.csv", "-o", "t.json"}, {"--marker", "99"}, "--marker");
+  expect_refused({"pivot", "--marker", "2", "--poses", "p.csv", "-o", "t.json"}, {"--world", "50"},
+                 "--world");
+  expect_refused({"check-fluid", "--camera", "c.json", "--tools", "t.json", "r.mkv"}, {"--markers", "5,99"},
+                 "--markers");
   expect_refused({"markers", "-o", "m.pdf"}, {"--size-mm", "101"}, "--size-mm");
   expect_refused({"calibrate", "--square-mm", "1.5", "-o", "c.json"}, {"a.png", "b.png"}, "three pictures");
   expect_refused({"rig", "--poses", "p.csv", "--tool", "probe", "-o", "t.json"}, {"--markers", "5,5"},
