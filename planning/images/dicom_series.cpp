@@ -26,8 +26,22 @@ bool is_aside(const DicomSlices& slices, const DicomSlices& volume) {
   return slices.size() == 1 && !is_like_a_slice;
 }
 
+// Other volumes are files of their own, each given by its name.
+[[noreturn]] void refuse_without_dicom(const fs::path& source, const DicomStudy& study) {
+  constexpr std::size_t kMostNamed = 5;
+  std::string names;
+  std::size_t volumes = 0;
+  for (const fs::path& other : study.others) {
+    if (!is_volume_source(other) || ++volumes > kMostNamed) continue;
+    names += (names.empty() ? "" : ", ") + other.string();
+  }
+  if (volumes > kMostNamed) names += " and " + std::to_string(volumes - kMostNamed) + " more";
+  throw InvalidInput(source, "",
+                     "holds no DICOM file" + (volumes > 0 ? "; name the volume in it itself: " + names : ""));
+}
+
 DicomSlices chosen_series(const fs::path& source, DicomStudy study, const std::string& wanted) {
-  if (study.dicom_count == 0) throw InvalidInput(source, "", "holds no DICOM file");
+  if (study.dicom_count == 0) refuse_without_dicom(source, study);
   if (study.series.empty()) throw InvalidInput(source, "", "holds DICOM files, but no image among them");
   std::string list;
   std::vector<DicomSlices*> matching;

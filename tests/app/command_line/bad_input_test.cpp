@@ -16,6 +16,7 @@ using test::run_program;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class BadInput : public ::testing::Test {
  protected:
@@ -93,6 +94,17 @@ TEST_F(BadInput, EmptyFolderToImport) {
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.errors, HasSubstr("empty"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "knee.arthro"));
+}
+
+// The volume is there: it only has to be named.
+TEST_F(BadInput, FolderOfVolumesThatAreNoDicom) {
+  std::filesystem::create_directory(folder_ / "scans");
+  for (const char* name : {"knee.nrrd", "knee.nii.gz", "letter.txt"})
+    test::write_file(folder_ / "scans" / name, "NRRD0004");
+  const auto result = run_program({"import", folder_ / "scans", "-o", folder_ / "knee.arthro"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, AllOf(HasSubstr("scans: holds no DICOM file"), HasSubstr("scans/knee.nrrd"),
+                                   HasSubstr("scans/knee.nii.gz"), Not(HasSubstr("letter.txt"))));
 }
 
 TEST_F(BadInput, MeshThatIsCutOffOrHoldsNoNumber) {
