@@ -187,10 +187,13 @@ void refuse_folder(const fs::path& folder) {
 void refuse_missing_side(const fs::path& folder, const fs::path& source, const BoneImportOptions& options) {
   if (options.side || side_in_name(source) || fs::exists(folder / "case.json") || !fs::exists(source)) return;
   const bool is_mesh = bones::is_mesh_file(source) && !fs::is_directory(source);
-  const bool says_kind = options.kind || bone_kind_in_name(source);  // else that is asked for first
+  if (is_mesh && !options.kind && !bone_kind_in_name(source))
+    throw InvalidInput(source, "",
+                       "its name says neither which bone it is nor of which knee: add --bone femur or --bone "
+                       "tibia, and --side left or --side right");
   // Two bones may tell it together, by their shapes.
   const bool is_one_label = !options.labels.empty() && (options.labels.size() == 1 || options.kind);
-  if (is_one_label || (is_mesh && says_kind)) refuse_unknown_side(source);
+  if (is_one_label || is_mesh) refuse_unknown_side(source);
 }
 
 cases::Case add_to_case(const fs::path& folder, const BoneImport& import, const std::string& name,

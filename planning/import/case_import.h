@@ -12,8 +12,8 @@ namespace arthronaut::importing {
 // Both before the import's work, not after it. Throws what add_to_case() will of a folder that is no case:
 // InvalidInput where it holds something else, IoError where none can be made.
 void refuse_folder(const std::filesystem::path& folder);
-// Throws InvalidInput when add_to_case() will need a side that nothing can say. A volume may still show it by
-// its fibula.
+// Throws InvalidInput when add_to_case() will need a side that nothing can say; a mesh that does not say
+// which bone it is either is asked for both. A volume may still show its side by its fibula.
 void refuse_missing_side(const std::filesystem::path& folder, const std::filesystem::path& source,
                          const BoneImportOptions& options);
 

@@ -74,6 +74,21 @@ TEST(CaseImport, RefusesAFolderBeforeTheWork) {
   EXPECT_NO_THROW(refuse_folder(folder / "Old.arthro"));
 }
 
+// Asked for one after the other, a person would start twice more.
+TEST(CaseImport, BoneAndSideAreAskedForAtOnce) {
+  const TemporaryFolder folder;
+  for (const char* name : {"bone.stl", "femur.stl", "right.stl"}) test::write_bytes(folder / name, "solid");
+  const auto asked = [&](const char* name) {
+    return message_of<InvalidInput>([&] { refuse_missing_side(folder / "a", folder / name, {}); });
+  };
+  EXPECT_THAT(asked("bone.stl"),
+              AllOf(HasSubstr("bone.stl: "), HasSubstr("--bone femur"), HasSubstr("--side left")));
+  EXPECT_THAT(asked("femur.stl"), AllOf(HasSubstr("--side left"), Not(HasSubstr("--bone"))));
+  EXPECT_NO_THROW(refuse_missing_side(folder / "a", folder / "right.stl", {})) << "the bone alone: later";
+  cases::save_case(folder / "Old.arthro", {});
+  EXPECT_NO_THROW(refuse_missing_side(folder / "Old.arthro", folder / "bone.stl", {})) << "the case has one";
+}
+
 TEST(CaseImport, WhatItRefusesStaysAsItWas) {
   const TemporaryFolder folder;
   test::write_bytes(folder / "letter.txt", "Dear colleague");
