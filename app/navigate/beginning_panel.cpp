@@ -2,31 +2,27 @@
 
 #include <imgui_stdlib.h>
 
-#include <algorithm>
+#include <cmath>
 
 namespace arthronaut::navigate {
 
 namespace {
 
-// The names in small letters, what they say in letters for afar, under each other.
-struct CardPlan {
-  ImFont *text, *name;
-  float height = 0;
-};
+constexpr float kSmaller = 0.94F;  // from one size of letters to the next
 
-CardPlan plan_of(const widgets::Ui& ui, float width, const Card& card, ImFont* text) {
-  CardPlan plan{text, ui.theme.title};
-  const auto add = [&](ImFont* font, const std::string& words) {
-    if (!words.empty()) plan.height += font->CalcTextSizeA(font->FontSize, 1e9F, width, words.c_str()).y;
+// The names in small letters, what they say in letters for afar, under each other.
+float height_of(const widgets::Ui& ui, float width, const Card& card, float letters_px) {
+  float height = ui.theme.px(24);
+  const auto add = [&](const std::string& words) {
+    if (!words.empty()) height += ui.theme.afar->CalcTextSizeA(letters_px, 1e9F, width, words.c_str()).y;
   };
-  add(text, card.title);
+  add(card.title);
   for (const CardLine& line : card.lines) {
-    plan.height += plan.name->FontSize + ui.theme.px(8);
-    add(text, line.text);
+    height += ui.theme.title->FontSize + ui.theme.px(8);
+    add(line.text);
   }
-  add(text, card.keys);
-  plan.height += ui.theme.px(24);
-  return plan;
+  add(card.keys);
+  return height;
 }
 
 }  // namespace
@@ -39,27 +35,29 @@ void draw_card(const widgets::Ui& ui, const widgets::Rect& area, const Card& car
   draw.PushClipRect(area.min(), area.max(), true);
   widgets::Rect box = area.inset(ui.theme.px(16));
   // In smaller letters where there is too much of it: nothing of what is confirmed may be cut off.
-  CardPlan plan = plan_of(ui, box.width, card, ui.theme.afar);
-  if (plan.height > box.height) plan = plan_of(ui, box.width, card, ui.theme.title);
-  if (plan.height > box.height) plan = plan_of(ui, box.width, card, ui.theme.strong);
-  ui.log.note_state("card_letters", plan.text == ui.theme.afar ? "afar" : "smaller");
-  const auto put = [&](ImFont* font, ImU32 color, const std::string& words, float indent) {
+  ImFont* const name = ui.theme.title;
+  float letters_px = ui.theme.afar->FontSize;
+  while (letters_px > ui.theme.strong->FontSize && height_of(ui, box.width, card, letters_px) > box.height)
+    letters_px *= kSmaller;
+  ui.log.note_state("card_letters", std::to_string(std::lround(100 * letters_px / ui.theme.afar->FontSize)));
+  const auto put = [&](ImFont* font, float size_px, ImU32 color, const std::string& words, float indent) {
     if (words.empty()) return;
-    draw.AddText(font, font->FontSize, {box.x + indent, box.y}, color, words.c_str(), nullptr, box.width);
-    (void)box.cut_top(font->CalcTextSizeA(font->FontSize, 1e9F, box.width, words.c_str()).y);
+    draw.AddText(font, size_px, {box.x + indent, box.y}, color, words.c_str(), nullptr, box.width);
+    (void)box.cut_top(font->CalcTextSizeA(size_px, 1e9F, box.width, words.c_str()).y);
   };
-  put(plan.text, widgets::kText, card.title, 0);
+  put(ui.theme.afar, letters_px, widgets::kText, card.title, 0);
   for (const CardLine& line : card.lines) {
     (void)box.cut_top(ui.theme.px(8));
     const bool is_quiet = line.severity == widgets::Severity::Quiet;
-    const float radius = plan.name->FontSize * 0.4F;
+    const float radius = name->FontSize * 0.4F;
     if (!is_quiet)
-      widgets::draw_sign(draw, {box.x + radius, box.y + plan.name->FontSize / 2}, radius, line.severity);
-    put(plan.name, widgets::kQuietText, line.name, is_quiet ? 0 : 3 * radius);
-    put(plan.text, is_quiet ? widgets::kText : widgets::color_of(line.severity), line.text, 0);
+      widgets::draw_sign(draw, {box.x + radius, box.y + name->FontSize / 2}, radius, line.severity);
+    put(name, name->FontSize, widgets::kQuietText, line.name, is_quiet ? 0 : 3 * radius);
+    put(ui.theme.afar, letters_px, is_quiet ? widgets::kText : widgets::color_of(line.severity), line.text,
+        0);
   }
   (void)box.cut_top(ui.theme.px(10));
-  put(plan.text, widgets::kAccent, card.keys, 0);
+  put(ui.theme.afar, letters_px, widgets::kAccent, card.keys, 0);
   draw.PopClipRect();
 }
 
