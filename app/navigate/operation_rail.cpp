@@ -77,6 +77,12 @@ Missing missing_of_tools(const Known& known) {
   return known.guide_is_known() ? Missing::Nothing : Missing::GuideAxis;
 }
 
+// What was registered before patient, knee and plan were confirmed counts from then on.
+Missing missing_of_registration(const Known& known) {
+  if (!known.stands()) return Missing::Registration;
+  return known.state.time_out == operation::TimeOut::Due ? Missing::TimeOut : Missing::Nothing;
+}
+
 Missing first_of(std::initializer_list<Missing> wanted) {
   const auto found =
       std::find_if(wanted.begin(), wanted.end(), [](Missing m) { return m != Missing::Nothing; });
@@ -100,12 +106,12 @@ Missing condition_of(Step step, const Known& known) {
     case Step::Register:
       return state.registration->point_count > 0 || known.stands() ? Missing::Nothing : Missing::Strokes;
     case Step::Verify:
-      return known.stands() ? Missing::Nothing : Missing::Registration;
+      return missing_of_registration(known);
     case Step::Guide: {
       const Missing time_out =
           state.time_out == operation::TimeOut::Due ? Missing::TimeOut : Missing::Nothing;
       const Missing guide = known.guide_is_known() ? Missing::Nothing : Missing::GuideAxis;
-      const Missing registration = known.stands() ? Missing::Nothing : Missing::Registration;
+      const Missing registration = missing_of_registration(known);
       const Missing check = state.guide_check.may_guide() ? Missing::Nothing : Missing::GuideCheck;
       const Missing pictures = known.have_ended() ? Missing::Source : Missing::Nothing;
       return first_of({missing_of_plan(known), time_out, guide, registration, check, pictures});
@@ -125,13 +131,15 @@ Missing rest_of(Step step, const Known& known) {
     case Step::Calibrate:
       return missing_of_camera(known);
     case Step::WorldMarker:
-      return missing_of_marker(known);
+      // Taken out at the end it has done its work.
+      return known.context.marker_is_out && known.was_guided_to() ? Missing::Nothing
+                                                                  : missing_of_marker(known);
     case Step::Tools:
       return missing_of_tools(known);
     case Step::Digitise:
       return known.stands() || known.was_guided_to() ? Missing::Nothing : Missing::Strokes;
     case Step::Register:
-      return known.stands() || known.was_guided_to() ? Missing::Nothing : Missing::Registration;
+      return known.was_guided_to() ? Missing::Nothing : missing_of_registration(known);
     case Step::Verify: {
       if (known.was_guided_to()) return Missing::Nothing;
       if (state.verification == operation::Verification::NotYet) return Missing::Touches;

@@ -118,6 +118,11 @@ std::string assumed_of(const operation::RegistrationState& state) {
   return text;
 }
 
+bool waits_for_time_out(const operation::OperationState& state) {
+  return state.time_out == operation::TimeOut::Due &&
+         state.registration->in_force.standing == Standing::Stands;
+}
+
 bool is_verified(const operation::RegistrationState& state) { return state.in_force.is_verified; }
 
 std::vector<SeverityText> numbers_of(const operation::RegistrationState& state) {
@@ -136,7 +141,7 @@ std::vector<SeverityText> numbers_of(const operation::RegistrationState& state) 
            (is_candidate ? ", " + widgets::plus_minus(state.online->predicted_angle_deg) + "\u00B0" : "")});
   const double ratio = pose->runner_up_ratio;
   if (ratio >= kNoRivalRatio)
-    rows.push_back({good, "Next best pose", "none comes near"});
+    rows.push_back({good, "No other pose", "comes near"});
   else
     rows.push_back(
         {ratio < kRivalRatio ? Severity::Bad
@@ -239,8 +244,14 @@ RegistrationWords words_of(const theatre::LiveState& live) {
                           missing_of(state),  assumed_of(state),
                           numbers_of(state),  touch_of(state),
                           stroke_rows(state), history_rows(state, now_of(*live.operation))};
-  if (!is_of_source_before(live)) return words;
-  words.state = {Severity::Quiet, "No picture yet", "What guides by its pictures is judged when they come."};
+  if (is_of_source_before(live))
+    words.state = {Severity::Quiet, "No picture yet",
+                   "What guides by its pictures is judged when they come."};
+  else if (waits_for_time_out(*live.operation))
+    words.state = {Severity::Caution, "Waits for the time-out",
+                   "What was drawn counts once patient, knee and plan are confirmed."};
+  else
+    return words;
   words.progress = 0;
   words.missing.clear();
   words.assumed.clear();

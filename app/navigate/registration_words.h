@@ -55,6 +55,9 @@ struct StrokeRow {
 [[nodiscard]] std::vector<SeverityText> history_rows(const operation::RegistrationState& state,
                                                      const std::optional<registration::Provenance>& now);
 
+// A registration stands that was found before the time-out was confirmed: it counts when it is.
+[[nodiscard]] bool waits_for_time_out(const operation::OperationState& state);
+
 // All of the above at once, to be kept until the status or the source changes.
 struct RegistrationWords {
   SeverityText state;
@@ -65,8 +68,9 @@ struct RegistrationWords {
   std::vector<StrokeRow> strokes;
   std::vector<SeverityText> history;
 };
-// While another source is being opened, or could not be, nothing in them is good: nobody knows yet what its
-// pictures are of.
+// Nothing in them is good, and no number of the registration among them, while another source is being
+// opened, or could not be: nobody knows yet what its pictures are of; nor before the time-out of a live
+// source: what was drawn by then may be of another patient.
 [[nodiscard]] RegistrationWords words_of(const theatre::LiveState& live);
 
 // How far a touched point may lie off the bone to be good; beyond caution it is bad.

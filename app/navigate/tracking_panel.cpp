@@ -129,6 +129,8 @@ void draw_registration_row(const widgets::Ui& ui, const NavigateScreen& screen) 
     return widgets::status_row(
         ui, Severity::Bad, trouble.headline,
         known.in_force.registration->reasons.empty() ? "" : known.in_force.registration->reasons.front());
+  if (waits_for_time_out(state))
+    return widgets::status_row(ui, Severity::Caution, "Registration", "waits for the time-out");
   const bool is_skipped = state.verification == operation::Verification::Skipped;
   // In one line on the smallest screen: how well it fits stands in the registration panel.
   widgets::status_row(ui, is_skipped ? Severity::Caution : Severity::Good, "Registration",

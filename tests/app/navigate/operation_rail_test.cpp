@@ -127,6 +127,8 @@ TEST(OperationRail, LeadsThroughTheNineSteps) {
   expect_whole(rail);
   EXPECT_EQ(state_of(rail, Step::Finish), StepState::Done);
   EXPECT_EQ(state_of(rail, Step::Register), StepState::Done) << "it was, and is not asked for again";
+  EXPECT_EQ(state_of(rail, Step::WorldMarker), StepState::Done)
+      << "it was placed, and is out as it should be";
 }
 
 // A tunnel that was only said to be drilled brings the finish, and no tick to a step that nobody took.
@@ -215,7 +217,10 @@ TEST(OperationRail, NamesWhatIsMissing) {
   Course due;
   due.verify();
   due.state.time_out = operation::TimeOut::Due;
-  EXPECT_EQ(missing_of(due.rail(), Step::Guide), Missing::TimeOut);
+  for (const Step step : {Step::Register, Step::Verify, Step::Guide}) {
+    EXPECT_EQ(missing_of(due.rail(), step), Missing::TimeOut);
+    EXPECT_NE(state_of(due.rail(), step), StepState::Done);
+  }
 
   Course bumped;
   bumped.verify();

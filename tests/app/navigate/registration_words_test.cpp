@@ -41,6 +41,7 @@ struct Known {
   operation::RegistrationState registration;
   std::vector<operation::RegistrationEntry> history{entry_of(sources::SourceKind::Live)};
   theatre::LiveState live;
+  operation::TimeOut time_out = operation::TimeOut::Confirmed;
 
   Known() {
     auto online = std::make_shared<registration::OnlineResult>();
@@ -73,6 +74,7 @@ struct Known {
     auto operation = std::make_shared<operation::OperationState>();
     operation->source = std::make_shared<const operation::SourceSetup>(source_of(sources::SourceKind::Live));
     operation->registration = std::make_shared<const operation::RegistrationState>(known);
+    operation->time_out = time_out;
     theatre::LiveState whole = live;
     whole.operation = operation;
     return words_of(whole);
@@ -93,7 +95,7 @@ TEST(RegistrationWords, ShowsTheFiguresOfWhatStands) {
   ASSERT_EQ(words.numbers.size(), 2U);
   EXPECT_EQ(words.numbers[0].text, widgets::plus_minus(0.7) + " mm");
   EXPECT_EQ(words.numbers[0].severity, Severity::Good);
-  EXPECT_EQ(words.numbers[1].text, "none comes near");
+  EXPECT_EQ(words.numbers[1].name + " " + words.numbers[1].text, "No other pose comes near");
   EXPECT_EQ(words.state.name, "Verified");
   EXPECT_EQ(words.strokes.at(0).text.severity, Severity::Good);
 }
@@ -179,6 +181,22 @@ TEST(RegistrationWords, Hazard2NothingIsGoodBeforeTheFirstPictureOfASource) {
   }
   known.live.picture = std::make_shared<camera::Frame>();  // it gave some before it failed
   EXPECT_TRUE(is_good(known.words()));
+}
+
+// Whoever scratches before the time-out loses nothing of it, and reads no number of a patient whom nobody has
+// confirmed.
+TEST(RegistrationWords, Hazard20NothingIsGoodBeforeTheTimeOut) {
+  Known known;
+  known.time_out = operation::TimeOut::Due;
+  const RegistrationWords words = known.words();
+  EXPECT_EQ(words.state.name, "Waits for the time-out");
+  EXPECT_TRUE(words.numbers.empty());
+  EXPECT_FALSE(is_good(words));
+  known.time_out = operation::TimeOut::Confirmed;
+  EXPECT_EQ(known.words().state.name, "Verified");
+  known.time_out = operation::TimeOut::Due;
+  known.stand(Standing::Void);
+  EXPECT_NE(known.words().state.name, "Waits for the time-out") << "that alone would not bring it back";
 }
 
 }  // namespace
