@@ -9,6 +9,7 @@
 #include "app/navigate/known_streams.h"
 #include "app/navigate/overlay_lines.h"
 #include "app/navigate/picture_keeping.h"
+#include "app/navigate/tracking_words.h"
 #include "app/scene/scene_camera.h"
 #include "navigation/camera/medium.h"
 #include "navigation/sources/connected_cameras.h"
@@ -91,6 +92,10 @@ void NavigateView::enter() {
   } catch (const std::runtime_error& error) {  // what is wrong with them is a step that is not done
     notice_ = error.what();
   }
+}
+
+std::string NavigateView::notice() const {
+  return notice_.empty() ? record_notice(*live_, bones_.keeps_video()) : notice_;
 }
 
 void NavigateView::end_source() {

@@ -51,7 +51,7 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] bool is_busy() const override;
   [[nodiscard]] bool has_running_work() const override { return is_running(); }
   [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
-  [[nodiscard]] std::string notice() const override { return notice_; }
+  [[nodiscard]] std::string notice() const override;
   [[nodiscard]] bool awaits_text() const override { return depth_.wants_focus() || cameras_.wants_text(); }
 
   // For a mode that borrows this screen for a source of its own, an exercise. Why it cannot on this bone:
@@ -98,6 +98,7 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] bool is_drilled(const std::vector<FinishedBone>& bones) const;  // of finished_bones()
   [[nodiscard]] bool finishes() const;  // all tunnels of this bone are drilled
   [[nodiscard]] bool takes_guide_in_simulation() const;
+  [[nodiscard]] bool is_in_wrong_medium() const;
   [[nodiscard]] bool must_set_up() const;  // before pictures can be navigated
   [[nodiscard]] bool simulates() const;    // the source that is started next is the simulated operation
   void take_touch(bool is_control_point);

@@ -62,6 +62,7 @@ class TheatreBones {
   void offer_plans();
   // Of all operations, from now on; see theatre::OperationRun.
   void keep_video(bool on);
+  [[nodiscard]] bool keeps_video() const { return keeps_video_; }  // as it was asked for
   // Of all operations, from the next source of each on.
   void keep_pictures_as(recording::PicturesAs as);
   [[nodiscard]] recording::PicturesAs pictures_as() const { return pictures_as_; }

@@ -8,8 +8,15 @@ namespace {
 
 using widgets::Severity;
 
+// Without the folder: that the record is this operation's goes without saying.
+std::string record_trouble_of(const theatre::LiveState& live) {
+  const std::string folder = live.session_folder.string() + ": ";
+  return live.record_trouble.starts_with(folder) ? live.record_trouble.substr(folder.size())
+                                                 : live.record_trouble;
+}
+
 SeverityText recording_row(const theatre::LiveState& live, bool pictures_come) {
-  if (!live.record_trouble.empty()) return {Severity::Bad, "Nothing is recorded", live.record_trouble};
+  if (!live.record_trouble.empty()) return {Severity::Bad, "Nothing is recorded", record_trouble_of(live)};
   if (live.session_folder.empty())
     return {Severity::Caution, "Nothing is recorded", "the case has no folder"};
   if (live.phase != theatre::LiveState::Phase::Running) return {Severity::Quiet, "Recording", "ended"};
@@ -24,6 +31,14 @@ std::string range_text(const theatre::StageLatency& stage) {
 }
 
 }  // namespace
+
+std::string record_notice(const theatre::LiveState& live, bool wants_video) {
+  if (live.phase != theatre::LiveState::Phase::Running) return "";
+  if (!live.record_trouble.empty()) return "Nothing is recorded: " + record_trouble_of(live);
+  if (wants_video && !live.keeps_video && !live.session_folder.empty())
+    return "The video is not recorded any more, poses and decisions are: the disk is nearly full";
+  return "";
+}
 
 std::vector<SeverityText> contour_rows(const operation::OperationState& state) {
   using contour::ContourState;

@@ -20,6 +20,8 @@ namespace arthronaut::navigate {
 // What is wrong with a live source, and how long its pictures take: medians, in brackets what 99 of 100 keep.
 // Empty for other sources.
 [[nodiscard]] std::vector<SeverityText> source_rows(const theatre::LiveState& live);
+// For a line that stands while nothing, or no video though it was asked for, is recorded; empty else.
+[[nodiscard]] std::string record_notice(const theatre::LiveState& live, bool wants_video);
 // Whether something is recorded, and how fast pictures come. The journal is written in any case: what is
 // worth saying is that it is not, and whether video is kept. Nothing of a source that gives no pictures now.
 [[nodiscard]] std::vector<SeverityText> record_rows(const theatre::LiveState& live,

@@ -24,9 +24,10 @@ constexpr std::size_t kWaitingMessages = 4096;
 constexpr auto kCommitEvery =
     std::chrono::milliseconds(400);  // below the half second that the header promises
 
-std::string gib_text(std::uintmax_t bytes) {
+std::string size_text(std::uintmax_t bytes) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.1f GiB", static_cast<double>(bytes) / static_cast<double>(1 << 30));
+  const double mib = static_cast<double>(bytes) / static_cast<double>(1 << 20);
+  std::snprintf(text, sizeof text, mib < 1024 ? "%.0f MiB" : "%.1f GiB", mib < 1024 ? mib : mib / 1024);
   return text;
 }
 
@@ -66,10 +67,10 @@ struct SessionRecorder::State {
   bool watch_disk(RecordWriter& writer) {
     const std::uintmax_t free = limits.free_bytes(folder);
     if (free < limits.video_stops_below_bytes && !video_stopped.exchange(true))
-      writer.write_event(kVideoStoppedEvent, "only " + gib_text(free) + " are free on the disk");
+      writer.write_event(kVideoStoppedEvent, "only " + size_text(free) + " are free on the disk");
     if (free >= limits.all_stops_below_bytes) return true;
-    writer.write_event(kRecordingStoppedEvent, "only " + gib_text(free) + " are free on the disk");
-    error = std::make_exception_ptr(IoError(folder, "recording stopped: only " + gib_text(free) +
+    writer.write_event(kRecordingStoppedEvent, "only " + size_text(free) + " are free on the disk");
+    error = std::make_exception_ptr(IoError(folder, "recording stopped: only " + size_text(free) +
                                                         " are free on the disk; what was recorded is kept"));
     out_of_space = true;
     queue.close();

@@ -149,6 +149,23 @@ TEST(RecordRows, Hazard3ASilentSourceHasNoRate) {
   EXPECT_EQ(rows[0].severity, Severity::Quiet);
 }
 
+// What is not recorded, though it was asked for, stands on the screen and not in the menu alone; the reason
+// comes first and not the folder.
+TEST(RecordNotice, Hazard14SaysThatTheVideoStopped) {
+  Recorded recorded;
+  recorded.live.session_folder = "/cases/knee/sessions/0001";
+  recorded.live.keeps_video = true;
+  EXPECT_EQ(record_notice(recorded.live, true), "");
+  recorded.live.keeps_video = false;
+  EXPECT_EQ(record_notice(recorded.live, false), "");
+  EXPECT_NE(record_notice(recorded.live, true).find("disk is nearly full"), std::string::npos);
+  recorded.live.record_trouble = "/cases/knee/sessions/0001: recording stopped: only 50 MiB are free";
+  EXPECT_EQ(record_notice(recorded.live, false),
+            "Nothing is recorded: recording stopped: only 50 MiB are free");
+  recorded.live.phase = Phase::Ended;
+  EXPECT_EQ(record_notice(recorded.live, true), "");
+}
+
 TEST(RecordRows, Hazard13SayWhyNothingIsRecorded) {
   Recorded recorded;
   recorded.live.record_trouble = "the disk is full";
