@@ -33,6 +33,16 @@ std::string ago(std::chrono::system_clock::duration time) {
   return std::to_string(minutes / (24 * 60)) + " days ago";
 }
 
+CardLine medium_line(const operation::OperationState& state) {
+  const std::string medium = camera::medium_to_text(state.source->pipeline.refractive_index);
+  const bool is_wrong = state.medium.fit == pipeline::MediumFit::Contradicts;
+  return {is_wrong ? Severity::Bad : Severity::Quiet, "Medium",
+          is_wrong
+              ? medium + ", but the markers look as in " + camera::medium_to_text(state.medium.other_index)
+              : medium,
+          CardLine::Topic::Medium};
+}
+
 CardLine registration_line(const recording::Resumable& left) {
   if (!left.operation.registration)
     return {Severity::Bad, "Registration", "is not brought back: " + left.refusal};
@@ -46,15 +56,14 @@ CardLine registration_line(const recording::Resumable& left) {
 std::vector<CardLine> time_out_lines(const operation::OperationState& state, const std::string& patient) {
   const operation::SourceSetup& source = *state.source;
   using Topic = CardLine::Topic;
-  return {
-      {patient.empty() ? Severity::Caution : Severity::Quiet, "Patient",
-       patient.empty() ? "not known: the case names none" : patient, Topic::Patient},
-      {Severity::Quiet, "Knee",
-       std::string(bones::to_text(source.pipeline.side)) + ", " + std::string(bones::to_text(state.bone)),
-       Topic::Knee},
-      {state.plan ? Severity::Quiet : Severity::Caution, "Plan", plan_in_words(state.plan), Topic::Plan},
-      {Severity::Quiet, "Camera and tools", source.calibration, Topic::CameraAndTools},
-      {Severity::Quiet, "Medium", camera::medium_to_text(source.pipeline.refractive_index), Topic::Medium}};
+  return {{patient.empty() ? Severity::Caution : Severity::Quiet, "Patient",
+           patient.empty() ? "not known: the case names none" : patient, Topic::Patient},
+          {Severity::Quiet, "Knee",
+           std::string(bones::to_text(source.pipeline.side)) + ", " + std::string(bones::to_text(state.bone)),
+           Topic::Knee},
+          {state.plan ? Severity::Quiet : Severity::Caution, "Plan", plan_in_words(state.plan), Topic::Plan},
+          {Severity::Quiet, "Camera and tools", source.calibration, Topic::CameraAndTools},
+          medium_line(state)};
 }
 
 Card time_out_card(const operation::OperationState& state, const std::string& patient) {

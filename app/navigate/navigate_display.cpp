@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "navigation/camera/medium.h"
+
 namespace arthronaut::navigate {
 
 namespace {
@@ -67,12 +69,13 @@ void explain(NavigateDisplay& display, const theatre::LiveState& live) {
   }
   if (result.is_repeating) {
     display.headline = "Picture does not change";
-    display.detail = "The same picture for a tenth of a second: it may be about to freeze";
+    display.detail = "The same picture several times on end: it may be about to freeze";
     return;
   }
   if (state.medium.fit == pipeline::MediumFit::Contradicts) {
     display.headline = "Wrong medium";
-    display.detail = pipeline::reason_text(state.medium);
+    display.detail = "The markers look as in " + camera::medium_to_text(state.medium.other_index) +
+                     ", not as in " + camera::medium_to_text(state.medium.stated_index);
     return;
   }
   using operation::Standing;
@@ -151,6 +154,27 @@ void explain(NavigateDisplay& display, const theatre::LiveState& live) {
   }
 }
 
+// Whether what keeps guidance away does so whatever the next pictures show, until somebody does something
+// about it. It stays said while a busy machine is late with one of them.
+bool is_lasting(const operation::OperationState& state) {
+  const pipeline::FrameResult& result = state.frame;
+  if (result.is_blank || result.is_torn || result.is_frozen || result.is_repeating) return false;
+  if (state.medium.fit == pipeline::MediumFit::Contradicts) return true;
+  const operation::Standing standing = state.registration->in_force.standing;
+  if (standing == operation::Standing::Alarm) return true;
+  if (!result.intrinsics_are_known && !state.source->pipeline.tools.tracker) return false;
+  if (standing == operation::Standing::Void || standing == operation::Standing::InDoubt) return true;
+  switch (cause_of(state)) {
+    case GuidanceState::NoPlan:
+    case GuidanceState::NotConfirmed:
+    case GuidanceState::GuideNotChecked:
+    case GuidanceState::NoGuide:
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 bool breaks_out(const NavigateDisplay& display) {
@@ -204,8 +228,18 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   display.age_s = now_s - live->captured_s;
   if (display.age_s > live->stale_after_s) {
     const bool is_short = display.age_s < 1;
-    display.headline = is_short ? "Picture " + widgets::fixed(1000 * display.age_s, 0) + " ms late"
-                                : "No new picture for " + widgets::fixed(display.age_s, 1) + " s";
+    // What is wrong with the source comes first.
+    const bool is_late_alone =
+        live->trouble == theatre::SourceTrouble::None || live->trouble == theatre::SourceTrouble::Late;
+    if (is_short && is_late_alone && is_lasting(*live->operation)) {
+      explain(display, *live);
+      return display;
+    }
+    // Pictures that come late all the while are no silence.
+    const std::string age =
+        is_short ? widgets::fixed(1000 * display.age_s, 0) + " ms" : widgets::fixed(display.age_s, 1) + " s";
+    const bool come = is_short || live->trouble == theatre::SourceTrouble::Late;
+    display.headline = come ? "Picture " + age + " late" : "No new picture for " + age;
     display.detail = live->trouble_words.empty() ? "What you see is not live" : live->trouble_words;
     return display;
   }

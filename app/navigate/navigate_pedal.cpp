@@ -88,6 +88,7 @@ std::string NavigateView::next_step() {
     return "take over the tunnel " + tunnels::name_of(*guided);
   if (awaits_picture(*live_))
     return stops_once_open_ ? "wait: it stops once it is open" : "wait for the first picture";
+  if (is_in_wrong_medium()) return "wrong medium: hold Esc, then M for the other one, then start again";
   if (takes_guide_in_simulation()) return "take the guide (simulation)";
   if (action == NextAction::CheckWorldMarker && must_place_anew(registration())) return place_anew_words();
   if (action == NextAction::VerifyByTouch) return words_of_verifying(*live_->operation);
@@ -126,7 +127,7 @@ void NavigateView::take_next_step() {
   if (choices_.goes_to_other_bone) return;
   if (tunnel_to_choose().empty() && finishes())
     return finish_step(finish_action(finished_bones(), choices_.bone, is_under_way(*live_)));
-  if (awaits_picture(*live_)) return;
+  if (awaits_picture(*live_) || is_in_wrong_medium()) return;
   if (!bones_.guided(choices_.bone)) {
     if (!bones_.must_choose(choices_.bone)) go_elsewhere_(Elsewhere::Plan);
     return;
@@ -182,7 +183,7 @@ bool NavigateView::pedal_acts() {
   if (finishes())
     return finish_action(finished_bones(), choices_.bone, is_under_way(*live_)) != FinishAction::Nothing &&
            was_read();
-  if (awaits_picture(*live_)) return false;
+  if (awaits_picture(*live_) || is_in_wrong_medium()) return false;
   switch (live_->operation->next_action) {
     case NextAction::BringGuide:
       return takes_guide_in_simulation();
@@ -259,6 +260,11 @@ void NavigateView::repeat_step(operation::Step step) {
 
 bool NavigateView::simulates() const {
   return kind_ ? *kind_ == sources::SourceKind::Simulation : can_simulate() && !choices_.has_real_scope;
+}
+
+// Nothing that is asked in it, the time-out with it, can be answered.
+bool NavigateView::is_in_wrong_medium() const {
+  return is_running() && live_->operation->medium.fit == pipeline::MediumFit::Contradicts;
 }
 
 // The scripted surgeon holds the probe: the guide is taken by starting the other part of the script.

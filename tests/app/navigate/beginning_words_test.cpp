@@ -40,6 +40,10 @@ TEST(TimeOutCard, Hazard20NamesPatientKneePlanCameraToolsAndMedium) {
   EXPECT_EQ(line_of(card, "Camera and tools").text, source->calibration);
   EXPECT_EQ(line_of(card, "Medium").text, "saline");
   EXPECT_EQ(line_of(card, "Medium").topic, CardLine::Topic::Medium);
+  state.medium = {.fit = pipeline::MediumFit::Contradicts, .stated_index = 1.3345, .other_index = 1};
+  const CardLine wrong = line_of(time_out_card(state, ""), "Medium");
+  EXPECT_EQ(wrong.text, "saline, but the markers look as in air");
+  EXPECT_EQ(wrong.severity, Severity::Bad);
   EXPECT_EQ(line_of(card, "Plan").topic, CardLine::Topic::Plan);
   EXPECT_EQ(line_of(time_out_card(state, ""), "Patient").severity, Severity::Caution);
   state.plan.reset();

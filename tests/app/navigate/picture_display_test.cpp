@@ -118,7 +118,61 @@ TEST(NavigateDisplay, Hazard3ALatePictureIsNotLive) {
   const NavigateDisplay late = aged(0.25, 0.1);
   EXPECT_FALSE(late.is_live || late.overlay_is_valid || late.guidance_is_valid);
   EXPECT_EQ(late.headline, "Picture 250 ms late");
+  const NavigateDisplay behind = display_after([](Shown& shown) {
+    shown.live.captured_s = kNow_s - 1.7;
+    shown.live.trouble = theatre::SourceTrouble::Late;
+  });
+  EXPECT_EQ(behind.headline, "Picture 1.7 s late") << "pictures come, and are old";
   EXPECT_TRUE(aged(0.25, 2).guidance_is_valid);
+}
+
+// A busy machine is late with a picture now and then. What keeps guidance away until somebody acts stays
+// said, and nothing of the late picture is shown as live; what a picture of now would end is no such thing,
+// and a second without any is told whatever else is wrong.
+TEST(NavigateDisplay, Hazard27ALastingReasonIsNotCoveredByALatePicture) {
+  const auto late = [](double age_s, const auto& change) {
+    return display_after([&](Shown& shown) {
+      shown.live.captured_s = kNow_s - age_s;
+      change(shown);
+    });
+  };
+  const auto wrong_medium = [](Shown& shown) {
+    shown.operation.medium.fit = pipeline::MediumFit::Contradicts;
+    shown.operation.medium.stated_index = 1;
+    shown.operation.medium.other_index = 1.3345;
+    shown.operation.frame.intrinsics_are_known = false;
+  };
+  const std::string in_time = late(0.02, wrong_medium).detail;
+  const NavigateDisplay medium = late(0.25, wrong_medium);
+  EXPECT_EQ(medium.headline, "Wrong medium");
+  EXPECT_EQ(medium.detail, in_time);
+  EXPECT_EQ(medium.detail, "The markers look as in saline, not as in air");
+  EXPECT_TRUE(medium.has_picture);
+  EXPECT_FALSE(medium.is_live || medium.overlay_is_valid || medium.guidance_is_valid);
+  const auto stands = [](Standing standing) {
+    return [standing](Shown& shown) { shown.stand(standing, {"why"}); };
+  };
+  for (const Standing standing : {Standing::Alarm, Standing::Void, Standing::InDoubt})
+    EXPECT_EQ(late(0.25, stands(standing)).headline, late(0.02, stands(standing)).headline);
+  const auto due = [](Shown& shown) { shown.operation.time_out = operation::TimeOut::Due; };
+  EXPECT_EQ(late(0.25, due).headline, "Time-out not confirmed");
+
+  EXPECT_EQ(late(1.5, wrong_medium).headline, "No new picture for 1.5 s");
+  const auto broken = [&](Shown& shown) {
+    wrong_medium(shown);
+    shown.live.trouble = theatre::SourceTrouble::NoPicture;
+    shown.live.trouble_words = "No picture comes: broke off";
+  };
+  EXPECT_EQ(late(0.4, broken).detail, "No picture comes: broke off");
+  const auto lost = [](Shown& shown) {
+    shown.operation.frame.guidance.state = GuidanceState::WorldMarkerLost;
+  };
+  EXPECT_EQ(late(0.25, lost).headline, "Picture 250 ms late");
+  const auto frozen = [&](Shown& shown) {
+    wrong_medium(shown);
+    shown.operation.frame.is_frozen = true;
+  };
+  EXPECT_EQ(late(0.25, frozen).headline, "Picture 250 ms late");
 }
 
 }  // namespace
