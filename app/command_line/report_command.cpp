@@ -42,8 +42,9 @@ void add_report_command(CLI::App& app, Context& context) {
     refuse_another_ending(arguments->output);
     refuse_before_the_work({.read = {}, .written = {arguments->output}});
     arguments->options.paper = report::paper_from_text(arguments->paper);
-    report::write_report(arguments->case_folder, arguments->output, arguments->options);
+    const auto missing = report::write_report(arguments->case_folder, arguments->output, arguments->options);
     context.say("Wrote " + arguments->output + ".");
+    if (!missing.empty()) context.say_unreliable("the report", missing);
   });
 }
 

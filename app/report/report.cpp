@@ -309,12 +309,19 @@ Content reportable(const std::filesystem::path& case_folder, const ReportOptions
 
 }  // namespace
 
-void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output,
-                  const ReportOptions& options) {
+std::vector<std::string> write_report(const std::filesystem::path& case_folder,
+                                      const std::filesystem::path& output, const ReportOptions& options) {
   const Content content = reportable(case_folder, options);
-  if (output.extension() == ".json") return files::write_atomically(output, report_json(content, options));
-  if (output.extension() == ".csv") return files::write_atomically(output, report_csv(content, options));
-  Report(content, options).drawn().save(output);
+  if (output.extension() == ".json")
+    files::write_atomically(output, report_json(content, options));
+  else if (output.extension() == ".csv")
+    files::write_atomically(output, report_csv(content, options));
+  else
+    Report(content, options).drawn().save(output);
+  std::vector<std::string> missing;
+  for (const auto& [session, reason] : content.unreadable)
+    missing.push_back("the session " + session + " cannot be read and is not in it: " + reason);
+  return missing;
 }
 
 std::string make_report(const std::filesystem::path& case_folder, const ReportOptions& options) {

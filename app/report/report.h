@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "app/report/paper.h"
 
@@ -25,9 +26,10 @@ struct ReportOptions {
 // Where none is named, the newest session with a drilled tunnel is reported, else the newest with a
 // registration; the report says so when there is none. By the output's ending: .json and .csv are the same
 // numbers for other programs, anything else is a PDF. Atomic. Throws IoError, InvalidInput (a broken case, a
-// session that is not there), DeviceError (no OpenGL at all for the pictures).
-void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output,
-                  const ReportOptions& options = {});
+// session that is not there), DeviceError (no OpenGL at all for the pictures). Returns, in words, the
+// sessions that are not in it since they cannot be read; the report names them too.
+std::vector<std::string> write_report(const std::filesystem::path& case_folder,
+                                      const std::filesystem::path& output, const ReportOptions& options = {});
 // The bytes of such a file. Throws as write_report.
 [[nodiscard]] std::string make_report(const std::filesystem::path& case_folder,
                                       const ReportOptions& options = {});

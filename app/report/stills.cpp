@@ -195,16 +195,21 @@ void draw_stills_section(FlowingPages& pages, const Content& content) {
   constexpr TextStyle kCaption{.size_pt = 8, .bold = false, .ink = kGray};
   constexpr const char* kUnreadable =
       "The session's video is not there, or cannot be read: there are no pictures of it.";
+  constexpr const char* kPartly =
+      "A picture is missing: the session's video has none of that moment, or cannot be read there.";
   if (!content.session) return;
   std::vector<std::pair<std::string, scene::Image>> stills;
   Drawer drawer(content);
   std::string why_none;
+  std::size_t wanted = 0;
   try {
     if (content.session->video().empty()) {
       why_none = "The session keeps no video: there are no pictures of it.";
     } else {
       recording::RecordedPictures pictures(recording::read_overview(content.session->folder()));
-      for (const Moment& moment : key_moments(*content.session, content.session->pipeline_options()))
+      const auto moments = key_moments(*content.session, content.session->pipeline_options());
+      wanted = moments.size();
+      for (const Moment& moment : moments)
         if (auto still = drawer.still(pictures, moment.frame))
           stills.emplace_back(moment.caption, std::move(*still));
       if (stills.empty())
@@ -225,6 +230,7 @@ void draw_stills_section(FlowingPages& pages, const Content& content) {
     x_mm += kWidth_mm + kGap_mm;
   }
   pages.skip(kWidth_mm + 6);
+  if (stills.size() < wanted) pages.sentence(kPartly, kCaption);
   if (!drawer.has_overlay())
     pages.sentence("No plan is drawn on them: the case's bone is another than the session's.", kCaption);
 }

@@ -1,4 +1,5 @@
 // What the report says of a session: what was reached, how it was verified, what the surgeon saw.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -124,7 +125,9 @@ TEST_F(Report, NamesASessionThatCannotBeRead) {
   (void)text_of_session("simulation", {});
   const std::filesystem::path newest = cases::session_folders(knee_folder()).back();
   files::write_atomically(newest / "session.sqlite", "spoilt");
-  write_report(knee_folder(), pdf());
+  EXPECT_THAT(write_report(knee_folder(), pdf()),
+              testing::ElementsAre(testing::AllOf(testing::HasSubstr(newest.filename().string()),
+                                                  testing::HasSubstr("session.sqlite: "))));
   std::string text = pdf_text();
   expect_contains(text, "NOT READABLE, and not in this report: the session " + newest.filename().string());
   expect_contains(text, "live: a camera, as it came");
@@ -269,6 +272,12 @@ TEST_F(Report, ShowsWhatTheSurgeonSaw) {
   EXPECT_EQ(bytes, make_report(knee_folder(), {.says_when_made = false}));
   const auto video = recording::RecordedSession(folder).video();
   ASSERT_TRUE(std::filesystem::exists(video));
+  // Cut off between the two.
+  std::filesystem::resize_file(video, 7 * std::filesystem::file_size(video) / 10);
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "0:00.2: aimed closest");
+  EXPECT_EQ(pdf_text().find("0:00.4: drilled"), std::string::npos);
+  expect_contains(pdf_text(), "A picture is missing");
   std::filesystem::remove(video);
   write_report(knee_folder(), pdf());
   expect_contains(pdf_text(), "The session's video is not there, or cannot be read");
