@@ -48,7 +48,8 @@ nlohmann::ordered_json json_of(const std::string& session, const SessionCheck& c
 
 void verify(Context& context, const VerifyArguments& arguments) {
   std::vector<std::string> reasons;
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  nlohmann::ordered_json document = {
+      {"format", "arthronaut.verify"}, {"version", 1}, {"sessions", nlohmann::ordered_json::array()}};
   for (const std::filesystem::path& folder : sessions_of(arguments)) {
     const std::string session = folder.filename();
     SessionCheck check;
@@ -59,7 +60,7 @@ void verify(Context& context, const VerifyArguments& arguments) {
       });
     }
     if (arguments.json) {
-      all.push_back(json_of(session, check));
+      document["sessions"].push_back(json_of(session, check));
     } else {
       context.say("session " + session + ": " + recording::check_words(check));
       for (const std::string& note : check.notes) context.say("  " + note);
@@ -70,7 +71,7 @@ void verify(Context& context, const VerifyArguments& arguments) {
     for (const recording::CheckFinding& finding : check.findings)
       reasons.push_back(session + ": " + finding.text());
   }
-  if (arguments.json) files::write_json("-", all);
+  if (arguments.json) files::write_json("-", document);
   if (!reasons.empty()) context.say_unreliable("the record", reasons);
 }
 

@@ -144,11 +144,15 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   const auto broken = run_program({"verify", knee, "--json"});
   EXPECT_EQ(broken.exit_code, 4);
   EXPECT_THAT(broken.errors, HasSubstr("session.sqlite: frames 0 to"));
-  const auto findings = nlohmann::json::parse(broken.output).at(0).at("findings");
+  const auto checked = nlohmann::json::parse(broken.output);
+  EXPECT_EQ(checked.at("format"), "arthronaut.verify");
+  EXPECT_EQ(checked.at("version"), 1);
+  const auto findings = checked.at("sessions").at(0).at("findings");
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_LE(findings[0].at("from"), 7);
   EXPECT_GT(findings[0].at("to"), 7);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "differences.csv"));
+  EXPECT_EQ(run_program({"report", knee, "-o", folder_ / "report.json"}).exit_code, 0);
 
   // 2^32 + 2 is no marker 2.
   ASSERT_EQ(sqlite3_open((session / "session.sqlite").c_str(), &database), SQLITE_OK);
@@ -158,6 +162,12 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   const auto beyond = run_program({"replay", knee});
   EXPECT_EQ(beyond.exit_code, 3);
   EXPECT_THAT(beyond.errors, HasSubstr("session.sqlite: marker_id: 4294967298 is out of range"));
+
+  // Of an older session, or of none, only when that is said.
+  test::write_file(session / "session.sqlite", "spoilt");
+  const auto without = run_program({"report", knee, "-o", folder_ / "report.json"});
+  EXPECT_EQ(without.exit_code, 4);
+  EXPECT_THAT(without.errors, HasSubstr("the session " + session.filename().string() + " cannot be read"));
 }
 
 // A video that breaks off leaves no session in the case, and not its camera either.
