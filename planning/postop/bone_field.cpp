@@ -22,8 +22,9 @@ constexpr double kLeastPiece_mm3 = 2000, kLeastAnchored_mm3 = 6000;
 constexpr std::size_t kMostAnchored = 5;
 // The gaps of a thin cortex in cells.
 constexpr double kClosing_mm = 2;
-// Of a piece, what belongs to the joint at its end.
-constexpr double kJointEnd_mm = 70;
+// Of a piece, what belongs to the joint at its end. Bones that touch are one piece, and an image may end
+// within a shaft: a joint may lie anywhere along it.
+constexpr double kJointEnd_mm = 70, kAlong_mm = 15, kAnotherAnchor_mm = 5;
 
 // Cells that are the means of so many voxels.
 struct Cells {
@@ -68,7 +69,7 @@ Cells cells_above(const images::Volume& volume, double threshold_hu) {
   return cells;
 }
 
-// Middle and both ends of a piece along its longest axis.
+// Middle and both ends of a piece along its longest axis, and places between.
 void add_anchors(const Cells& cells, const images::VoxelPiece& piece, std::vector<Vector3d>& anchors) {
   const auto nx = static_cast<std::size_t>(cells.size.x()), ny = static_cast<std::size_t>(cells.size.y());
   std::vector<Vector3d> points;
@@ -83,19 +84,32 @@ void add_anchors(const Cells& cells, const images::VoxelPiece& piece, std::vecto
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Vector3d& p : points) spread += (p - middle) * (p - middle).transpose();
   const Vector3d axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+  const std::size_t first_of_piece = anchors.size();
   anchors.push_back(middle);
-  for (const double sign : {-1.0, 1.0}) {
-    double end = -1e9;
-    for (const Vector3d& p : points) end = std::max(end, sign * axis.dot(p));
-    Vector3d of_end = Vector3d::Zero();
+  double low = 1e9, high = -1e9;
+  for (const Vector3d& p : points) {
+    low = std::min(low, axis.dot(p));
+    high = std::max(high, axis.dot(p));
+  }
+  const auto add_middle_of = [&](double from, double to) {
+    Vector3d sum_between = Vector3d::Zero();
     double count = 0;
     for (const Vector3d& p : points) {
-      if (sign * axis.dot(p) < end - kJointEnd_mm) continue;
-      of_end += p;
+      if (axis.dot(p) < from || axis.dot(p) > to) continue;
+      sum_between += p;
       ++count;
     }
-    if ((of_end / count - middle).norm() > 8) anchors.emplace_back(of_end / count);
-  }
+    if (count == 0) return;
+    const Vector3d anchor = sum_between / count;
+    const bool is_new =
+        std::all_of(anchors.begin() + static_cast<std::ptrdiff_t>(first_of_piece), anchors.end(),
+                    [&](const Vector3d& other) { return (other - anchor).norm() > kAnotherAnchor_mm; });
+    if (is_new) anchors.push_back(anchor);
+  };
+  add_middle_of(low, low + kJointEnd_mm);
+  add_middle_of(high - kJointEnd_mm, high);
+  for (double from = low; from + 2 * kAlong_mm <= high; from += kAlong_mm)
+    add_middle_of(from, from + 2 * kAlong_mm);
 }
 
 // Distance and its slope at a place; far beyond the field the value of its border.

@@ -18,7 +18,7 @@ struct BoneField {
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
   Eigen::Vector3d first_in_view, last_in_view;  // cells between which the volume lies
   std::vector<float> distance_mm;               // i runs fastest
-  // Where the middle of a joint's end may lie, LPS: the middles and the ends of large pieces.
+  // Where the middle of a joint's end may lie, LPS: places along large pieces.
   std::vector<Eigen::Vector3d> anchors_mm;
 };
 
