@@ -72,6 +72,14 @@ const std::vector<Kind>& kinds() {
          how.screw_to_mm = 16;
          how.screw_aside_mm = 0.5;
        }},
+      {"metal along all of it but 5 mm",
+       [](auto& how, auto& ct, auto& random) {
+         ct.blur_mm = 0.5;
+         how.screw_diameter_mm = 7;
+         how.screw_from_mm = 5;
+         how.screw_to_mm = 60;
+         how.screw_aside_mm = between(0, 0.5, random) * (how.tunnel.diameter_mm - 7);
+       }},
       {"one density, air about it",
        [](auto& how, auto& ct, auto&) {
          ct.marrow_hu = ct.cortex_hu = 800;
@@ -160,7 +168,8 @@ void try_one(const Subject& subject, const Kind& kind, std::mt19937_64& random, 
                  subject.name.c_str(), entry, angle, found.tunnel.diameter_mm - how.tunnel.diameter_mm);
   figures.entry_mm.push_back(entry);
   figures.angle_deg.push_back(angle);
-  const double drilled_mm = std::min(how.to_mm, tunnels::measure(how.tunnel, bone).length_mm);
+  const double drilled_mm =
+      std::min({how.to_mm, how.narrow_from_mm, tunnels::measure(how.tunnel, bone).length_mm});
   figures.length_mm.push_back(std::abs(found.length_mm - drilled_mm));
   if (how.widened_mm == 0) figures.diameter_mm.push_back(off_mm);
 }
