@@ -50,6 +50,14 @@ PlanCheck check_length(const Tunnel& tunnel, const TunnelGeometry& geometry, con
   return check;
 }
 
+// Along the axis from the entry. A slanting mouth reaches before the entry and beyond the exit, where a depth
+// says nothing.
+std::string depth_text(const TunnelGeometry& geometry) {
+  if (geometry.thinnest_station_mm < 0.05) return "at the mouth";
+  if (geometry.thinnest_station_mm > geometry.length_mm - 0.05) return "at the exit";
+  return "at " + number_text(geometry.thinnest_station_mm, "mm") + " of depth";
+}
+
 // The limits of the back wall are the femur's; of the tibia nobody has published one.
 PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const PlanNorms& norms) {
   // A wall of nothing is 0.0 mm on either side of it, not -0.0.
@@ -57,8 +65,7 @@ PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const
   PlanCheck check{
       .verdict = Verdict::Fine,
       .name = "Wall",
-      .text = number_text(shown_mm, "mm") + " at " + number_text(geometry.thinnest_station_mm, "mm") +
-              " of depth",
+      .text = number_text(shown_mm, "mm") + " " + depth_text(geometry),
       .value = geometry.wall_mm,
       .unit = "mm",
       .least = tunnel.bone == bones::BoneKind::Femur ? norms.thin_wall_mm : norms.breaking_wall_mm,

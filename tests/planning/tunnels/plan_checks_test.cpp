@@ -54,6 +54,18 @@ TEST(PlanChecks, JudgesTheWall) {
               ::testing::HasSubstr("breaks out"));
 }
 
+// A slanting mouth reaches before the entry: there is no depth below zero to read.
+TEST(PlanChecks, NamesTheMouthsWhereTheWallIsThinnestThere) {
+  const Tunnel tunnel{.bone = BoneKind::Femur};
+  auto geometry = inside(35, 3);
+  geometry.thinnest_station_mm = 12.3;
+  EXPECT_EQ(named(check_plan(tunnel, geometry, {}), "Wall").text, "3.0 mm at 12.3 mm of depth");
+  geometry.thinnest_station_mm = -4;
+  EXPECT_EQ(named(check_plan(tunnel, geometry, {}), "Wall").text, "3.0 mm at the mouth");
+  geometry.thinnest_station_mm = 37;
+  EXPECT_EQ(named(check_plan(tunnel, geometry, {}), "Wall").text, "3.0 mm at the exit");
+}
+
 // The limits of the back wall are the femur's: a tibial tunnel thins out at its slanting exit.
 TEST(PlanChecks, JudgesTheTibialWallMoreMildly) {
   const Tunnel tunnel{.bone = BoneKind::Tibia, .direction = {0.4, 0, -0.9}};
