@@ -35,6 +35,10 @@ void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folde
   if (model != nullptr) {
     version_ = model->knee().plan_version;
     saved_ = state();
+    // What was proposed on opening goes to disk with the first change: whoever reads the case, as a report,
+    // has the grid and the checks that were planned by.
+    std::erase_if(saved_.landmarks,
+                  [&](const auto& of) { return model->has_bone(of.first) && model->was_proposed(of.first); });
   }
   is_read_only_ = !read_only.empty();
   if (is_read_only_) {

@@ -62,8 +62,11 @@ PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
     made.mesh_sha256 = bones::mesh_sha256(bone.mesh);
     if (const auto proposed = proposals.find(kind); proposed != proposals.end())
       made.proposal = proposed->second.get();
-    if (!has_grid(knee_.landmarks[kind], kind, bone.mesh, knee_.side))
+    if (!has_grid(knee_.landmarks[kind], kind, bone.mesh, knee_.side)) {
+      const landmarks::Landmarks before = knee_.landmarks[kind];
       landmarks::take_proposal(*made.proposal, knee_.landmarks[kind], knee_.landmark_states[kind]);
+      made.was_proposed = knee_.landmarks[kind] != before;
+    }
     use_landmarks(kind);
     for (const tunnels::TunnelKey& key : knee_.plan.of(kind))
       knee_.plan.mesh_sha256.try_emplace(key, made.mesh_sha256);

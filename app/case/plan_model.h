@@ -81,6 +81,9 @@ class PlanModel {
   // as above.
   [[nodiscard]] const landmarks::Landmarks& landmarks(bones::BoneKind kind) const;
   [[nodiscard]] const landmarks::LandmarkStates& landmark_states(bones::BoneKind kind) const;
+  // Whether the bone's landmarks were completed by proposed ones when the case was opened: its file has none
+  // that give a grid.
+  [[nodiscard]] bool was_proposed(bones::BoneKind kind) const { return bones_.at(kind).was_proposed; }
   // What the shape alone gives, with its doubts. Where somebody confirmed what the grid asks for nothing
   // waits for it: it is begun, beside the caller, by the first who asks, and nullopt for the seconds until it
   // is there.
@@ -119,6 +122,7 @@ class PlanModel {
     landmarks::AnatomicalAxes axes;
     std::optional<landmarks::Proposal> proposal;
     std::string mesh_sha256;
+    bool was_proposed = false;
   };
   // What is made in a thread of its own, begun by the first who asks.
   template <typename Thing>

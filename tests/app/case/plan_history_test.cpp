@@ -69,6 +69,32 @@ TEST_F(PlanHistoryTest, SavesByItself) {
   EXPECT_NEAR(saved_diameter_mm(), start_mm_, 1e-9);
 }
 
+// Whoever reads the case has the landmarks that the screen planned by, as proposed; a look at a case writes
+// nothing.
+TEST_F(PlanHistoryTest, ProposedLandmarksAreSavedWithTheFirstChange) {
+  cases::Case bare = knee();
+  bare.landmarks.clear();
+  bare.landmark_states.clear();
+  cases::save_case(folder_, bare);
+  PlanModel model(cases::load_case(folder_));
+  history_.open(&model, folder_);
+  history_.settle_now();
+  EXPECT_TRUE(cases::load_case(folder_).landmarks[BoneKind::Femur].empty());
+  tunnels::Tunnel tunnel = *model.tunnel(BoneKind::Femur);
+  tunnel.diameter_mm += 1;
+  history_.apply({BoneKind::Femur, tunnel, "Change the diameter", false}, 1.0);
+  history_.settle(2.0);
+  cases::Case saved = cases::load_case(folder_);
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
+    ASSERT_EQ(saved.landmarks[kind].size(), model.landmarks(kind).size());
+    for (const auto& [name, at] : model.landmarks(kind)) {
+      EXPECT_NEAR((saved.landmarks[kind].at(name) - at).norm(), 0, 1e-6) << name;
+      EXPECT_EQ(landmarks::state_of(saved.landmark_states[kind], name), landmarks::LandmarkState::Proposed);
+    }
+  }
+  EXPECT_NEAR(saved_diameter_mm(), start_mm_ + 1, 1e-9);
+}
+
 // A tunnel that was removed comes back whole.
 TEST_F(PlanHistoryTest, RemovalCanBeUndone) {
   history_.apply({BoneKind::Femur, std::nullopt, "Remove the femoral tunnel", false}, 1.0);
