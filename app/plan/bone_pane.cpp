@@ -160,7 +160,7 @@ void BonePane::show() {
 // Where the bone is translucent the eye sees what is behind it; not what is cut away.
 bool BonePane::is_out_of_sight(const PaneMark& mark) const {
   const VisibleBones seen = visible();
-  if (is_see_through_) return seen.cut && seen.cut->cuts_away(mark.point_mm);
+  if (is_see_through_ || mark.shows_through) return seen.cut && seen.cut->cuts_away(mark.point_mm);
   return is_hidden(seen, pane_.camera().position_mm, mark.point_mm);
 }
 
@@ -188,7 +188,7 @@ PaneEvent BonePane::draw(const widgets::Ui& ui, const widgets::Rect& area,
   const BoneKind axes_of =
       only_.value_or(model_->has_bone(BoneKind::Femur) ? BoneKind::Femur : BoneKind::Tibia);
   draw_edge_words(ui, area, edge_words(right, camera.up.normalized(), model_->axes(axes_of)));
-  draw_marks(ui, area, marks, input.is_hovered);
+  draw_marks(ui, area, marks, input.is_hovered && !input.handle_dragged);  // a tooltip would hide the place
   PaneEvent event;
   if (input.was_clicked) event.click = scene::ray_through(pane_.camera(), input.mouse_px, input.size_px);
   if (input.handle_pressed) event.pressed = held_;

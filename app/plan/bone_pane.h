@@ -32,6 +32,7 @@ struct PaneMark {
   bool can_be_dragged = false;
   std::string tooltip = {};
   std::vector<Eigen::Vector3d> area_mm = {};  // closed: within it the tooltip is shown, too
+  bool shows_through = false;                 // it lies in the bone, which does not hide it
 };
 
 struct PaneEvent {

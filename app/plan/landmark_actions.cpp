@@ -5,6 +5,7 @@
 
 #include "app/plan/plan_view.h"
 #include "app/plan/roof_line.h"
+#include "app/plan/tunnel_moves.h"
 
 namespace arthronaut::plan {
 
@@ -31,6 +32,36 @@ void PlanView::select_landmark(std::size_t row) {
 std::string PlanView::landmark_title() const {
   const landmarks::LandmarkKind* kind = landmarks::find_landmark(state_.key.bone, landmark());
   return kind == nullptr ? "" : std::string(kind->title);
+}
+
+// One that is pressed is the one that is worked on.
+void PlanView::follow_landmark(const PaneEvent& event) {
+  const auto& marks = model_->landmarks(state_.key.bone);
+  if (const auto at = marks.find(landmark()); at != marks.end() && event.dragged == at->first) {
+    const auto to = lies_within_bone(at->first) ? moved_in_view(bones_.camera(), event.drag_ray, at->second)
+                                                : dragged_over(bones_.visible(), state_.key.bone, at->second,
+                                                               event.drag_ray, bones_.is_see_through());
+    if (to) put_landmark(*to, "Drag", state_.has_dragged);
+    state_.has_dragged = state_.has_dragged || to.has_value();
+  }
+  if (event.pressed.empty()) return;
+  const auto rows = landmark_rows(*model_, state_.key.bone);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i].name == event.pressed) state_.landmark = i;
+}
+
+void PlanView::place_landmark(const scene::SceneRay& ray) {
+  const auto met = first_visible(bones_.visible(), ray);
+  if (!met || met->is_section || met->bone != state_.key.bone) {
+    state_.hint = {"That is not the surface of the " + std::string(bones::to_text(state_.key.bone)) +
+                   ". Click on it, or press Esc."};
+    return;
+  }
+  put_landmark(lies_within_bone(landmark()) ? middle_behind(model_->surface(state_.key.bone), *met, ray)
+                                            : met->point_mm,
+               "Place", false);
+  state_.placing = Placing::Nothing;
+  state_.hint = {};
 }
 
 void PlanView::put_landmark(const Eigen::Vector3d& point_mm, const std::string& how, bool continues) {
@@ -68,10 +99,14 @@ void PlanView::add_landmark_marks(std::vector<PaneMark>& marks) const {
     const auto at = points.find(row.name);
     if (at == points.end()) continue;
     const bool is_selected = row.name == selected, is_confirmed = row.state == LandmarkRow::State::Confirmed;
+    const bool is_within = lies_within_bone(row.name);
+    // What lies within the bone would be taken for what is seen before it: that one alone is which was
+    // chosen.
     marks.push_back({is_selected ? PaneMark::Shape::Ring : PaneMark::Shape::Cross, row.name,
                      is_selected ? row.title : "", at->second,
-                     is_confirmed ? widgets::kGood : widgets::kCaution, true,
+                     is_confirmed ? widgets::kGood : widgets::kCaution, !is_within || is_selected,
                      row.title + (is_confirmed ? ", confirmed: " : ", proposed: ") + row.meaning});
+    marks.back().shows_through = is_within && is_selected;
   }
 }
 

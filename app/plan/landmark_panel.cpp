@@ -21,11 +21,15 @@ std::vector<LandmarkRow> landmark_rows(const open_case::PlanModel& model, bones:
   return rows;
 }
 
+bool lies_within_bone(std::string_view name) {
+  return name.ends_with("_condyle_center") || name.starts_with("shaft_");
+}
+
 std::string confirmed_in_words(const std::vector<LandmarkRow>& rows) {
-  const auto confirmed = std::count_if(rows.begin(), rows.end(), [](const LandmarkRow& row) {
-    return row.state == LandmarkRow::State::Confirmed;
-  });
-  return std::to_string(confirmed) + " of " + std::to_string(rows.size()) + " confirmed";
+  const auto confirmed = std::ranges::count(rows, LandmarkRow::State::Confirmed, &LandmarkRow::state);
+  const auto missing = std::ranges::count(rows, LandmarkRow::State::Missing, &LandmarkRow::state);
+  return std::to_string(confirmed) + " of " + std::to_string(std::ssize(rows) - missing) + " confirmed" +
+         (missing > 0 ? ", " + std::to_string(missing) + " not there" : "");
 }
 
 std::optional<std::size_t> next_proposed(const std::vector<LandmarkRow>& rows, std::size_t from) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/case/plan_model.h"
@@ -19,7 +20,9 @@ struct LandmarkRow {
 // saw it can give
 // ("native_footprint") stand last.
 [[nodiscard]] std::vector<LandmarkRow> landmark_rows(const open_case::PlanModel& model, bones::BoneKind bone);
-// "6 of 15 confirmed"
+// Whether the landmark lies in the bone, as the centre of a condyle does, and not on its surface.
+[[nodiscard]] bool lies_within_bone(std::string_view name);
+// "6 of 14 confirmed, 1 not there": of those that are there all can be.
 [[nodiscard]] std::string confirmed_in_words(const std::vector<LandmarkRow>& rows);
 // The first that is proposed, after `from` and round again; nullopt when every one is confirmed or missing.
 [[nodiscard]] std::optional<std::size_t> next_proposed(const std::vector<LandmarkRow>& rows,

@@ -273,7 +273,11 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
     state_.shown_revision = 0;
   }
   if (state_.shown_revision != model_->revision()) show_content();
-  follow(bones_.draw(ui, area, marks()));
+  std::vector<PaneMark> shown = marks();
+  // A click places, also where a handle is: one that took it would be another landmark, or nothing.
+  if (state_.placing != Placing::Nothing)
+    for (PaneMark& mark : shown) mark.can_be_dragged = false;
+  follow(bones_.draw(ui, area, shown));
   draw_survey_legend(ui, area);
   draw_hint(ui, area);
 }
@@ -312,7 +316,7 @@ void PlanView::add_norm_marks(std::vector<PaneMark>& marks) const {
 
 std::optional<Eigen::Vector3d> PlanView::aim_handle() const {
   const auto tunnel = model_->tunnel(state_.key);
-  if (!tunnel) return std::nullopt;
+  if (!tunnel || state_.held_aim_mm) return state_.held_aim_mm;
   return tunnel->entry_mm + (model_->drawn_length_mm(state_.key) + kAimHandleBeyond_mm) * tunnel->direction;
 }
 
@@ -360,36 +364,18 @@ void PlanView::follow(const PaneEvent& event) {
     state_.has_dragged = state_.has_dragged || to.has_value();
   }
   if (tunnel && event.dragged == "aim") {
-    change("Drag the aim of the", state_.has_dragged,
-           aimed(*tunnel, bones_.camera(), event.drag_ray, *aim_handle()));
+    state_.held_aim_mm = moved_in_view(bones_.camera(), event.drag_ray, *aim_handle());
+    if (state_.held_aim_mm)
+      change("Drag the aim of the", state_.has_dragged, aimed_at(*tunnel, *state_.held_aim_mm));
     state_.has_dragged = true;
+  } else {
+    state_.held_aim_mm.reset();
   }
-  if (state_.page == PanelPage::Landmarks && !event.dragged.empty()) {
-    const auto& marks = model_->landmarks(state_.key.bone);
-    if (const auto at = marks.find(landmark()); at != marks.end() && event.dragged == at->first) {
-      const auto to = dragged_over(bones_.visible(), state_.key.bone, at->second, event.drag_ray,
-                                   bones_.is_see_through());
-      if (to) put_landmark(*to, "Drag", state_.has_dragged);
-      state_.has_dragged = state_.has_dragged || to.has_value();
-    }
-  }
-  if (state_.page == PanelPage::Landmarks && !event.pressed.empty()) {
-    const auto rows = landmark_rows(*model_, state_.key.bone);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      if (rows[i].name == event.pressed) state_.landmark = i;
-  }
+  if (state_.page == PanelPage::Landmarks) follow_landmark(event);
   if (!event.click) return;
-  if (state_.placing == Placing::Landmark) {
-    const auto met = first_visible(bones_.visible(), *event.click);
-    if (!met || met->is_section || met->bone != state_.key.bone) {
-      state_.hint = {"That is not the surface of the " + std::string(bones::to_text(state_.key.bone)) +
-                     ". Click on it, or press Esc."};
-      return;
-    }
-    put_landmark(met->point_mm, "Place", false);
-    state_.placing = Placing::Nothing;
-    state_.hint = {};
-  } else if (state_.placing == Placing::Entry)
+  if (state_.placing == Placing::Landmark)
+    place_landmark(*event.click);
+  else if (state_.placing == Placing::Entry)
     place_entry(*event.click);
   else if (const auto met = first_visible(bones_.visible(), *event.click))
     slices_.set_cross(met->point_mm);

@@ -79,6 +79,8 @@ class PlanView : public mode::Mode {
   void add_landmark_actions(widgets::Actions& actions);
   void select_landmark(std::size_t row);
   void confirm_landmarks(bool all);
+  void follow_landmark(const PaneEvent& event);
+  void place_landmark(const scene::SceneRay& ray);
   // how: "Drag"; the step names the landmark.
   void put_landmark(const Eigen::Vector3d& point_mm, const std::string& how, bool continues);
   [[nodiscard]] std::string landmark() const;  // that is selected; empty without a bone
@@ -154,6 +156,8 @@ class PlanView : public mode::Mode {
     Placing placing = Placing::Nothing;
     std::size_t landmark = 0;  // row of landmark_rows()
     bool has_dragged = false;
+    // Where the aim's handle is while it is held: under the mouse, wherever the tunnel ends.
+    std::optional<Eigen::Vector3d> held_aim_mm = {};
     bool shows_slices = false, shows_lateral = false, shows_grid = true;
     bool shows_map = false, shows_aims = false;
     std::shared_ptr<const Survey> survey = nullptr;  // of what is planned now; null: none is there

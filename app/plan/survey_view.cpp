@@ -86,6 +86,14 @@ void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& ar
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float font = ui.theme.body->FontSize, step = font * 1.25F;
   float y = area.y + area.height - ui.theme.px(14) - step * static_cast<float>(lines.size());
+  // Read over the bone and the lines of aims, too.
+  float wide = 0;
+  for (const std::string& line : lines)
+    wide = std::max(wide, ui.theme.body->CalcTextSizeA(font, 1e9F, 0, line.c_str()).x);
+  if (!lines.empty())
+    draw.AddRectFilled({area.x + ui.theme.px(10), y - ui.theme.px(4)},
+                       {area.x + ui.theme.px(22) + wide, area.y + area.height - ui.theme.px(10)},
+                       IM_COL32(12, 16, 20, 210), ui.theme.px(6));
   for (const std::string& line : lines) {
     const ImVec2 at{area.x + ui.theme.px(16), y};
     draw.AddText(ui.theme.body, font, {at.x + 1, at.y + 1}, widgets::kBackground, line.c_str());

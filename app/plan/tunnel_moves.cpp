@@ -55,14 +55,8 @@ tunnels::Tunnel turned(const tunnels::Tunnel& tunnel, const scene::SceneCamera& 
   return result;
 }
 
-tunnels::Tunnel aimed(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
-                      const scene::SceneRay& ray, const Eigen::Vector3d& handle_mm) {
-  const Eigen::Vector3d ahead = axes_of(camera).ahead;
-  const double along = ray.direction.dot(ahead);
-  if (along < 1e-6) return tunnel;
-  const Eigen::Vector3d target =
-      ray.origin_mm + (handle_mm - ray.origin_mm).dot(ahead) / along * ray.direction;
-  const Eigen::Vector3d direction = target - tunnel.entry_mm;
+tunnels::Tunnel aimed_at(const tunnels::Tunnel& tunnel, const Eigen::Vector3d& point_mm) {
+  const Eigen::Vector3d direction = point_mm - tunnel.entry_mm;
   tunnels::Tunnel result = tunnel;
   if (direction.norm() > 1) result.direction = direction.normalized();
   return result;
@@ -72,6 +66,14 @@ tunnels::Tunnel with_diameter(const tunnels::Tunnel& tunnel, double diameter_mm)
   tunnels::Tunnel result = tunnel;
   result.diameter_mm = std::clamp(diameter_mm, tunnels::kLeastDiameter_mm, tunnels::kGreatestDiameter_mm);
   return result;
+}
+
+std::optional<Eigen::Vector3d> moved_in_view(const scene::SceneCamera& camera, const scene::SceneRay& ray,
+                                             const Eigen::Vector3d& point_mm) {
+  const Eigen::Vector3d ahead = axes_of(camera).ahead;
+  const double along = ray.direction.dot(ahead);
+  if (along < 1e-6) return std::nullopt;
+  return ray.origin_mm + (point_mm - ray.origin_mm).dot(ahead) / along * ray.direction;
 }
 
 }  // namespace arthronaut::plan

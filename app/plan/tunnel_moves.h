@@ -18,10 +18,15 @@ namespace arthronaut::plan {
 // that way.
 [[nodiscard]] tunnels::Tunnel turned(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
                                      const Eigen::Vector2d& right_up_deg);
-// Aims at where the ray meets the plane through `handle_mm` that faces the camera.
-[[nodiscard]] tunnels::Tunnel aimed(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
-                                    const scene::SceneRay& ray, const Eigen::Vector3d& handle_mm);
+// Aims at the point; the same tunnel where that is no further than 1 mm from its entry.
+[[nodiscard]] tunnels::Tunnel aimed_at(const tunnels::Tunnel& tunnel, const Eigen::Vector3d& point_mm);
 // Clamped to the range of tunnels/diameter_range.h.
 [[nodiscard]] tunnels::Tunnel with_diameter(const tunnels::Tunnel& tunnel, double diameter_mm);
+
+// Where the ray meets the plane through the point that faces the eye; nullopt where it does not. A point that
+// goes on from there stays in that plane: dragged out and back it is where it was.
+[[nodiscard]] std::optional<Eigen::Vector3d> moved_in_view(const scene::SceneCamera& camera,
+                                                           const scene::SceneRay& ray,
+                                                           const Eigen::Vector3d& point_mm);
 
 }  // namespace arthronaut::plan

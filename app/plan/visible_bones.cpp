@@ -49,6 +49,13 @@ bool is_hidden(const VisibleBones& bones, const Eigen::Vector3d& eye_mm, const E
   return first && (first->point_mm - eye_mm).norm() < distance - kBehind_mm;
 }
 
+Eigen::Vector3d middle_behind(const geometry::Surface& bone, const VisiblePoint& seen,
+                              const scene::SceneRay& ray) {
+  constexpr double kOff_mm = 0.01;  // the surface that is seen is not met again
+  const auto out = bone.first_hit(seen.point_mm + kOff_mm * ray.direction, ray.direction);
+  return out ? Eigen::Vector3d((seen.point_mm + out->point_mm) / 2) : seen.point_mm;
+}
+
 std::optional<Eigen::Vector3d> dragged_over(const VisibleBones& bones, bones::BoneKind kind,
                                             const Eigen::Vector3d& point_mm, const scene::SceneRay& ray,
                                             bool through) {

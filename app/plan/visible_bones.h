@@ -35,6 +35,11 @@ struct VisiblePoint {
 [[nodiscard]] bool is_hidden(const VisibleBones& bones, const Eigen::Vector3d& eye_mm,
                              const Eigen::Vector3d& point_mm);
 
+// Half way from a point that is seen to where the ray leaves that bone again: in the middle of a shaft or a
+// condyle that is clicked on.
+[[nodiscard]] Eigen::Vector3d middle_behind(const geometry::Surface& bone, const VisiblePoint& seen,
+                                            const scene::SceneRay& ray);
+
 // Where a point of a bone's surface goes that is dragged along a ray: to the bone under the mouse, as far as
 // that is the same piece of surface. Behind an edge the surface goes on somewhere else: a step that goes more
 // than three times as deep as it goes across (and 3 mm) is none that a hand meant, and the point stays.

@@ -10,6 +10,7 @@ namespace {
 constexpr double kStillAfter_s = 0.25;
 constexpr float kMostPixelsWhenStill = 8e6F;
 constexpr float kClickTravel_px = 4;
+constexpr float kDragTravel_px = 3;  // a hand that clicks on a handle trembles less
 
 Eigen::Vector2d vector(const ImVec2& v) { return {v.x, v.y}; }
 
@@ -49,7 +50,7 @@ PaneInput ScenePane::draw(const Ui& ui, const char* name, const Rect& rect,
   }
   if (ImGui::IsItemActive()) {
     press_travel_px_ += vector(held_mouse_way_px()).norm();
-    input.handle_dragged = drags_handle_ && press_travel_px_ > 0;
+    input.handle_dragged = drags_handle_ && press_travel_px_ >= kDragTravel_px;
   }
   if (ImGui::IsItemDeactivated()) {
     input.handle_released = drags_handle_;

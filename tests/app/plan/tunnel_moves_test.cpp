@@ -54,14 +54,38 @@ TEST(TunnelMoves, SlidingStaysOnTheBone) {
   EXPECT_NEAR((slid.entry_mm - Eigen::Vector3d(1.5, 0, 1.75)).norm(), 0, 1e-9);
 }
 
-// Dragging the handle aims at where the mouse is, in the plane of the handle.
-TEST(TunnelMoves, AimHandleFollowsTheMouse) {
-  const Eigen::Vector3d handle = straight().entry_mm + 45 * straight().direction;
-  const Eigen::Vector3d wanted = handle + Eigen::Vector3d(6, 0, -4);
+// The handle is under the mouse, and the tunnel runs towards it.
+TEST(TunnelMoves, AimsAtThePoint) {
+  const Eigen::Vector3d wanted = straight().entry_mm + Eigen::Vector3d(6, 40, -4);
+  EXPECT_NEAR((aimed_at(straight(), wanted).direction - (wanted - straight().entry_mm).normalized()).norm(),
+              0, 1e-9);
+  EXPECT_EQ(aimed_at(straight(), straight().entry_mm).direction, straight().direction);
+}
+
+// An aim that a hand brings back is the one that it was, however far it was away.
+TEST(TunnelMoves, AnAimDraggedOutAndBackIsAsItWas) {
   const scene::SceneCamera camera = anterior();
+  Eigen::Vector3d handle = straight().entry_mm + 45 * straight().direction;
+  const Eigen::Vector3d before = handle;
+  tunnels::Tunnel tunnel = straight();
+  for (const double out_mm : {5, 20, 60, 90, 60, 20, 5, 0}) {
+    const Eigen::Vector3d mouse = before + out_mm * Eigen::Vector3d::UnitX();
+    handle = *moved_in_view(camera, {camera.position_mm, (mouse - camera.position_mm).normalized()}, handle);
+    tunnel = aimed_at(tunnel, handle);
+  }
+  EXPECT_NEAR((tunnel.direction - straight().direction).norm(), 0, 1e-9);
+}
+
+// What is dragged in the view's plane stays as deep as it was, under the mouse.
+TEST(TunnelMoves, WhatIsMovedInTheViewStaysAsDeep) {
+  const scene::SceneCamera camera = anterior();
+  const Eigen::Vector3d point(3, 17, -5),
+      wanted = point + Eigen::Vector3d(-8, 0, 11);  // the eye looks along y
   const scene::SceneRay ray{camera.position_mm, (wanted - camera.position_mm).normalized()};
-  const tunnels::Tunnel result = aimed(straight(), camera, ray, handle);
-  EXPECT_NEAR((result.direction - (wanted - straight().entry_mm).normalized()).norm(), 0, 1e-9);
+  const auto moved = moved_in_view(camera, ray, point);
+  ASSERT_TRUE(moved);
+  EXPECT_NEAR((*moved - wanted).norm(), 0, 1e-9);
+  EXPECT_FALSE(moved_in_view(camera, {camera.position_mm, -ray.direction}, point));
 }
 
 // A diameter stays within what a drill can be.

@@ -33,6 +33,17 @@ TEST(VisibleBones, TheFirstBoneIsMet) {
   EXPECT_FALSE(first_visible(slabs.both, slabs.towards({90, 60, 0})));
 }
 
+// A place within the bone is clicked on through its surface: half way through that bone, not the one behind.
+TEST(VisibleBones, TheMiddleOfTheBoneThatIsClicked) {
+  const Slabs slabs;
+  const scene::SceneRay ray = slabs.towards({6, 0, 9});
+  const auto seen = first_visible(slabs.both, ray);
+  ASSERT_TRUE(seen);
+  const Eigen::Vector3d middle = middle_behind(slabs.tibia, *seen, ray);
+  EXPECT_NEAR(middle.y(), 15, 1e-6);
+  EXPECT_NEAR((middle - ray.origin_mm).cross(ray.direction).norm(), 0, 1e-9) << "on the ray";
+}
+
 // A handle behind a bone, or on the far side of its own, is hidden; one on the near side is not, though it
 // lies on the bone.
 TEST(VisibleBones, WhatIsBehindBoneIsHidden) {

@@ -12,8 +12,7 @@
 #include "planning/painting/bone_labels.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/phantom/phantom_knee.h"
-#include "tests/app/window/display.h"
-#include "tests/temporary_folder.h"
+#include "tests/app/window/plan_window.h"
 
 namespace arthronaut::test {
 namespace {
@@ -24,28 +23,6 @@ std::string fixed(double value) {
   std::snprintf(text, sizeof(text), "%.2f", value);
   return text;
 }
-
-class PlanWindow : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
-  }
-  [[nodiscard]] std::filesystem::path case_folder() const {
-    return folder_.path() / "arthronaut" / "Phantom.arthro";
-  }
-  [[nodiscard]] tunnels::Tunnel saved_tunnel() const {
-    return cases::load_case(case_folder()).plan.tunnels.at(bones::BoneKind::Femur);
-  }
-  static void open(const RunningWorkstation& app) {
-    ASSERT_TRUE(app.wait_for_state("case", "open", 120));
-    ASSERT_TRUE(app.wait_for_widget("plan.entry_handle"));
-  }
-  static std::pair<int, int> middle(const RunningWorkstation& app, const std::string& widget) {
-    const Area area = app.widgets().at(widget);
-    return {area.x + area.width / 2, area.y + area.height / 2};
-  }
-  const TemporaryFolder folder_;
-};
 
 // From the front the femur hides its entry: a drag there turns the bone, and the plan stays. In the notch
 // view the entry is seen, and three pixels move it by what three pixels are.
@@ -103,33 +80,6 @@ TEST_F(PlanWindow, PlacingCanBeLeftAndTakesNoOtherBone) {
   app.click_at(view.x + view.width / 2, view.y + view.height / 4);  // the femur's shaft
   EXPECT_TRUE(app.wait_for_state("undo", "Place the entry of the femoral tunnel"));
   EXPECT_EQ(app.state("placing"), "nothing");
-}
-
-// What a click would do is what is shown: a landmark that was being placed is not, once its page is left or
-// the other bone is worked on, and a click that is meant for an entry moves no landmark.
-TEST_F(PlanWindow, AClickForAnEntryMovesNoLandmark) {
-  const VirtualDisplay display(1280, 720);
-  RunningWorkstation app(display, folder_.path());
-  open(app);
-  app.press("l");
-  app.press("Next");
-  ASSERT_TRUE(app.wait_for_state("landmark", "blumensaat_posterior"));
-  app.press("p");
-  ASSERT_TRUE(app.wait_for_state("placing", "landmark"));
-  app.press("c");
-  EXPECT_TRUE(app.wait_for_state("placing", "nothing", 5));
-  app.press("p");
-  ASSERT_TRUE(app.wait_for_state("placing", "entry", 5));
-  const Area view = app.widgets().at("plan.view");
-  app.click_at(view.x + view.width / 2, view.y + view.height / 4);  // the femur's shaft
-  EXPECT_TRUE(app.wait_for_state("undo", "Place the entry of the femoral tunnel"));
-  app.press("l");
-  app.press("p");
-  ASSERT_TRUE(app.wait_for_state("placing", "landmark"));
-  app.press("Tab");
-  EXPECT_TRUE(app.wait_for_state("tunnel", "tibia"));
-  EXPECT_TRUE(app.wait_for_state("placing", "nothing", 5));
-  EXPECT_EQ(app.state("landmark"), "plateau_anterior") << "the first of this bone's";
 }
 
 // "+" is understood from every key that has it.
