@@ -6,7 +6,6 @@
 #include "app/case/case_opening.h"
 #include "planning/files/private_folder.h"
 #include "planning/import/case_import.h"
-#include "planning/segmentation/ct_bones.h"
 
 namespace arthronaut::start {
 
@@ -29,7 +28,7 @@ void ImportWork::look_into(const fs::path& root) {
   sources_.root = root;
   result_ = {};
   said_side_.reset();
-  failure_.clear();
+  failure_ = {};
   noted_ = 0;
   state_ = State::Looking;  // until poll(), whatever it is: the window sees every step
   if (!may_hold_series(root)) return;
@@ -38,7 +37,7 @@ void ImportWork::look_into(const fs::path& root) {
         importing::SeriesRequest{.source = root, .with_pictures = true, .program = program_});
   } catch (
       const std::exception& error) {  // no process could be started: said as any other failure of looking
-    failure_ = error.what();
+    failure_ = {.words = error.what()};
   }
 }
 
@@ -50,7 +49,7 @@ void ImportWork::take_sources() {
     } else if (series_->state() == importing::SeriesProcess::State::Running) {
       return;
     } else {
-      failure_ = series_->message();
+      failure_ = {.words = series_->message()};
     }
   }
   // Without a list there may be meshes all the same.
@@ -94,7 +93,7 @@ void ImportWork::start(const ImportWishes& wishes) {
   next_ = 0;
   result_ = {};
   said_side_.reset();
-  failure_.clear();
+  failure_ = {};
   state_ = State::Running;
   start_next();
 }
@@ -112,7 +111,7 @@ void ImportWork::start_next() {
         importing::ImportRequest{.source = source.source, .options = options, .program = program_});
   } catch (
       const std::exception& error) {  // no process could be started: said as any other failure of the import
-    failure_ = error.what();
+    failure_ = {.words = error.what()};
     state_ = State::Choosing;
   }
 }
@@ -123,7 +122,7 @@ void ImportWork::take_bones() {
   progress_ = process_->progress();
   if (state == Process::State::Running) return;
   if (state != Process::State::Done) {
-    failure_ = process_->message();
+    failure_ = process_->failure();
     state_ = State::Choosing;
     process_.reset();
     return;
@@ -134,7 +133,8 @@ void ImportWork::take_bones() {
     result_ = std::move(made);
   } else {  // another mesh of the same knee
     if (result_.side && made.side && *result_.side != *made.side) {
-      failure_ = "the meshes are of different sides: " + sources_.sources.at(wishes_.sources[next_]).title;
+      failure_ = {.words = "the meshes are of different sides: " +
+                           sources_.sources.at(wishes_.sources[next_]).title};
       state_ = State::Choosing;
       return;
     }
@@ -161,7 +161,7 @@ void ImportWork::cancel() {
     if (series_ != nullptr) series_->cancel();
   } else if (state_ == State::Running || state_ == State::Asking) {
     process_.reset();  // ends the child
-    failure_.clear();
+    failure_ = {};
     state_ = State::Choosing;
   }
 }
@@ -176,7 +176,7 @@ void ImportWork::save(const fs::path& folder, const std::string& name) {
   if (said_side_) importing::say_side(import, *said_side_);
   if (!import.side) return;
   state_ = State::Saving;
-  failure_.clear();
+  failure_ = {};
   folder_ = folder;
   saving_.start(
       [folder, name, import = std::move(import), root = sources_.root] {
@@ -196,14 +196,10 @@ void ImportWork::poll() {
       saving_.take();
       state_ = State::Done;
     } catch (const std::exception& error) {
-      failure_ = error.what();
+      failure_ = {.words = error.what()};
       state_ = State::Asking;
     }
   }
-}
-
-bool ImportWork::found_both_knees() const {
-  return failure_.find(segmentation::kShowsBothKnees) != std::string::npos;
 }
 
 bool ImportWork::is_busy() const {

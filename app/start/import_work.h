@@ -65,9 +65,12 @@ class ImportWork {
   [[nodiscard]] const importing::BoneImport& result() const { return result_; }
   [[nodiscard]] std::vector<std::string> doubts() const;
   // Why the last step was refused or cancelled; empty when it was not.
-  [[nodiscard]] const std::string& failure() const { return failure_; }
-  // The failure is that the images show both knees, and nobody has said which one is meant.
-  [[nodiscard]] bool found_both_knees() const;
+  [[nodiscard]] const std::string& failure() const { return failure_.words; }
+  [[nodiscard]] importing::FailureReason failure_reason() const { return failure_.reason; }
+  // The images show both knees, and nobody has said which one is meant.
+  [[nodiscard]] bool found_both_knees() const {
+    return failure_.reason == importing::FailureReason::ShowsBothKnees;
+  }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }  // Done: the case
 
  private:
@@ -90,7 +93,7 @@ class ImportWork {
   importing::ImportProgress progress_;
   importing::BoneImport result_;
   std::optional<bones::Side> said_side_;  // of result_, by a person
-  std::string failure_;
+  importing::Failure failure_;
 };
 
 // A folder for a new case that is not there yet: FOLDER/NAME.arthro, with a number where that is taken.

@@ -116,6 +116,11 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
                             std::string(!state_.side                         ? ""
                                         : *state_.side == bones::Side::Right ? "  \u2013  the right one"
                                                                              : "  \u2013  the left one"));
+  else if (work_.failure_reason() == importing::FailureReason::IsNoCt)
+    widgets::status_row(
+        ui, Severity::Caution, "No CT",
+        "In an MR no grey value is bone alone. Press P: the images are taken, you paint a few "
+        "strokes, and the bones grow from them");
   else if (!work_.failure().empty())
     widgets::status_row(ui, Severity::Bad, "Refused", work_.failure());
   const float height = ui.theme.px(132), picture = ui.theme.px(116);

@@ -8,6 +8,7 @@
 #include "planning/images/bone_surface.h"
 #include "planning/images/volume_file.h"
 #include "planning/import/cut_check.h"
+#include "planning/import/failure_reason.h"
 #include "planning/import/shape_check.h"
 #include "planning/segmentation/anatomy_check.h"
 #include "planning/segmentation/ct_bones.h"
@@ -102,14 +103,16 @@ void import_mesh(const std::filesystem::path& source, const BoneImportOptions& o
   }
 }
 
-void refuse_without_threshold(const Volume& volume, const BoneImportOptions& options) {
+void refuse_without_threshold(const Volume& volume, const std::filesystem::path& source,
+                              const BoneImportOptions& options) {
   if (options.threshold) return;
   const float least = *std::min_element(volume.values.begin(), volume.values.end());
   if (volume.modality == "CT" || (volume.modality.empty() && least < kAir_hu)) return;
-  throw InvalidInput(
+  throw ImportRefused(
+      source,
       "is no CT, so there is no threshold that finds bone: paint seeds and grow them (arthronaut segment), "
-      "give "
-      "--threshold, or import a label map or a mesh of it");
+      "give --threshold, or import a label map or a mesh of it",
+      FailureReason::IsNoCt);
 }
 
 std::string word_of(BoneKind kind) { return std::string(bones::to_text(kind)); }
@@ -251,9 +254,11 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
       }
       import_labels(volume, named, options, result, tell);
     } else {
-      refuse_without_threshold(volume, options);
+      refuse_without_threshold(volume, source, options);
       fibula_was_seen = import_ct(volume, options, result, tell);
     }
+  } catch (const segmentation::ShowsBothKnees& error) {
+    throw ImportRefused(source, error.what(), FailureReason::ShowsBothKnees);
   } catch (const InvalidInput& error) {
     // Those of the surface speak of "the volume": the file's name goes before it, once.
     const std::string message = error.what();

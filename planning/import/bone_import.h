@@ -85,9 +85,9 @@ struct BoneImport {
 // A person says the side. Where the fibula says another one that is a doubt of the bones from then on.
 void say_side(BoneImport& import, bones::Side side);
 
-// Throws IoError or InvalidInput; a bone that cannot be told from the name is InvalidInput that says which
-// option to add. `tell` is called on the same thread whenever there is progress. For files from elsewhere use
-// ImportProcess, which does this where it can do no harm.
+// Throws IoError, ImportRefused (failure_reason.h) or InvalidInput; a bone that cannot be told from the name
+// is InvalidInput that says which option to add. `tell` is called on the same thread whenever there is
+// progress. For files from elsewhere use ImportProcess, which does this where it can do no harm.
 [[nodiscard]] BoneImport import_bones(
     const std::filesystem::path& source, const BoneImportOptions& options = {},
     const std::function<void(std::string_view stage, double fraction)>& tell = nullptr);

@@ -120,11 +120,10 @@ ChildProcess::State ChildProcess::wait_for(double seconds, const Take& take) {
     if (ready == 0) {
       // What it said while nobody asked has been heard before this.
       if (patience_s() <= 0)
-        fail(
-            options_.source.string() +
-            files::format(": nothing was heard of its reading for %.3g s: a file is broken, or the disc does "
-                          "not answer",
-                          options_.longest_silence_s));
+        fail({.words = options_.source.string() +
+                       files::format(": nothing was heard of its reading for %.3g s: a file is broken, or "
+                                     "the disc does not answer",
+                                     options_.longest_silence_s)});
       break;
     }
     std::string chunk(kChunk_bytes, '\0');
@@ -152,7 +151,7 @@ void ChildProcess::take_in(const std::string& bytes, const Take& take) {
   buffer_ += bytes;
   try {
     while (const auto message = take_message(buffer_, options_.longest_message_bytes)) {
-      if (message->kind == MessageKind::Failure) return fail(clipped(message->contents));
+      if (message->kind == MessageKind::Failure) return fail(failure_from(message->contents));
       if (!take(*message)) continue;
       // Not left to end by itself: whatever it still does is nobody's wish.
       static_cast<void>(ended_child());
@@ -160,7 +159,7 @@ void ChildProcess::take_in(const std::string& bytes, const Take& take) {
       return;
     }
   } catch (const InvalidInput& error) {
-    fail(options_.source.string() + ": " + error.what());
+    fail({.words = options_.source.string() + ": " + error.what()});
   }
 }
 
@@ -172,15 +171,16 @@ void ChildProcess::end_by_itself() {
   } else {
     reason += files::format(" with code %d", WEXITSTATUS(status));
   }
-  fail(options_.source.string() + ": " + reason +
-       files::format(": a file is broken, or needs more than the %.3g GiB of memory that an import may take "
+  fail({.words = options_.source.string() + ": " + reason +
+                 files::format(
+                     ": a file is broken, or needs more than the %.3g GiB of memory that an import may take "
                      "(--memory-limit-gib allows more)",
-                     options_.memory_limit_gib));
+                     options_.memory_limit_gib)});
 }
 
-void ChildProcess::fail(const std::string& reason) {
+void ChildProcess::fail(Failure failure) {
   static_cast<void>(ended_child());
-  message_ = reason;
+  failure_ = std::move(failure);
   state_ = State::Failed;
 }
 
@@ -201,7 +201,7 @@ int ChildProcess::ended_child() {
 void ChildProcess::cancel() {
   if (state_ != State::Running) return;
   static_cast<void>(ended_child());
-  message_ = "The import was cancelled: nothing was written.";
+  failure_.words = "The import was cancelled: nothing was written.";
   state_ = State::Cancelled;
 }
 

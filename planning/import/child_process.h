@@ -19,9 +19,16 @@
 #include <functional>
 #include <string>
 
+#include "planning/import/failure_reason.h"
+
 namespace arthronaut::importing {
 
 struct Message;  // import_messages.h
+
+struct Failure {
+  FailureReason reason = FailureReason::Other;
+  std::string words;  // for a person
+};
 
 struct ChildProcessOptions {
   std::filesystem::path source;                       // for messages
@@ -58,21 +65,23 @@ class ChildProcess {
 
   [[nodiscard]] State state() const { return state_; }
   // Why it failed or was cancelled, for a person; empty otherwise.
-  [[nodiscard]] const std::string& message() const { return message_; }
-  [[nodiscard]] int process_id() const { return process_id_; }  // -1 once it has ended
-  [[nodiscard]] int shared() const { return shared_; }          // the memory's descriptor; -1: none
+  [[nodiscard]] const std::string& message() const { return failure_.words; }
+  [[nodiscard]] const Failure& failure() const { return failure_; }  // with these words
+  [[nodiscard]] int process_id() const { return process_id_; }       // -1 once it has ended
+  [[nodiscard]] int shared() const { return shared_; }               // the memory's descriptor; -1: none
 
  private:
   [[nodiscard]] double patience_s() const;  // until its silence has been too long
   void take_in(const std::string& bytes, const Take& take);
   void end_by_itself();  // the child has closed its end
   int ended_child();     // its status
-  void fail(const std::string& reason);
+  void fail(Failure failure);
 
   ChildProcessOptions options_;
   int socket_ = -1, process_id_ = -1, shared_ = -1;
   State state_ = State::Running;
-  std::string buffer_, message_;
+  std::string buffer_;
+  Failure failure_;  // or the cancellation
   // Something, the last time.
   std::chrono::steady_clock::time_point heard_ = std::chrono::steady_clock::now();
 };

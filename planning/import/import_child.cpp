@@ -125,11 +125,13 @@ void answer(int socket, const ChildRequest& request) {
     else
       look_through(socket, request);
   } catch (const std::bad_alloc&) {
-    send_all(socket, failure_message(request.source.string() + ": " + needs_more(request)));
+    send_all(socket, message_of(Failure{.words = request.source.string() + ": " + needs_more(request)}));
   } catch (const fs::filesystem_error& error) {
-    send_all(socket, failure_message(in_words(error)));
+    send_all(socket, message_of(Failure{.words = in_words(error)}));
+  } catch (const ImportRefused& error) {
+    send_all(socket, message_of(Failure{error.reason(), error.what()}));
   } catch (const std::exception& error) {
-    send_all(socket, failure_message(error.what()));
+    send_all(socket, message_of(Failure{.words = error.what()}));
   }
 }
 

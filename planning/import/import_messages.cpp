@@ -214,6 +214,12 @@ void describe(Archive& archive, BoneImport& import) {
 }
 
 template <typename Archive>
+void describe(Archive& archive, Failure& failure) {
+  describe(archive, failure.reason);
+  describe(archive, failure.words);
+}
+
+template <typename Archive>
 void describe(Archive& archive, images::ImageSeries& series) {
   describe(archive, series.uid);
   describe(archive, series.number);
@@ -301,6 +307,11 @@ void refuse_unsound(const ImportProgress& progress) {
     throw InvalidInput("the importing process sent a progress that is none");
 }
 
+void refuse_unsound(const Failure& failure) {
+  if (failure.words.size() > kLongestText_bytes || failure.reason > FailureReason::IsNoCt)
+    throw InvalidInput("the importing process sent a failure that is none");
+}
+
 void refuse_unsound(images::SeriesList& list) {
   constexpr int kMostImages = 100'000'000;
   bool is_sound = true;
@@ -359,8 +370,8 @@ std::string message_of(const images::SeriesList& list) {
 std::string message_of(const SeriesPicture& picture) {
   return written(MessageKind::SeriesPicture, SeriesPicture{picture.thumbnail, clipped(picture.refusal)});
 }
-std::string failure_message(const std::string& reason) {
-  return framed(MessageKind::Failure, clipped(reason));
+std::string message_of(const Failure& failure) {
+  return written(MessageKind::Failure, Failure{failure.reason, clipped(failure.words)});
 }
 
 std::string clipped(std::string text) {
@@ -387,6 +398,7 @@ ChildRequest request_from(std::string_view contents) { return read<ChildRequest>
 ImportProgress progress_from(std::string_view contents) { return sound<ImportProgress>(contents); }
 BoneImport import_from(std::string_view contents) { return sound<BoneImport>(contents); }
 images::SeriesList series_list_from(std::string_view contents) { return sound<images::SeriesList>(contents); }
+Failure failure_from(std::string_view contents) { return sound<Failure>(contents); }
 SeriesPicture series_picture_from(std::string_view contents) { return sound<SeriesPicture>(contents); }
 
 }  // namespace arthronaut::importing

@@ -38,7 +38,7 @@ inline constexpr std::uint64_t kLongestList_bytes = 64ULL << 20;
 [[nodiscard]] std::string message_of(const BoneImport& import);
 [[nodiscard]] std::string message_of(const images::SeriesList& list);
 [[nodiscard]] std::string message_of(const SeriesPicture& picture);
-[[nodiscard]] std::string failure_message(const std::string& reason);
+[[nodiscard]] std::string message_of(const Failure& failure);
 
 // No longer than kLongestText_bytes, cut between two characters.
 [[nodiscard]] std::string clipped(std::string text);
@@ -57,6 +57,7 @@ struct Message {
 [[nodiscard]] ImportProgress progress_from(std::string_view contents);
 [[nodiscard]] BoneImport import_from(std::string_view contents);
 [[nodiscard]] images::SeriesList series_list_from(std::string_view contents);
+[[nodiscard]] Failure failure_from(std::string_view contents);
 [[nodiscard]] SeriesPicture series_picture_from(std::string_view contents);
 
 }  // namespace arthronaut::importing

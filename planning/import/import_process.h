@@ -47,6 +47,7 @@ class ImportProcess {
   [[nodiscard]] const ImportProgress& progress() const { return progress_; }
   // Why it failed or was cancelled, for a person; empty otherwise.
   [[nodiscard]] const std::string& message() const { return child_.message(); }
+  [[nodiscard]] const Failure& failure() const { return child_.failure(); }  // with these words
   // The bones, once; the state must be Done.
   [[nodiscard]] BoneImport take_result();
 

@@ -104,7 +104,7 @@ void keep_one_knee(Found& found, const CtBonesOptions& options) {
     middle = 0.5 * (across[i] + across[i + 1]);
   }
   if (!are_two) return;
-  if (!options.side) throw InvalidInput(std::string(kShowsBothKnees) + ": add --side left or --side right");
+  if (!options.side) throw ShowsBothKnees("shows both knees: add --side left or --side right");
   const bool is_left = *options.side == Side::Left;
   std::erase_if(all, [&](const Candidate& c) { return (c.profile.center_mm.x() > middle) != is_left; });
   std::erase_if(found.slender, [&](const Slender& s) { return (s.center_mm.x() > middle) != is_left; });

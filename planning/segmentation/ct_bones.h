@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "planning/bones/bone.h"
+#include "planning/geometry/error.h"
 #include "planning/geometry/triangle_mesh.h"
 #include "planning/images/volume.h"
 
@@ -43,10 +44,14 @@ struct CtBones {
   std::optional<bones::Side> side_by_fibula;
 };
 
-// The reason why a volume of both knees is refused where nobody says which one is meant begins with this.
-inline constexpr std::string_view kShowsBothKnees = "shows both knees";
+// A volume of both knees, and nobody says which one is meant.
+class ShowsBothKnees : public InvalidInput {
+ public:
+  using InvalidInput::InvalidInput;
+};
 
-// Throws InvalidInput when no bone of a knee, or not the one that was asked for, is in the volume.
+// Throws ShowsBothKnees, and InvalidInput when no bone of a knee, or not the one that was asked for, is in
+// the volume.
 [[nodiscard]] CtBones bones_of_ct(const images::Volume& volume, const CtBonesOptions& options = {});
 
 }  // namespace arthronaut::segmentation

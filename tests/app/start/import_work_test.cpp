@@ -84,6 +84,17 @@ TEST_F(ImportWorkTest, MakesACaseOfTwoMeshesAndAsksForTheSide) {
   EXPECT_NE(new_case_folder(folder_ / "cases", "Knee"), target) << "the next one gets a folder of its own";
 }
 
+// That both knees are there is told by the import, not by words that a folder's name may have, too.
+TEST_F(ImportWorkTest, BothKneesAreToldByWhatTheImagesShow) {
+  write_slices("shows both knees", "1.2.3");
+  work_.look_into(folder_ / "shows both knees");
+  ASSERT_TRUE(reach(State::Choosing));
+  work_.start({.sources = {0}});
+  ASSERT_TRUE(reach(State::Choosing));
+  EXPECT_THAT(work_.failure(), testing::HasSubstr("shows both knees"));
+  EXPECT_FALSE(work_.found_both_knees());
+}
+
 // Names that tell the side are believed, and that they were is said; meshes of two sides are no knee.
 TEST_F(ImportWorkTest, MeshesOfTwoSidesAreRefused) {
   write_meshes("right_femur.stl", "left_tibia.stl");

@@ -217,7 +217,8 @@ TEST(ImportMessages, ALongTextIsCutOffAndNotBelieved) {
   contents.insert(at, 1, 'x');
   std::memcpy(contents.data() + at - sizeof(longer), &longer, sizeof(longer));
   EXPECT_THROW((void)series_list_from(contents), InvalidInput);
-  EXPECT_LE(contents_of(failure_message(std::string(1'000'000, 'x'))).size(), kLongestText_bytes);
+  EXPECT_LE(failure_from(contents_of(message_of(Failure{.words = std::string(1'000'000, 'x')}))).words.size(),
+            kLongestText_bytes);
 }
 
 }  // namespace

@@ -132,6 +132,36 @@ TEST_F(ImportProcessTest, ARefusalComesBackWithFilePlaceAndReason) {
   EXPECT_THAT(absent.message(), HasSubstr("absent.stl: does not exist"));
 }
 
+// What a person can be asked, which of two knees is meant or strokes in an MR, is told apart from what is
+// merely refused.
+TEST_F(ImportProcessTest, ReasonsThatCanBeAnsweredAreToldApart) {
+  const images::Volume one = test::ellipsoid_ct();
+  images::Volume both = one;
+  const auto across = static_cast<int>(150 / one.spacing_mm().x());  // from knee to knee
+  both.size.x() += across;
+  both.values.assign(static_cast<std::size_t>(both.size.prod()), -100.0F);
+  for (int k = 0; k < one.size.z(); ++k)
+    for (int j = 0; j < one.size.y(); ++j)
+      for (int i = 0; i < one.size.x(); ++i)
+        for (const int at : {i, i + across})
+          both.values[both.index(at, j, k)] = std::max(both.values[both.index(at, j, k)], one.at(i, j, k));
+  test::write_dicom_series(folder_ / "ct", both);
+  ImportProcess process(request(folder_ / "ct"));
+  ASSERT_EQ(finished(process), State::Failed);
+  EXPECT_EQ(process.failure().reason, FailureReason::ShowsBothKnees);
+  EXPECT_THAT(process.message(), AllOf(HasSubstr((folder_ / "ct").string()), HasSubstr("--side")));
+  test::write_bytes(folder_ / "mr.nrrd", test::uniform_nrrd({20, 20, 20}, 700));  // no air of -1000 HU
+  ImportProcess mr(request(folder_ / "mr.nrrd"));
+  ASSERT_EQ(finished(mr), State::Failed);
+  EXPECT_EQ(mr.failure().reason, FailureReason::IsNoCt) << mr.message();
+  test::write_dicom_series(folder_ / "shows both knees", one);
+  ImportRequest asked = request(folder_ / "shows both knees");
+  asked.options.threshold = 3000;
+  ImportProcess other(asked);
+  ASSERT_EQ(finished(other), State::Failed);
+  EXPECT_EQ(other.failure().reason, FailureReason::Other);
+}
+
 // Its header is within the limit, what is made of it is not: 15.6 million voxels, all of them bone.
 TEST_F(ImportProcessTest, AVolumeThatNeedsTooMuchMemoryIsAClearErrorAndNoHarm) {
   test::write_bytes(folder_ / "bomb.nrrd", test::uniform_nrrd({250, 250, 250}, 700));
