@@ -72,22 +72,19 @@ void PaintView::add_brush_actions(widgets::Actions& actions) {
                GLFW_KEY_O, 0, false, edits, [this] { return brushing_.brush.is_ball; },
                [this] { brushing_.brush.is_ball = !brushing_.brush.is_ball; }});
   const auto is_shown = [this] { return is_ready(); };
-  actions.add({"paint.window",
-               "Window",
-               "Bone, soft tissue, as the values are; or drag with the right button",
-               GLFW_KEY_W,
-               0,
-               false,
-               is_shown,
-               {},
-               [this] {
-                 if (look_.window == scene::kBoneWindow)
-                   look_.window = scene::kSoftTissueWindow;
-                 else if (look_.window == scene::kSoftTissueWindow)
-                   look_.window = look_.automatic;
-                 else
-                   look_.window = scene::kBoneWindow;
-               }});
+  actions.add(
+      {"paint.window",
+       "Window",
+       "In a CT bone, soft tissue, as the values are; in an MR as the values are. Or drag with the right "
+       "button",
+       GLFW_KEY_W,
+       0,
+       false,
+       is_shown,
+       {},
+       [this] {
+         look_.window = scene::next_window(look_.window, look_.automatic, painting_->volume().modality);
+       }});
   actions.add({"paint.fit",
                "Whole",
                "Shows the whole slices again; Ctrl and the wheel zoom, Shift and drag shifts",

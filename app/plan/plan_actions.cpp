@@ -273,22 +273,17 @@ void PlanView::add_slice_actions(widgets::Actions& actions) {
                },
                {},
                [this] { paint_(); }});
-  actions.add({"plan.window",
-               "Window",
-               "Bone, soft tissue, as the values are; or drag with the right button",
-               GLFW_KEY_W,
-               0,
-               false,
-               has_slices,
-               {},
-               [this] {
-                 if (slices_.window() == scene::kBoneWindow)
-                   slices_.set_window(scene::kSoftTissueWindow);
-                 else if (slices_.window() == scene::kSoftTissueWindow)
-                   slices_.set_automatic_window();
-                 else
-                   slices_.set_window(scene::kBoneWindow);
-               }});
+  actions.add(
+      {"plan.window",
+       "Window",
+       "In a CT bone, soft tissue, as the values are; in an MR as the values are. Or drag with the right "
+       "button",
+       GLFW_KEY_W,
+       0,
+       false,
+       has_slices,
+       {},
+       [this] { slices_.go_to_next_window(); }});
   actions.add(
       {"plan.fit", "Whole", "Shows the whole slices again", GLFW_KEY_F, 0, false, has_slices, {}, [this] {
          slices_.fit();

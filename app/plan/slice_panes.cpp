@@ -85,6 +85,10 @@ void SlicePanes::fit() {
   for (SlicePane& pane : panes_) pane.fit(*volume_);
 }
 
+void SlicePanes::go_to_next_window() {
+  if (volume_ != nullptr) window_ = scene::next_window(window_, automatic_, volume_->modality);
+}
+
 std::string SlicePanes::reason() const {
   if (volume_ != nullptr) return "";
   if (!failure_.empty()) return "The images cannot be shown: " + failure_;

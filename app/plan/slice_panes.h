@@ -39,9 +39,7 @@ class SlicePanes {
   // Why there is nothing to show; empty when there is.
   [[nodiscard]] std::string reason() const;
 
-  void set_window(const scene::GreyWindow& window) { window_ = window; }
-  void set_automatic_window() { window_ = automatic_; }
-  [[nodiscard]] const scene::GreyWindow& window() const { return window_; }
+  void go_to_next_window();
   void set_cross(const Eigen::Vector3d& point_mm) { cross_mm_ = point_mm; }
   [[nodiscard]] const Eigen::Vector3d& cross_mm() const { return cross_mm_; }
   void fit();

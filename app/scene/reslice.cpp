@@ -74,6 +74,12 @@ GreyWindow automatic_window(const images::Volume& volume) {
   return {(low + high) / 2, std::max(high - low, 1.0)};
 }
 
+GreyWindow next_window(const GreyWindow& now, const GreyWindow& automatic, std::string_view modality) {
+  if (!modality.empty() && modality != "CT") return automatic;
+  if (now == kBoneWindow) return kSoftTissueWindow;
+  return now == kSoftTissueWindow ? automatic : kBoneWindow;
+}
+
 void reslice(const images::Volume& volume, const SlicePlane& plane, const Eigen::Vector2i& size_px,
              const GreyWindow& window, std::vector<std::uint8_t>& grey) {
   const auto width = static_cast<std::size_t>(std::max(size_px.x(), 0));

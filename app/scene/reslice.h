@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "planning/geometry/triangle_mesh.h"
@@ -36,6 +37,10 @@ inline constexpr GreyWindow kBoneWindow{480, 2500}, kSoftTissueWindow{40, 400};
 // From the 1 % to the 99.5 % quantile of about 100,000 of the values: for MR, whose values mean nothing by
 // themselves.
 [[nodiscard]] GreyWindow automatic_window(const images::Volume& volume);
+// The one that a key goes on to: bone, soft tissue, the automatic one. Of images that are known to be no CT
+// the automatic one alone: their values are no HU.
+[[nodiscard]] GreyWindow next_window(const GreyWindow& now, const GreyWindow& automatic,
+                                     std::string_view modality);
 
 // Trilinear between voxel centres; outside of the outermost centres black. `grey` becomes width * height
 // bytes, rows from the top.

@@ -97,6 +97,19 @@ TEST(Outline, OfABallIsACircle) {
   EXPECT_TRUE(outline_of(ball, 21 * normal, normal).empty());
 }
 
+// A key goes round the windows of a CT; an MR has one, however it was dragged.
+TEST(Reslice, AWindowOfAnMrIsNeverInHu) {
+  const GreyWindow automatic{300, 600}, dragged{100, 50};
+  for (const char* modality : {"CT", ""}) {
+    EXPECT_EQ(next_window(kBoneWindow, automatic, modality), kSoftTissueWindow);
+    EXPECT_EQ(next_window(kSoftTissueWindow, automatic, modality), automatic);
+    EXPECT_EQ(next_window(automatic, automatic, modality), kBoneWindow);
+    EXPECT_EQ(next_window(dragged, automatic, modality), kBoneWindow);
+  }
+  EXPECT_EQ(next_window(automatic, automatic, "MR"), automatic);
+  EXPECT_EQ(next_window(dragged, automatic, "MR"), automatic);
+}
+
 // MR has no units: the window runs over what the values are, and a few bright voxels do not darken it.
 TEST(GreyWindow, FollowsTheValues) {
   images::Volume volume;
