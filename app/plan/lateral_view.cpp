@@ -9,7 +9,6 @@
 #include "app/scene/lateral_plane.h"
 #include "app/scene/radiograph.h"
 #include "app/widgets/tooltip.h"
-#include "planning/landmarks/grid_landmarks.h"
 
 namespace arthronaut::plan {
 
@@ -92,15 +91,8 @@ void LateralView::draw_grid(const widgets::Ui& ui, const widgets::Rect& area) co
     return ImVec2(area.x + static_cast<float>(pixel.x()), area.y + static_cast<float>(pixel.y()));
   };
   const auto& quadrant = model_->surroundings(BoneKind::Femur).quadrant;
-  const landmarks::Landmarks& marks = model_->landmarks(BoneKind::Femur);
-  // Without the condyles the grid is laid along the scanner's axis, without a grid the bone's own axes tell.
-  const bool follows_condyles =
-      std::ranges::all_of(landmarks::grid_landmarks(BoneKind::Femur, marks),
-                          [&](const std::string& name) { return marks.contains(name); });
-  std::string text =
-      !quadrant          ? "Lateral view by " + std::string(to_text(model_->axes(BoneKind::Femur).origin))
-      : follows_condyles ? "True lateral view, condyles superposed"
-                         : "Lateral view along the scanner's axis: the condyles are not marked";
+  std::string text = scene::lateral_plane_in_words(model_->axes(BoneKind::Femur), quadrant,
+                                                   model_->landmarks(BoneKind::Femur));
   if (quadrant) {
     const scene::GridLines lines = scene::grid_lines(*quadrant);
     const ImU32 grid = widgets::color_of(scene::kGridColor), norm = widgets::color_of(scene::kNormColor);
@@ -125,8 +117,6 @@ void LateralView::draw_grid(const widgets::Ui& ui, const widgets::Rect& area) co
     const float wide = ui.theme.body->CalcTextSizeA(font, 1e9F, 0, kLine).x;
     draw.AddText(ui.theme.body, font,
                  {deep.x < shallow.x ? shallow.x + gap : shallow.x - gap - wide, shallow.y}, grid, kLine);
-  } else {
-    text += ". No grid: Blumensaat's line is not marked";
   }
   std::string percents;
   for (const tunnels::TunnelKey& key : model_->knee().plan.of(BoneKind::Femur)) {

@@ -128,7 +128,9 @@ double Sheet::lateral(double x_mm, double y_mm, double width_mm) {
   picture.plane = scene::lateral_plane(
       bone_axes, quadrant, scene::joint_bounds(mesh, BoneKind::Femur, bone_axes), picture.size_px);
   put_grey(picture, scene::radiograph_from(scene::thickness_along(mesh, picture.plane, picture.size_px)));
-  std::string caption = "True lateral view, condyles superposed";
+  const auto marks = knee_.landmarks.find(BoneKind::Femur);
+  std::string caption = scene::lateral_plane_in_words(
+      bone_axes, quadrant, marks == knee_.landmarks.end() ? landmarks::Landmarks{} : marks->second);
   if (quadrant) {
     const scene::GridLines grid = scene::grid_lines(*quadrant);
     for (const auto& rim : grid.rims) line(picture, rim.front(), rim.back(), 0.35, kGrid);
@@ -139,8 +141,6 @@ double Sheet::lateral(double x_mm, double y_mm, double width_mm) {
     for (std::size_t i = 0; i < norm.outline_mm.size(); ++i)
       line(picture, norm.outline_mm[i], norm.outline_mm[(i + 1) % norm.outline_mm.size()], 0.3, kNorm);
     caption += ". Yellow: mean and one standard deviation. " + norm.words;
-  } else {
-    caption += "; no grid, since Blumensaat's line is not marked";
   }
   tunnel_outlines(picture, BoneKind::Femur);
   if (const auto* femoral = planned(BoneKind::Femur); femoral != nullptr) {
@@ -196,10 +196,8 @@ void Sheet::tunnel_outlines(const PlanePicture& picture, BoneKind kind) {
 void Sheet::slice(const PlanePicture& picture, BoneKind kind, const std::optional<images::Volume>& volume) {
   std::vector<std::uint8_t> grey(static_cast<std::size_t>(picture.size_px.prod()), 255);
   if (volume) {
-    const bool is_ct = std::any_of(knee_.images.begin(), knee_.images.end(),
-                                   [](const cases::CaseImage& image) { return image.modality == "CT"; });
     scene::reslice(*volume, picture.plane, picture.size_px,
-                   is_ct ? scene::kBoneWindow : scene::automatic_window(*volume), grey);
+                   volume->modality == "CT" ? scene::kBoneWindow : scene::automatic_window(*volume), grey);
   }
   put_grey(picture, grey);
   for (const auto& [from, to] :
@@ -208,7 +206,7 @@ void Sheet::slice(const PlanePicture& picture, BoneKind kind, const std::optiona
   tunnel_outlines(picture, kind);
 }
 
-// Two planes through each axis: one as upright as it can stand, one across.
+// Two planes through each axis: one as upright as it can stand, one square to it.
 void Sheet::slices(double y_mm) {
   constexpr int kCount = 4;
   constexpr double kGap_mm = 3, kShown_mm = 70;
@@ -234,7 +232,7 @@ void Sheet::slices(double y_mm) {
         slice(picture, kind, volume);
         pdf_.text(x_mm, y_mm + width_mm + 3.5,
                   tunnels::name_of(of_graft->tunnel.key()) +
-                      (is_upright ? ", along it, 70 mm" : ", across it, 70 mm"),
+                      (is_upright ? ", along it, 70 mm" : ", along it, turned by 90 degrees"),
                   kCaption);
       }
       x_mm += width_mm + kGap_mm;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "planning/landmarks/grid_landmarks.h"
+
 namespace arthronaut::scene {
 
 using bones::BoneKind;
@@ -49,6 +51,20 @@ SlicePlane lateral_plane(const landmarks::AnatomicalAxes& axes,
   plane.mm_per_px = kMargin * std::max(2 * half.dot(plane.right.cwiseAbs()) / std::max(size_px.x(), 1),
                                        2 * half.dot(plane.down.cwiseAbs()) / std::max(size_px.y(), 1));
   return plane;
+}
+
+std::string lateral_plane_in_words(const landmarks::AnatomicalAxes& axes,
+                                   const std::optional<landmarks::FemoralQuadrant>& quadrant,
+                                   const landmarks::Landmarks& femur) {
+  if (!quadrant)
+    return "Lateral view by " + std::string(to_text(axes.origin)) +
+           ". No grid: Blumensaat's line is not marked";
+  // Without the condyles the grid is laid along the scanner's axis.
+  const bool follows_condyles =
+      std::ranges::all_of(landmarks::grid_landmarks(BoneKind::Femur, femur),
+                          [&](const std::string& name) { return femur.contains(name); });
+  return follows_condyles ? "True lateral view, condyles superposed"
+                          : "Lateral view along the scanner's axis: the condyles are not marked";
 }
 
 }  // namespace arthronaut::scene

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "app/scene/reslice.h"
 #include "planning/bones/bone.h"
@@ -24,5 +25,10 @@ namespace arthronaut::scene {
 [[nodiscard]] SlicePlane lateral_plane(const landmarks::AnatomicalAxes& axes,
                                        const std::optional<landmarks::FemoralQuadrant>& quadrant,
                                        const geometry::Bounds& shown, const Eigen::Vector2i& size_px);
+
+// What the picture in that plane is, or why it is no true lateral view: the condyles are not marked.
+[[nodiscard]] std::string lateral_plane_in_words(const landmarks::AnatomicalAxes& axes,
+                                                 const std::optional<landmarks::FemoralQuadrant>& quadrant,
+                                                 const landmarks::Landmarks& femur);
 
 }  // namespace arthronaut::scene

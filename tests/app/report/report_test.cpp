@@ -40,6 +40,17 @@ TEST_F(Report, HasThePlanOnOneSheet) {
   }
 }
 
+// A lateral view is called true where the condyles tell it, here as on the screen.
+TEST_F(Report, SaysWhereTheLateralViewIsNotTrue) {
+  auto& marks = knee_.landmarks.at(bones::BoneKind::Femur);
+  for (const char* side : {"lateral", "medial"})
+    for (const char* part : {"center", "posterior"}) marks.erase(std::string(side) + "_condyle_" + part);
+  cases::save_case(knee_folder(), knee_);
+  write_report(knee_folder(), pdf());
+  EXPECT_EQ(pdf_text().find("True lateral view"), std::string::npos);
+  expect_contains(pdf_text(), "Lateral view along the scanner");  // lines break after that
+}
+
 // Hazard 46: whoever reads the sheet alone reads what whoever imported the bone read.
 TEST_F(Report, Hazard46SaysWhatSpokeAgainstABone) {
   cases::save_bone_doubts(knee_folder(), {{bones::BoneKind::Tibia, {"the images end within it"}}});
