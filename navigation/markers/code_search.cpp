@@ -15,7 +15,7 @@ constexpr double kTurnRad = 0.16;  // of a step: the outermost cells move by hal
 constexpr double kNearer = 1.1;
 constexpr double kMinRange = 12;  // grey levels that the code must span
 // Reach, in sides of the marker, from which on more turns are tried.
-constexpr double kWide = 0.5;
+constexpr double kWide = 0.85;
 
 // The pose seen elsewhere: the camera turned about itself.
 std::optional<RigidTransform> shifted(const camera::CameraModel& camera, const RigidTransform& pose,

@@ -29,6 +29,11 @@ constexpr std::int64_t kSoughtOftenNs = 1'000'000'000;
 constexpr std::int64_t kMissedNs = 2'000'000'000, kCompanyNs = 1'000'000'000;
 // How far about it, in sides: at once, more with every second, and at most.
 constexpr double kReachAtOnce = 0.45, kReachPerSecond = 6, kMaxReach = 1.6;
+// From where a marker is predicted to where its code is found, in cells: more, and the edges are not found
+// from the one, and not much less than the other may be off by itself.
+constexpr double kOvertakenCells = 0.7, kOvertakenReach = 0.8;
+// A start that was measured in this frame is not measured again: so near, by its distance, and turned so far.
+constexpr double kSameStart = 0.001, kSameStartRad = 0.02;
 constexpr double kCompanyReach = 0.3, kCompanyReachPerSecond = 2;
 
 class EdgeTracker final : public MarkerTracker {
@@ -61,14 +66,20 @@ class EdgeTracker final : public MarkerTracker {
                                interval_ns_, smear_, options_.fit_directly ? &direct_ : nullptr,
                                fits_left,    codes_};
     candidates_.clear();
+    is_looked_at_ = false;
     // Whose turn is first changes, so that none takes all of a frame's fits for ever.
     ++frames_;
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
       const std::size_t i = (frames_ + k) % tracks_.size();
       observations_[i] = MarkerObservation();
       observations_[i].id = tracks_[i].marker().id;
-      const auto start = tracks_[i].predicted(timestamp_ns);
-      if (start) (void)tracks_[i].measure(tracked, *start, false, observations_[i]);
+      starts_[i] = RigidTransform();
+      const auto predicted = tracks_[i].predicted(timestamp_ns);
+      if (!predicted) continue;
+      const auto start = overtaken(i, *predicted, tracked);
+      if (!start) continue;
+      starts_[i] = *start;
+      (void)tracks_[i].measure(tracked, *start, false, observations_[i]);
     }
     leave_one_a_place();
     if (is_any_sought_often(timestamp_ns) || frames_to_search_-- <= 0) {
@@ -91,6 +102,7 @@ class EdgeTracker final : public MarkerTracker {
   void reset() override {
     candidates_.clear();
     observations_.assign(tracks_.size(), MarkerObservation());
+    starts_.assign(tracks_.size(), RigidTransform());
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       tracks_[i].forget();
       observations_[i].id = tracks_[i].marker().id;
@@ -120,7 +132,7 @@ class EdgeTracker final : public MarkerTracker {
     std::fill(attempts_.begin(), attempts_.end(), 0);
     for (MarkerTrack& track : tracks_) track.is_duplicate = false;
     ++searches_;
-    search_.look_at(frame.image.view(), frame.camera);
+    look_at(frame);
     // The dearer search takes the place of the other now and then; what was just lost is looked for before.
     const bool is_for_covered = searches_ % kSearchesForCovered == 0 && is_missing();
     if (!is_for_covered) {
@@ -137,6 +149,36 @@ class EdgeTracker final : public MarkerTracker {
     }
     if (is_for_covered && is_missing())
       take_squares(search_.find_covered(frame.camera), frame, Pass::Covered);
+  }
+
+  void look_at(const TrackedFrame& frame) {
+    if (!is_looked_at_) search_.look_at(frame.image.view(), frame.camera);
+    is_looked_at_ = true;
+  }
+
+  // Where to measure a marker that is followed. What moves by more than a cell from frame to frame is soon
+  // elsewhere than where it was going to: its code is looked for about there, and where it was. nullopt: it
+  // was not seen in the last frame either, and its code is not found.
+  [[nodiscard]] std::optional<RigidTransform> overtaken(std::size_t index, const RigidTransform& predicted,
+                                                        const TrackedFrame& frame) {
+    const MarkerTrack& track = tracks_[index];
+    if (!track.is_outrun(frame, predicted)) return predicted;
+    look_at(frame);
+    const double cell_px = track.cell_px(frame, predicted);
+    const auto look = [&](const RigidTransform& supposed) {
+      return code_search_.find(search_.small_picture(), frame.camera, supposed, track.marker().size_mm,
+                               codes_[index], kOvertakenReach * codes_[index].cells * cell_px);
+    };
+    CodePlace place = look(predicted);
+    if (place.score < CodeSearch::kMinScore) place = look(track.last_seen()->camera_from_marker);
+    if (place.score < CodeSearch::kMinScore) {
+      const bool was_seen = frame.timestamp_ns - track.last_seen()->timestamp_ns < 3 * interval_ns_ / 2;
+      return was_seen ? std::optional(predicted) : std::nullopt;
+    }
+    const auto from = frame.camera.project(predicted.translation_mm),
+               to = frame.camera.project(place.camera_from_marker.translation_mm);
+    const bool is_elsewhere = from && to && (*to - *from).norm() > kOvertakenCells * cell_px;
+    return is_elsewhere ? place.camera_from_marker : predicted;
   }
 
   // A marker is missing that was there a short while ago, or may be found for the first time.
@@ -202,8 +244,11 @@ class EdgeTracker final : public MarkerTracker {
       return code_search_.find(search_.small_picture(), frame.camera, supposed, track.marker().size_mm,
                                codes_[index], reach);
     };
-    CodePlace place = look(track.predicted(frame.timestamp_ns).value_or(last->camera_from_marker),
-                           reach_px(kReachAtOnce, kReachPerSecond, lost_s));
+    const double reach = reach_px(kReachAtOnce, kReachPerSecond, lost_s);
+    const auto predicted = track.predicted(frame.timestamp_ns);
+    CodePlace place = look(predicted.value_or(last->camera_from_marker), reach);
+    // What turned back is not where it was going to.
+    if (predicted && place.score < CodeSearch::kMinScore) place = look(last->camera_from_marker, reach);
     if (const Company& company = company_[index];
         company.timestamp_ns >= 0 && observations_[company.other].is_tracked()) {
       const std::int64_t age_ns = frame.timestamp_ns - company.timestamp_ns;
@@ -214,7 +259,9 @@ class EdgeTracker final : public MarkerTracker {
         if (beside.score > place.score) place = beside;
       }
     }
-    if (place.score < CodeSearch::kMinScore || is_taken(place.camera_from_marker, index)) return;
+    if (place.score < CodeSearch::kMinScore || is_taken(place.camera_from_marker, index) ||
+        are_alike(place.camera_from_marker, starts_[index]))
+      return;
     const MarkerObservation before = observations_[index];
     if (!track.measure_recovered(frame, place.camera_from_marker, observations_[index]))
       observations_[index].state = before.state;
@@ -281,6 +328,12 @@ class EdgeTracker final : public MarkerTracker {
     }
   }
 
+  // By less than makes another measurement of it.
+  static bool are_alike(const RigidTransform& a, const RigidTransform& b) {
+    return (a.translation_mm - b.translation_mm).norm() < kSameStart * a.translation_mm.norm() &&
+           geometry::rotation_angle_rad(a.rotation.conjugate() * b.rotation) < kSameStartRad;
+  }
+
   static bool are_same_place(const FoundSquare& square, const Corners& corners_px) {
     Eigen::Vector2d apart = Eigen::Vector2d::Zero();
     for (int i = 0; i < 4; ++i) apart += 0.25 * (square.corners_px[i] - corners_px[i]);
@@ -292,6 +345,7 @@ class EdgeTracker final : public MarkerTracker {
   std::vector<MarkerCode> codes_;  // of the declared markers, in their order
   std::vector<MarkerTrack> tracks_;
   std::vector<MarkerObservation> observations_;
+  std::vector<RigidTransform> starts_;       // of this frame, where they were followed to
   std::vector<MarkerCandidate> candidates_;  // of this frame's search
   SquareSearch search_;
   CodeSearch code_search_;
@@ -303,6 +357,7 @@ class EdgeTracker final : public MarkerTracker {
   CameraSmear smear_;
   DirectFit direct_;
   int frames_to_search_ = 0;
+  bool is_looked_at_ = false;  // this frame, by search_
 };
 
 }  // namespace

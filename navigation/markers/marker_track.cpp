@@ -15,6 +15,8 @@ using geometry::Vector6d;
 // A smear up to which edges go on by themselves, with so much less trust, where no direct fit confirms them.
 constexpr double kLittleSmearPx = 8, kUnconfirmed = 10;
 constexpr int kMaxPasses = 4;
+// Through so much of a cell the edges of what turns back pass for sharp ones elsewhere.
+constexpr double kTurnsBackCells = 0.6;
 constexpr double kMaxNewMotionPx = 5;
 // Two starts that lead so near to each other lead to the same.
 constexpr double kSameEdgesPx = 0.1, kSameMotionPx = 0.5;
@@ -42,6 +44,7 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
                           MarkerObservation& observation) {
   observation = MarkerObservation();
   observation.id = marker_.id;
+  is_beyond_edges_ = false;
   const double cell = cell_px(frame, start);
   if (cell < options_.min_cell_px) {
     observation.state = MarkerState::TooSmall;
@@ -84,18 +87,30 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
   const double px_per_mm = cell * cells_ / marker_.size_mm;
   // Without a past nothing is known of the motion, and edges alone may take a smear for another tilt.
   const bool is_motion_known = !is_found && motion_.is_known_at(frame.timestamp_ns);
-  const double edges_motion_px = picture.motion.head<3>().norm() * px_per_mm;
+  // What turns back moves though it hardly got anywhere since the frame before.
+  const RigidTransform& here = fit.converged ? fit.camera_from_marker : start;
+  const Vector6d motion_now = frame.smear.exposure_share * interval_motion(frame, here);
+  const bool turns_back = is_motion_known && moved_px(motion_now, px_per_mm) > kTurnsBackCells * cell &&
+                          std::max(moved_px(motion_to(frame, here), px_per_mm),
+                                   moved_px(picture.motion, px_per_mm)) < options_.smeared_px;
+  const Vector6d& motion = turns_back ? motion_now : picture.motion;
+  const double edges_motion_px = moved_px(motion, px_per_mm);
   if (frame.direct && (!is_motion_known || edges_motion_px > options_.smeared_px) &&
       cell > options_.min_direct_cell_px) {
-    const RigidTransform& from = fit.converged ? fit.camera_from_marker : start;
+    // Of what moves by more than a cell from frame to frame, and smeared so, few edges are found, or others.
+    const bool moves_fast = is_motion_known && is_fast(frame, start);
+    const bool has_edges = fit.converged && !(moves_fast && fit.share[0] + fit.share[1] < kMinStartShare);
+    const RigidTransform& from = has_edges ? fit.camera_from_marker : start;
     // Without a fit left in this frame nothing is confirmed.
     DirectPose direct;
     is_undecided_ |= frame.fits_left <= 0 && !is_motion_known;
     if (frame.fits_left > 0)
-      direct = fit_directly(frame, from, picture.motion,
-                            fit.converged ? options_.direct : unsure(options_.direct));
-    if (is_found && fit.converged && frame.fits_left > 0 && !direct.explains_picture())
-      direct = fit_directly(frame, from, picture.motion, unsure(options_.direct));
+      direct = fit_directly(frame, from, has_edges || !moves_fast ? motion : motion_to(frame, start),
+                            has_edges ? options_.direct : unsure(options_.direct));
+    if (has_edges && frame.fits_left > 0 && !direct.explains_picture()) {
+      if (is_found || turns_back) direct = fit_directly(frame, from, picture.motion, unsure(options_.direct));
+      if (moves_fast) direct = fit_directly(frame, start, motion_to(frame, start), unsure(options_.direct));
+    }
     // What moves may also pass for out of focus.
     if (!is_motion_known && (!direct.explains_picture() || direct.sigma_px > kSoft * frame.smear.sigma_px)) {
       // Where motions cannot be tried any more in this frame, nothing is known to be right.
@@ -108,36 +123,37 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
     }
     // With no edge pose to agree with, the corners have to be its own all the more.
     RowTrend rows;
+    const double smear_px = moved_px(direct.pose.velocity, px_per_mm);
+    is_beyond_edges_ = smear_px > options_.max_new_smear_cells * cell;
     if (direct.is_usable()) {
-      report_direct(frame, direct, fit.converged ? options_.max_direct_rms_px : options_.max_lone_rms_px,
-                    observation);
+      const double max_rms_px = fit.converged ? options_.max_direct_rms_px : options_.max_lone_rms_px;
+      report_direct(frame, direct, is_beyond_edges_ ? std::nullopt : std::optional(max_rms_px), observation);
       EdgePose edges;
       edges.camera_from_marker = direct.pose.camera_from_marker;
       rows = row_trend(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, edges);
       doubt_rows(frame, rows, observation);
     }
-    if (observation.is_tracked() &&
-        direct.pose.velocity.head<3>().norm() * px_per_mm > options_.max_new_smear_cells * cell &&
-        !goes_on_from_published(frame, direct.pose.camera_from_marker)) {
-      observation.state = MarkerState::Blur;
-      go_on_from(direct.pose.camera_from_marker, 1 / (fit.converged ? fit.share[0] + fit.share[1] : 1));
-      return false;
+    if (is_beyond_edges_ && direct.explains_picture()) {
+      const bool goes_on = goes_on_from_published(frame, direct.pose.camera_from_marker);
+      if (observation.is_tracked() && !goes_on) observation.state = MarkerState::Blur;
+      // Good enough to go on from, not to stand for.
+      if (observation.state == MarkerState::Blur || (!observation.is_tracked() && goes_on)) {
+        go_on_from(direct.pose.camera_from_marker, 1 / (fit.converged ? fit.share[0] + fit.share[1] : 1));
+        return false;
+      }
     }
     const bool is_motion_new = is_found || is_motion_guessed_;
-    if (observation.is_tracked() && is_motion_new &&
-        direct.pose.velocity.head<3>().norm() * px_per_mm > options_.smeared_px) {
+    if (observation.is_tracked() && is_motion_new && smear_px > options_.smeared_px) {
       if (const auto pose = refine_square_pose(frame.camera, observation.corners_px, marker_.size_mm,
                                                observation.camera_from_marker))
         observation.covariance += square_covariance(*pose, options_.found_corner_sigma_px);
     }
     if (observation.is_tracked()) {
       frame.smear.gamma += 0.1 * (direct.gamma - frame.smear.gamma);
-      learn_exposure(frame.smear.exposure_share * motion_.twist_to(direct.pose.camera_from_marker,
-                                                                   frame.timestamp_ns, frame.interval_ns),
-                     direct.pose.velocity, px_per_mm, frame.smear);
+      learn_exposure(motion_to(frame, direct.pose.camera_from_marker), direct.pose.velocity, px_per_mm,
+                     frame.smear);
     }
-    const bool is_sharp =
-        direct.explains_picture() && direct.pose.velocity.head<3>().norm() * px_per_mm < options_.smeared_px;
+    const bool is_sharp = direct.explains_picture() && smear_px < options_.smeared_px;
     if (is_found && is_undecided_) {
       observation.state = MarkerState::Doubtful;
       return false;
@@ -154,7 +170,7 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
       // Edges that the direct fit does not confirm are good enough to go on from, not to stand for.
       report_edges(frame, fit, picture, is_found, observation);
       if (!observation.is_tracked()) return false;
-      if (is_motion_known && edges_motion_px < kLittleSmearPx) {
+      if (is_motion_known && moved_px(picture.motion, px_per_mm) < kLittleSmearPx) {
         observation.covariance *= kUnconfirmed;
         return true;
       }
@@ -172,9 +188,7 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
   learn(trend, fit.bloom_px, frame.smear);
   frame.smear.rows.learn(rows);
   if (!is_found) {
-    learn_exposure(frame.smear.exposure_share *
-                       motion_.twist_to(fit.camera_from_marker, frame.timestamp_ns, frame.interval_ns),
-                   picture.motion, px_per_mm, frame.smear);
+    learn_exposure(motion_to(frame, fit.camera_from_marker), picture.motion, px_per_mm, frame.smear);
   }
   return true;
 }
@@ -187,12 +201,6 @@ void MarkerTrack::look_at_edges(const TrackedFrame& frame, const RigidTransform&
                 measurements_, trend);
   if (const auto center = frame.camera.project(pose.translation_mm))
     correct_rows(frame.smear.rows, center->y(), frame.image.view().height, picture.sigma_px, measurements_);
-}
-
-Vector6d MarkerTrack::interval_motion(const TrackedFrame& frame, const RigidTransform& pose) const {
-  const Vector6d motion = motion_.twist_to(pose, frame.timestamp_ns, frame.interval_ns);
-  const auto change = motion_.change_to(pose, frame.timestamp_ns, frame.interval_ns);
-  return change ? Vector6d(motion + 0.5 * *change) : motion;
 }
 
 void MarkerTrack::doubt_rows(const TrackedFrame& frame, const RowTrend& trend,
@@ -217,10 +225,8 @@ EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform&
   coarse.search_px = edge_search_px(is_found, cell);
   coarse.stride = 2;
   const CameraSmear& smear = frame.smear;
-  picture = {smear.sigma_px, is_found
-                                 ? likely_motion(frame, start, coarse.search_px)
-                                 : Vector6d(smear.exposure_share *
-                                            motion_.twist_to(start, frame.timestamp_ns, frame.interval_ns))};
+  picture = {smear.sigma_px,
+             is_found ? likely_motion(frame, start, coarse.search_px) : motion_to(frame, start)};
   look_at_edges(frame, start, picture, coarse, trend);
   EdgePose fit =
       fit_edge_pose(frame.camera, marker_.size_mm, samples_, measurements_, start, smear.bloom, is_inlier_);
@@ -228,9 +234,7 @@ EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform&
     fit.converged = false;
     return fit;
   }
-  if (!is_found)
-    picture.motion = smear.exposure_share *
-                     motion_.twist_to(fit.camera_from_marker, frame.timestamp_ns, frame.interval_ns);
+  if (!is_found) picture.motion = motion_to(frame, fit.camera_from_marker);
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     const RigidTransform here = fit.camera_from_marker;
     look_at_edges(frame, here, picture, {}, trend);
@@ -266,8 +270,8 @@ DirectPose MarkerTrack::fit_directly(const TrackedFrame& frame, const RigidTrans
                               options);
 }
 
-void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit, double max_rms_px,
-                                MarkerObservation& observation) {
+void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit,
+                                std::optional<double> max_rms_px, MarkerObservation& observation) {
   observation.camera_from_marker = fit.pose.camera_from_marker;
   observation.covariance = fit.covariance;
   // The motion is not followed in all six directions: what is left out changes about as much as what is seen.
@@ -289,6 +293,14 @@ void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit
   observation.corners_px = corners.corners_px;
   observation.rms_px = corners.rms_px;
   observation.ambiguity_ratio = kNoOtherPose;
+  if (!max_rms_px) {
+    const double px_per_mm = cell_px(frame, fit.pose.camera_from_marker) * cells_ / marker_.size_mm;
+    const double unfollowed_px = options_.unfollowed_share * moved_px(fit.pose.velocity, px_per_mm);
+    if (const auto square = refine_square_pose(frame.camera, corners.corners_px, marker_.size_mm,
+                                               fit.pose.camera_from_marker))
+      observation.covariance += square_covariance(*square, unfollowed_px);
+    observation.rms_px = std::max(observation.rms_px, unfollowed_px);
+  }
   observation.state = judge(fit, max_rms_px, observation);
   if (observation.is_tracked() && explained_ && are_unlike(*explained_, fit.pose.camera_from_marker))
     observation.state = MarkerState::Doubtful;

@@ -40,9 +40,13 @@ struct MarkerTrackOptions {
   // The corners that single edges make under a direct fit lie no farther from it, or it fits something else;
   // without an edge pose to agree with, they have to be its own all the more.
   double max_direct_rms_px = 1.1, max_lone_rms_px = 0.5;
-  // A motion over the exposure of more cells mixes each with its neighbours, and another tilt may explain the
-  // picture as well: it stands only where a pose stood a short while ago, turned no faster than a hand can.
+  // A motion over the exposure of more cells mixes each with its neighbours: single edges say nothing of it,
+  // and another tilt may explain the picture as well. A pose stands only where one stood a short while ago,
+  // turned no faster than a hand can but about the line of sight, where its turning is seen.
   double max_new_smear_cells = 1.25;
+  // What a hand does over such an exposure is more than an even change of its motion: so much of the motion
+  // may each corner be off by.
+  double unfollowed_share = 0.006;
   double max_turn_rad_s = 10, turn_slack_rad = 0.05;
   double corner_sigma_px = 0.05;
   // Of the way that a marker's motion changes by over the exposure, as the frames before tell it: so much may
@@ -87,6 +91,11 @@ class MarkerTrack {
   // Where it was when it was last followed; nullopt: never.
   [[nodiscard]] const std::optional<MarkerMotion::Sighting>& last_seen() const { return motion_.last(); }
 
+  // Of the marker's cells in the picture.
+  [[nodiscard]] double cell_px(const TrackedFrame& frame, const geometry::RigidTransform& pose) const;
+  // Its motion is known, but is_fast() on the way to this pose, or it was seen but once: soon elsewhere.
+  [[nodiscard]] bool is_outrun(const TrackedFrame& frame, const geometry::RigidTransform& pose) const;
+
   [[nodiscard]] const DeclaredMarker& marker() const { return marker_; }
   bool is_duplicate = false;  // as of the last search of the whole frame
 
@@ -95,8 +104,6 @@ class MarkerTrack {
   // motion: the motion over the exposure as a body twist.
   [[nodiscard]] geometry::Vector6d likely_motion(const TrackedFrame& frame,
                                                  const geometry::RigidTransform& pose, int search_px);
-  // Of the marker's cells in the picture.
-  [[nodiscard]] double cell_px(const TrackedFrame& frame, const geometry::RigidTransform& pose) const;
   // How far its edges are looked for.
   [[nodiscard]] static int edge_search_px(bool is_found, double cell_px);
   // A whole fit, in small ones, and what trying motions takes of them: those that the edges speak for most
@@ -105,6 +112,13 @@ class MarkerTrack {
   // How much the picture looks like the marker at this pose when it moves like this.
   [[nodiscard]] double likeness_of(const TrackedFrame& frame, const geometry::RigidTransform& pose,
                                    const geometry::Vector6d& motion, int search_px);
+  // Over the exposure, on the way to this pose: body twist; zero when not known.
+  [[nodiscard]] geometry::Vector6d motion_to(const TrackedFrame& frame,
+                                             const geometry::RigidTransform& pose) const;
+  // How far a motion takes its sides.
+  [[nodiscard]] double moved_px(const geometry::Vector6d& motion, double px_per_mm) const;
+  // Its motion is known, and took it by more than a cell in a frame's time, on the way to this pose.
+  [[nodiscard]] bool is_fast(const TrackedFrame& frame, const geometry::RigidTransform& pose) const;
   // measure(), from the edges on.
   bool measure_from_edges(const TrackedFrame& frame, const geometry::RigidTransform& start, bool is_found,
                           const EdgePose& fit, const Smear& picture, const SmearTrend& trend,
@@ -131,7 +145,7 @@ class MarkerTrack {
   // Gives what they say of the rows' timing.
   RowTrend report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture, bool is_found,
                         MarkerObservation& observation);
-  void report_direct(const TrackedFrame& frame, const DirectPose& fit, double max_rms_px,
+  void report_direct(const TrackedFrame& frame, const DirectPose& fit, std::optional<double> max_rms_px,
                      MarkerObservation& observation);
   // The cells at the pose, as far as they are seen, are this marker's.
   [[nodiscard]] bool is_confirmed_by_code(const TrackedFrame& frame,
@@ -158,6 +172,8 @@ class MarkerTrack {
   };
   std::optional<Guess> guess_;      // of this frame, until it is final
   bool is_motion_guessed_ = false;  // what is known of the motion comes from a pose that did not stand
+  // What was measured last is smeared over more than a cell: neither edges nor cells can be told.
+  bool is_beyond_edges_ = false;
   // What a search led to in this frame that did not stand, the last few: another start that leads there is
   // the same.
   struct Refused {

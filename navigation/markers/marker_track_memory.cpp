@@ -1,5 +1,6 @@
 // What a track takes from frame to frame, and how it comes back after a loss.
 #include <algorithm>
+#include <cmath>
 
 #include "navigation/markers/marker_track.h"
 #include "navigation/markers/seen_code.h"
@@ -20,7 +21,8 @@ bool MarkerTrack::measure_recovered(const TrackedFrame& frame, const RigidTransf
                                     MarkerObservation& observation) {
   const bool is_found = !motion_.is_known_at(frame.timestamp_ns);
   if (!measure(frame, start, is_found, observation)) return false;
-  if (is_confirmed_by_code(frame, observation.camera_from_marker)) return true;
+  // Through such a smear the fit to the whole code takes the place of its cells.
+  if (is_beyond_edges_ || is_confirmed_by_code(frame, observation.camera_from_marker)) return true;
   observation.state = MarkerState::Doubtful;
   return false;
 }
@@ -29,8 +31,10 @@ bool MarkerTrack::goes_on_from_published(const TrackedFrame& frame, const RigidT
   constexpr double kShortWhile_s = 0.07;
   if (!published_) return false;
   const double passed_s = 1e-9 * static_cast<double>(frame.timestamp_ns - published_->timestamp_ns);
-  const double turned_rad =
-      geometry::rotation_angle_rad(published_->camera_from_marker.rotation.conjugate() * pose.rotation);
+  // What turns about the line of sight is seen to do so, however fast.
+  const Eigen::Quaterniond turn = pose.rotation * published_->camera_from_marker.rotation.conjugate();
+  const double about_sight = turn.vec().dot(pose.translation_mm.normalized());
+  const double turned_rad = 2 * std::acos(std::min(1.0, std::hypot(turn.w(), about_sight)));
   return passed_s <= kShortWhile_s &&
          turned_rad <= options_.turn_slack_rad + options_.max_turn_rad_s * passed_s;
 }

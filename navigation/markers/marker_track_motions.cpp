@@ -1,4 +1,5 @@
-// Which motion smears a marker, when nothing is known of it: motions are tried.
+// Which motion smears a marker: the one that took it here, or, when nothing is known of it, one of those that
+// are tried.
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -41,6 +42,30 @@ double MarkerTrack::cell_px(const TrackedFrame& frame, const RigidTransform& pos
 int MarkerTrack::edge_search_px(bool is_found, double cell_px) {
   return std::clamp(static_cast<int>(std::lround((is_found ? kReachFound : kReachPredicted) * cell_px)), 2,
                     16);
+}
+
+Vector6d MarkerTrack::motion_to(const TrackedFrame& frame, const RigidTransform& pose) const {
+  return frame.smear.exposure_share * motion_.twist_to(pose, frame.timestamp_ns, frame.interval_ns);
+}
+
+double MarkerTrack::moved_px(const Vector6d& motion, double px_per_mm) const {
+  return px_per_mm * std::hypot(motion.head<3>().norm(), 0.5 * marker_.size_mm * motion.tail<3>().norm());
+}
+
+bool MarkerTrack::is_fast(const TrackedFrame& frame, const RigidTransform& pose) const {
+  const Vector6d twist = motion_.twist_to(pose, frame.timestamp_ns, frame.interval_ns);
+  return twist.head<3>().norm() * cells_ > marker_.size_mm;
+}
+
+bool MarkerTrack::is_outrun(const TrackedFrame& frame, const RigidTransform& pose) const {
+  return motion_.is_known_at(frame.timestamp_ns) &&
+         (!motion_.change_to(pose, frame.timestamp_ns, frame.interval_ns) || is_fast(frame, pose));
+}
+
+Vector6d MarkerTrack::interval_motion(const TrackedFrame& frame, const RigidTransform& pose) const {
+  const Vector6d motion = motion_.twist_to(pose, frame.timestamp_ns, frame.interval_ns);
+  const auto change = motion_.change_to(pose, frame.timestamp_ns, frame.interval_ns);
+  return change ? Vector6d(motion + 0.5 * *change) : motion;
 }
 
 DirectPose MarkerTrack::try_motions(const TrackedFrame& frame, const RigidTransform& start) {

@@ -31,12 +31,13 @@ bool is_known_well_enough(const geometry::Matrix6d& covariance) {
          std::sqrt(covariance.bottomRightCorner<3, 3>().trace()) < kMaxSigmaRad;
 }
 
-MarkerState judge(const DirectPose& fit, double max_rms_px, const MarkerObservation& observation) {
+MarkerState judge(const DirectPose& fit, std::optional<double> max_rms_px,
+                  const MarkerObservation& observation) {
   if (facing(fit.pose.camera_from_marker) < kMinFacing) return MarkerState::TooOblique;
   const double sigma_mm = std::sqrt(observation.covariance.topLeftCorner<3, 3>().trace());
   const double sigma_rad = std::sqrt(observation.covariance.bottomRightCorner<3, 3>().trace());
   // Exactly 0: no side of the square was seen by edges, so nothing confirms the corners.
-  const bool is_confirmed = observation.rms_px > 0 && observation.rms_px < max_rms_px;
+  const bool is_confirmed = !max_rms_px || (observation.rms_px > 0 && observation.rms_px < *max_rms_px);
   if (!fit.explains_picture() || !is_confirmed || !(sigma_mm < kMaxSigmaMm) || !(sigma_rad < kMaxSigmaRad))
     return MarkerState::Doubtful;
   return MarkerState::Tracked;

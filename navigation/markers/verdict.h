@@ -25,8 +25,8 @@ inline constexpr double kMaxEdgeRmsPx = 1.2;  // how far an edge, or a corner, m
 [[nodiscard]] MarkerState judge(const EdgePose& fit, const MarkerObservation& observation,
                                 const std::optional<SquarePose>& other, bool is_found);
 // What the direct fit says. The observation holds its covariance; max_rms_px: how far the corners that single
-// edges make may lie from the fit.
-[[nodiscard]] MarkerState judge(const DirectPose& fit, double max_rms_px,
+// edges make may lie from the fit, of which one side has to be seen. nullopt: edges say nothing of it.
+[[nodiscard]] MarkerState judge(const DirectPose& fit, std::optional<double> max_rms_px,
                                 const MarkerObservation& observation);
 // By what most of the edges that are missing at the supposed pose look like.
 [[nodiscard]] MarkerState reason_of_loss(const geometry::RigidTransform& camera_from_marker,
