@@ -67,8 +67,10 @@ std::vector<CardLine> time_out_lines(const operation::OperationState& state, con
 }
 
 Card time_out_card(const operation::OperationState& state, const std::string& patient) {
+  const bool may_be_right = state.medium.fit != pipeline::MediumFit::Contradicts;
   return {"navigate.time_out", "Time-out: is all of this right?", time_out_lines(state, patient),
-          "Space: yes, all of it. Nothing guides before"};
+          may_be_right ? "Space: yes, all of it. Nothing guides before"
+                       : "The medium is not: hold Esc, then M for the other one. Nothing guides before"};
 }
 
 Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedTunnel>& plan,

@@ -44,6 +44,8 @@ TEST(TimeOutCard, Hazard20NamesPatientKneePlanCameraToolsAndMedium) {
   const CardLine wrong = line_of(time_out_card(state, ""), "Medium");
   EXPECT_EQ(wrong.text, "saline, but the markers look as in air");
   EXPECT_EQ(wrong.severity, Severity::Bad);
+  EXPECT_EQ(card.keys.substr(0, 5), "Space");
+  EXPECT_NE(time_out_card(state, "").keys.substr(0, 5), "Space") << "the pedal does nothing then";
   EXPECT_EQ(line_of(card, "Plan").topic, CardLine::Topic::Plan);
   EXPECT_EQ(line_of(time_out_card(state, ""), "Patient").severity, Severity::Caution);
   state.plan.reset();
