@@ -6,7 +6,6 @@
 #include "navigation/recording/session_files.h"
 #include "navigation/registration/registration_file.h"
 #include "planning/cases/case.h"
-#include "planning/files/free_space.h"
 #include "planning/files/utc_clock.h"
 
 namespace arthronaut::recording {
@@ -164,14 +163,12 @@ void OperationRecord::add_frame(const camera::FramePtr& picture, const operation
   recorder_->append_digests({operation::digest_of_frame(state), operation::digest_of_decisions(state)});
   if (keep_ != KeepVideo::Encode) return;
   // Left out are pictures of a live source that the encoder can't keep up with; the record counts them.
-  bool may_be_full = !is_live;
   if (is_live)
-    may_be_full = !recorder_->try_append_picture(picture);
+    (void)recorder_->try_append_picture(picture);
   else
     recorder_->append_picture(picture);
-  // The recorder takes none any more: whoever asks whether video is kept must not be told that it is.
-  if (may_be_full && files::free_bytes_at(folder_) < DiskLimits().video_stops_below_bytes)
-    keep_video(KeepVideo::No);
+  // Whoever asks whether video is kept must not be told that it is.
+  if (recorder_->has_stopped_video()) keep_video(KeepVideo::No);
 }
 
 void OperationRecord::finish(const strokes::Curves& strokes) {

@@ -141,6 +141,8 @@ class SessionRecorder {
   // The same for a live source: never waits; false when the encoder cannot keep up and the picture is left
   // out. How many were left out is an event of the session.
   bool try_append_picture(const camera::FramePtr& frame);
+  // Whether pictures are not taken any more: the disk is nearly full, or they could not be written.
+  [[nodiscard]] bool has_stopped_video() const;
   // Of what comes between the last picture and the next one nothing is kept, also where a stream is kept as
   // it came.
   void interrupt_pictures();

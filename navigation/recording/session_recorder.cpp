@@ -230,6 +230,8 @@ bool SessionRecorder::try_append_picture(const camera::FramePtr& frame) {
   return is_taken;
 }
 
+bool SessionRecorder::has_stopped_video() const { return state_->video_stopped; }
+
 void SessionRecorder::interrupt_pictures() {
   if (!state_->pictures || state_->video_failed) return;
   state_->with_pictures([](PictureWriter& writer) { writer.end_part(); });

@@ -92,11 +92,13 @@ TEST_F(BoundedRecording, StopsBeforeTheDiskIsFullAndKeepsWhatWasMade) {
     EXPECT_TRUE(recorder.try_append_picture(picture(frame)));
     recorder.append(test::frame_result(frame));
   }
+  EXPECT_FALSE(recorder.has_stopped_video());
   *free_ = std::uintmax_t{1} << 30;
   EXPECT_TRUE(eventually([&] {
     recorder.append(test::frame_result(frame));
     return !recorder.try_append_picture(picture(frame++));
   }));
+  EXPECT_TRUE(recorder.has_stopped_video());
   const int with_video = frame;
   for (; frame < with_video + 10; ++frame) recorder.append(test::frame_result(frame));
 
