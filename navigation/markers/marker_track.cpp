@@ -108,8 +108,10 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
       direct = fit_directly(frame, from, has_edges || !moves_fast ? motion : motion_to(frame, start),
                             has_edges ? options_.direct : unsure(options_.direct));
     if (has_edges && frame.fits_left > 0 && !direct.explains_picture()) {
-      if (is_found || turns_back) direct = fit_directly(frame, from, picture.motion, unsure(options_.direct));
-      if (moves_fast) direct = fit_directly(frame, start, motion_to(frame, start), unsure(options_.direct));
+      if (moves_fast)
+        direct = fit_directly(frame, start, motion_to(frame, start), unsure(options_.direct));
+      else if (is_found || turns_back)
+        direct = fit_directly(frame, from, picture.motion, unsure(options_.direct));
     }
     // What moves may also pass for out of focus.
     if (!is_motion_known && (!direct.explains_picture() || direct.sigma_px > kSoft * frame.smear.sigma_px)) {
