@@ -10,15 +10,24 @@
 namespace arthronaut::test {
 namespace {
 
+// Its page with the second landmark, whose handle is in sight.
+class PlanLandmarks : public PlanWindow {
+ protected:
+  static void open_landmark(RunningWorkstation& app) {
+    open(app);
+    app.press("l");
+    app.press("Next");
+    ASSERT_TRUE(app.wait_for_state("landmark", "blumensaat_posterior"));
+    ASSERT_TRUE(app.wait_for_widget("plan.blumensaat_posterior_handle"));
+  }
+};
+
 // What a click would do is what is shown: a landmark that was being placed is not, once its page is left or
 // the other bone is worked on, and a click that is meant for an entry moves no landmark.
-TEST_F(PlanWindow, AClickForAnEntryMovesNoLandmark) {
+TEST_F(PlanLandmarks, AClickForAnEntryMovesNoLandmark) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_.path());
-  open(app);
-  app.press("l");
-  app.press("Next");
-  ASSERT_TRUE(app.wait_for_state("landmark", "blumensaat_posterior"));
+  open_landmark(app);
   app.press("p");
   ASSERT_TRUE(app.wait_for_state("placing", "landmark"));
   app.press("c");
@@ -38,14 +47,10 @@ TEST_F(PlanWindow, AClickForAnEntryMovesNoLandmark) {
 }
 
 // A click places, also where a landmark lies that could be taken hold of.
-TEST_F(PlanWindow, ALandmarkIsPlacedWhereOneLies) {
+TEST_F(PlanLandmarks, ALandmarkIsPlacedWhereOneLies) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_.path());
-  open(app);
-  app.press("l");
-  app.press("Next");
-  ASSERT_TRUE(app.wait_for_state("landmark", "blumensaat_posterior"));
-  ASSERT_TRUE(app.wait_for_widget("plan.blumensaat_posterior_handle"));
+  open_landmark(app);
   app.press("p");
   ASSERT_TRUE(app.wait_for_state("placing", "landmark"));
   const auto [x, y] = middle(app, "plan.blumensaat_posterior_handle");
@@ -55,14 +60,10 @@ TEST_F(PlanWindow, ALandmarkIsPlacedWhereOneLies) {
 }
 
 // A hand that clicks on a landmark to look at it trembles: that confirms nothing.
-TEST_F(PlanWindow, AClickThatTremblesMovesNoLandmark) {
+TEST_F(PlanLandmarks, AClickThatTremblesMovesNoLandmark) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_.path());
-  open(app);
-  app.press("l");
-  app.press("Next");
-  ASSERT_TRUE(app.wait_for_state("landmark", "blumensaat_posterior"));
-  ASSERT_TRUE(app.wait_for_widget("plan.blumensaat_posterior_handle"));
+  open_landmark(app);
   const auto [x, y] = middle(app, "plan.blumensaat_posterior_handle");
   app.drag(x, y, x + 1, y + 1);
   EXPECT_FALSE(app.wait_for_state("plan", "moving", 1));
@@ -72,7 +73,7 @@ TEST_F(PlanWindow, AClickThatTremblesMovesNoLandmark) {
 }
 
 // A place within the bone is clicked on and dragged through its surface.
-TEST_F(PlanWindow, ALandmarkWithinTheBoneIsPlacedAndDraggedThere) {
+TEST_F(PlanLandmarks, ALandmarkWithinTheBoneIsPlacedAndDraggedThere) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_.path());
   open(app);
