@@ -47,7 +47,9 @@ GuidanceState cause_of(const operation::OperationState& state) {
   }
 }
 
-void explain(NavigateDisplay& display, const theatre::LiveState& live) {
+// Why nothing guides. True: it does not whatever the next pictures show, until somebody does something about
+// it.
+bool explain(NavigateDisplay& display, const theatre::LiveState& live) {
   const operation::OperationState& state = *live.operation;
   const pipeline::FrameResult& result = state.frame;
   const pipeline::PipelineOptions& options = state.source->pipeline;
@@ -55,65 +57,72 @@ void explain(NavigateDisplay& display, const theatre::LiveState& live) {
   if (result.is_blank) {
     display.headline = "No picture";
     display.detail = "The picture is plain: is the light on, is the camera connected?";
-    return;
+    return false;
   }
   if (result.is_torn) {
     display.headline = "Picture torn";
     display.detail = "Parts of two moments in one picture: check cable and capture card";
-    return;
+    return false;
   }
   if (result.is_frozen) {
     display.headline = "Picture frozen";
     display.detail = "The source sends the same picture again and again: check cable and camera";
-    return;
+    return false;
   }
   if (result.is_repeating) {
     display.headline = "Picture does not change";
     display.detail = "The same picture several times on end: it may be about to freeze";
-    return;
+    return false;
   }
   if (state.medium.fit == pipeline::MediumFit::Contradicts) {
     display.headline = "Wrong medium";
     display.detail = "The markers look as in " + camera::medium_to_text(state.medium.other_index) +
                      ", not as in " + camera::medium_to_text(state.medium.stated_index);
-    return;
+    return true;
   }
   using operation::Standing;
   const Standing standing = registration.in_force.standing;
-  if (standing == Standing::Alarm) return tell(display, trouble_of(registration));
+  if (standing == Standing::Alarm) {
+    tell(display, trouble_of(registration));
+    return true;
+  }
   if (!result.intrinsics_are_known && !options.tools.tracker) {
     tell(display, trouble_of(result.lens));
     if (display.headline.empty()) display.headline = "Lens angle unknown";
-    return;
+    return false;
   }
-  if (standing == Standing::Void || standing == Standing::InDoubt)
-    return tell(display, trouble_of(registration));
-  if (!live.tracker_trouble.empty() && !result.world_is_seen())
-    return tell(display, {"Tracker lost", live.tracker_trouble});
+  if (standing == Standing::Void || standing == Standing::InDoubt) {
+    tell(display, trouble_of(registration));
+    return true;
+  }
+  if (!live.tracker_trouble.empty() && !result.world_is_seen()) {
+    tell(display, {"Tracker lost", live.tracker_trouble});
+    return false;
+  }
   switch (cause_of(state)) {
     case GuidanceState::Valid:
       break;
     case GuidanceState::NoPlan:
       display.headline = "No plan";
       display.detail = "Plan the tunnel of this bone first";
-      break;
+      return true;
     case GuidanceState::WrongMedium:  // told above; a record may say it alone
       display.headline = "Wrong medium";
       break;
     case GuidanceState::NotConfirmed:
       display.headline = "Time-out not confirmed";
       display.detail = "Patient, knee, plan, camera, tools and medium: Space confirms them";
-      break;
+      return true;
     case GuidanceState::GuideNotChecked:
       tell(display, trouble_of(state.guide_check, options.guide_name));
       if (display.headline.empty()) tell(display, {"Guide checked", "It guides from the next picture on"});
-      break;
+      return true;
     case GuidanceState::NoGuide:
       display.headline = "No drill guide";
       display.detail = options.tools.find_tool(options.guide_name) == nullptr
                            ? "The tools of this case hold no " + options.guide_name
                            : "The axis of the " + options.guide_name + " is not known: measure it in Set up";
-      break;
+      return true;
     case GuidanceState::NoRegistration:
       // Nothing can be touched while the marker is lost: that comes first.
       if (!result.world_is_seen()) {
@@ -152,27 +161,7 @@ void explain(NavigateDisplay& display, const theatre::LiveState& live) {
       display.detail = "The next picture that shows bone marker and guide together gives the numbers";
       break;
   }
-}
-
-// Whether what keeps guidance away does so whatever the next pictures show, until somebody does something
-// about it. It stays said while a busy machine is late with one of them.
-bool is_lasting(const operation::OperationState& state) {
-  const pipeline::FrameResult& result = state.frame;
-  if (result.is_blank || result.is_torn || result.is_frozen || result.is_repeating) return false;
-  if (state.medium.fit == pipeline::MediumFit::Contradicts) return true;
-  const operation::Standing standing = state.registration->in_force.standing;
-  if (standing == operation::Standing::Alarm) return true;
-  if (!result.intrinsics_are_known && !state.source->pipeline.tools.tracker) return false;
-  if (standing == operation::Standing::Void || standing == operation::Standing::InDoubt) return true;
-  switch (cause_of(state)) {
-    case GuidanceState::NoPlan:
-    case GuidanceState::NotConfirmed:
-    case GuidanceState::GuideNotChecked:
-    case GuidanceState::NoGuide:
-      return true;
-    default:
-      return false;
-  }
+  return false;
 }
 
 }  // namespace
@@ -228,13 +217,10 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   display.age_s = now_s - live->captured_s;
   if (display.age_s > live->stale_after_s) {
     const bool is_short = display.age_s < 1;
-    // What is wrong with the source comes first.
+    // What is wrong with the source comes first; what lasts stays said while a busy machine is late with one.
     const bool is_late_alone =
         live->trouble == theatre::SourceTrouble::None || live->trouble == theatre::SourceTrouble::Late;
-    if (is_short && is_late_alone && is_lasting(*live->operation)) {
-      explain(display, *live);
-      return display;
-    }
+    if (is_short && is_late_alone && explain(display, *live)) return display;
     // Pictures that come late all the while are no silence.
     const std::string age =
         is_short ? widgets::fixed(1000 * display.age_s, 0) + " ms" : widgets::fixed(display.age_s, 1) + " s";
@@ -267,7 +253,7 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   if (display.guidance_is_valid)
     display.guidance = result.guidance;
   else
-    explain(display, *live);
+    (void)explain(display, *live);
   return display;
 }
 
