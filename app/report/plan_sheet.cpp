@@ -232,7 +232,7 @@ void Sheet::slices(double y_mm) {
         slice(picture, kind, volume);
         pdf_.text(x_mm, y_mm + width_mm + 3.5,
                   tunnels::name_of(of_graft->tunnel.key()) +
-                      (is_upright ? ", along it, 70 mm" : ", along it, turned by 90 degrees"),
+                      (is_upright ? ", along it, 70 mm" : ", turned by 90\u00B0"),
                   kCaption);
       }
       x_mm += width_mm + kGap_mm;
