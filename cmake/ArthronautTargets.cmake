@@ -85,21 +85,37 @@ function(arthronaut_check_layers name)
 endfunction()
 
 # arthronaut_test(navigation_camera SOURCES x_test.cpp ... LIBS libs...)
-# One test program a module; ctest runs each test case on its own. APART as above. ALONE: while one of its test cases
-# runs, no other test does.
+# One test program a module; ctest runs each suite of it on its own, in one process: what is made ready once for all
+# cases of a suite is made once. BY_CASE: each case on its own, where cases are long and share nothing. APART as above.
+# ALONE: while one of its suites runs, no other test does. CASE_S: about how long a case takes, so that long ones begin
+# first (1). TIMEOUT_S: of what runs on its own.
 function(arthronaut_test name)
   if(NOT ARTHRONAUT_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "ALONE" "TIMEOUT" "SOURCES;LIBS;LABELS;APART" ${ARGN})
-  if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 300)
+  cmake_parse_arguments(ARG "ALONE;BY_CASE" "TIMEOUT_S;CASE_S" "SOURCES;LIBS;LABELS;APART" ${ARGN})
+  if(NOT ARG_TIMEOUT_S)
+    set(ARG_TIMEOUT_S 900)
+  endif()
+  if(NOT ARG_CASE_S)
+    set(ARG_CASE_S 1)
   endif()
   add_executable(${name}_test ${ARG_SOURCES})
   arthronaut_compile_apart(${ARG_APART})
   target_link_libraries(${name}_test PRIVATE arthronaut_compile_options ${ARG_LIBS} GTest::gtest_main GTest::gmock)
-  gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} RUN_SERIAL ${ARG_ALONE} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]" LABELS "${ARG_LABELS}")
+  set(suites ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake)
+  file(GENERATE OUTPUT ${suites} CONTENT "
+set(name ${name})
+set(program $<TARGET_FILE:${name}_test>)
+set(working_directory ${CMAKE_CURRENT_BINARY_DIR})
+set(timeout_s ${ARG_TIMEOUT_S})
+set(case_s ${ARG_CASE_S})
+set(is_alone ${ARG_ALONE})
+set(by_case ${ARG_BY_CASE})
+set(labels \"${ARG_LABELS}\")
+include(${CMAKE_SOURCE_DIR}/cmake/TestSuites.cmake)
+")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${suites})
 endfunction()
 
 # arthronaut_benchmark(registration SOURCES x_benchmark.cpp LIBS libs...): built with the tests, run by hand.
