@@ -13,9 +13,11 @@ endif()
 
 find_program(ARTHRONAUT_CCACHE ccache)
 if(ARTHRONAUT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # Paths count from the source tree: a second clone or work tree takes what the first one compiled.
+  # Paths count from the source tree: a second clone or work tree takes what the first one compiled. What ccache may
+  # overlook is what keeps it from precompiled headers.
   set(CMAKE_CXX_COMPILER_LAUNCHER
-    ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=true ${ARTHRONAUT_CCACHE})
+    ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=true
+    CCACHE_SLOPPINESS=pch_defines,time_macros ${ARTHRONAUT_CCACHE})
 endif()
 
 # lld links the VTK and CGAL objects several times faster than the default linker.
@@ -101,6 +103,8 @@ function(arthronaut_test name)
     set(ARG_CASE_S 1)
   endif()
   add_executable(${name}_test ${ARG_SOURCES})
+  target_compile_options(${name}_test PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)  # for ccache
+  target_precompile_headers(${name}_test REUSE_FROM test_headers)
   arthronaut_compile_apart(${ARG_APART})
   target_link_libraries(${name}_test PRIVATE arthronaut_compile_options ${ARG_LIBS} GTest::gtest_main GTest::gmock)
   set(suites ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake)
