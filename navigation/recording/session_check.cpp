@@ -1,5 +1,6 @@
 #include "navigation/recording/session_check.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
@@ -78,12 +79,7 @@ class Checker {
     if (!check_.was_finished) return;
     for (const auto& [of, end] : ends_) {
       if (open_.contains(of)) continue;
-      std::int64_t there = end;
-      if (!is_of_rows(of)) {
-        std::error_code error;
-        const std::uintmax_t size = fs::file_size(file_of(folder_, of), error);
-        if (!error) there = static_cast<std::int64_t>(size);
-      }
+      const std::int64_t there = is_of_rows(of) ? end : size_of(file_of(folder_, of));
       if (there > end) add(of, end, there, kAdded);
     }
     for (const char* const rows : {kFrameRows, kEventRows, kPictureRows})
@@ -104,10 +100,11 @@ class Checker {
   }
 
   void look_at_bytes(const ChainRecord& record) {
+    const fs::path file = file_of(folder_, record.of);
     try {
-      const auto hash = sha256_of_bytes(file_of(folder_, record.of), record.from, record.to);
+      const auto hash = sha256_of_bytes(file, record.from, record.to);
       if (!hash)
-        add(record.of, record.from, record.to, kMissing);
+        lose_bytes(record, size_of(file));
       else if (*hash != record.sha256)
         add(record.of, record.from, record.to, kChanged);
       else
@@ -115,6 +112,16 @@ class Checker {
     } catch (const IoError& error) {
       add(record.of, record.from, record.to, std::string("not readable: ") + error.what());
     }
+  }
+
+  // Of a file that is `size` long.
+  void lose_bytes(const ChainRecord& record, std::int64_t size) {
+    add(record.of, std::max(record.from, size), record.to, kMissing);
+    if (size > record.from)
+      check_.notes.push_back(files::format(
+          "%s: bytes %lld to %lld: not looked at, their hash is also of the "
+          "missing ones",
+          record.of.c_str(), static_cast<long long>(record.from), static_cast<long long>(size - 1)));
   }
 
   void look_beyond_rows(const std::string& rows) {

@@ -44,12 +44,6 @@ void sync_file(const fs::path& file) {
   ::close(descriptor);
 }
 
-std::int64_t size_of(const fs::path& file) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(file, error);
-  return error ? 0 : static_cast<std::int64_t>(size);
-}
-
 }  // namespace
 
 bool is_of_rows(const std::string& of) { return of == kFrameRows || of == kEventRows || of == kPictureRows; }
@@ -88,6 +82,12 @@ fs::path file_of(const fs::path& session_folder, const std::string& of) {
   const fs::path file = session_folder / of;
   const fs::path part = session_folder / (of + ".part");
   return !fs::exists(file) && fs::exists(part) ? part : file;
+}
+
+std::int64_t size_of(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  return error ? 0 : static_cast<std::int64_t>(size);
 }
 
 std::optional<std::string> sha256_of_bytes(const fs::path& file, std::int64_t from, std::int64_t to) {

@@ -38,6 +38,8 @@ inline constexpr const char* kChainEnd = "end";
 // Where the file lies: by its name, or as the .part that a session which was cut off leaves.
 [[nodiscard]] std::filesystem::path file_of(const std::filesystem::path& session_folder,
                                             const std::string& of);
+// 0 when it is not there.
+[[nodiscard]] std::int64_t size_of(const std::filesystem::path& file);
 // nullopt: the file ends before `to`, or is not there. Throws IoError.
 [[nodiscard]] std::optional<std::string> sha256_of_bytes(const std::filesystem::path& file, std::int64_t from,
                                                          std::int64_t to);

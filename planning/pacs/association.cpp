@@ -144,6 +144,11 @@ std::unique_ptr<Association> Association::connect(const Peer& peer, const Connec
       refusal.reason =
           options.tls ? "ended the connection while it began; it may not speak TLS there, or not trust us"
                       : "ended the connection while it began; it may speak TLS alone there";
+    if (outcome.module() == OFM_dcmtls)
+      refusal.reason =
+          "did not begin TLS: it may not speak TLS there (then leave TLS out), or not trust our "
+          "certificate (" +
+          association->why(outcome) + ")";
     if (outcome == DUL_ASSOCIATIONREJECTED) {
       T_ASC_RejectParameters reject{};
       ASC_getRejectParameters(association->association_->params, &reject);

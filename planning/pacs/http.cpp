@@ -215,7 +215,11 @@ bool HttpClient::try_once(const HttpRequest& request, HttpAnswer& answer, std::s
     reason = curl_->error[0] != '\0' ? curl_->error : curl_easy_strerror(outcome);
     if (outcome == CURLE_PEER_FAILED_VERIFICATION) fail("is not trusted: " + reason);
     if (outcome == CURLE_SSL_CACERT_BADFILE) fail("its authority's certificate cannot be used: " + reason);
-    reason = "cannot be reached, or broke off: " + reason;
+    reason = outcome == CURLE_SSL_CONNECT_ERROR
+                 ? "did not begin TLS: it may not speak TLS there (then its address begins with http://), or "
+                   "none from 1.2 on (" +
+                       reason + ")"
+                 : "cannot be reached, or broke off: " + reason;
     return false;
   }
   long status = 0;

@@ -193,6 +193,9 @@ TEST_F(SessionCheckTest, SaysWhatIsMissingAndWhatWasAdded) {
   const std::string poses = text_of(folder_ / "poses.csv"), chain = text_of(folder_ / "chain.csv");
   put_text(folder_ / "poses.csv", poses.substr(0, poses.size() - 10));
   expect_one_finding("poses.csv", static_cast<std::int64_t>(poses.size()) - 5, "are missing");
+  // From where the file really ends on; what is left before has no hash of its own.
+  EXPECT_EQ(check_session(folder_).findings.front().from, static_cast<std::int64_t>(poses.size()) - 10);
+  EXPECT_THAT(check_session(folder_).notes, ElementsAre(HasSubstr("not looked at")));
   put_text(folder_ / "poses.csv", poses + "90,0");
   expect_one_finding("poses.csv", static_cast<std::int64_t>(poses.size()), "are not in the chain");
   put_text(folder_ / "poses.csv", poses);

@@ -100,7 +100,8 @@ TEST_F(PacsTls, DoesNotMixWithTheClear) {
   const test::Orthanc secret(form("IP:127.0.0.1"));
   EXPECT_THAT(refusal_of(secret.peer(), quick_connection()), HasSubstr(to_text(secret.peer())));
   const test::Orthanc open;
-  EXPECT_THAT(refusal_of(open.peer(), secure()), HasSubstr(to_text(open.peer())));
+  EXPECT_THAT(refusal_of(open.peer(), secure()),
+              AllOf(HasSubstr(to_text(open.peer())), HasSubstr("may not speak TLS there")));
 }
 
 TEST_F(PacsTls, RefusesKeysThatDoNotFitWithoutShowingThem) {

@@ -211,6 +211,9 @@ TEST_F(PacsWeb, ChecksTheCertificateAndThePassword) {
   wrong.authority.clear();  // the system's, of which ours is none
   EXPECT_THAT(failure(wrong), HasSubstr("is not trusted"));
   wrong = server;
+  wrong.url = "https" + orthanc.web_url().substr(4);  // which speaks http there
+  EXPECT_THAT(failure(wrong), HasSubstr("may not speak TLS there"));
+  wrong = server;
   wrong.password = "secret-8";
   EXPECT_THAT(failure(wrong), HasSubstr("HTTP 401"));
   EXPECT_THAT(failure(wrong), testing::Not(HasSubstr("secret")));
