@@ -1,6 +1,7 @@
 #include "app/command_line/navigation_report.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/command_line/tracking_report.h"
 
@@ -36,13 +37,13 @@ void say_guidance(const Context& context, const theatre::NavigationSummary& summ
              "angle %.2f deg",
              summary.frames_with_guidance, summary.statistics.frame_count, g.tip_to_entry_mm,
              g.axis_to_entry_mm, g.angle_deg));
-  context.say(format(
-      "  offset %.2f mm: %.2f mm %s, %.2f mm %s; guide %.1f mm beyond the entry; one sigma %.2f mm, "
-      "%.2f deg",
-      g.offset_mm, g.offset_in_mm(g.across_plan.side_is),
-      std::string(landmarks::to_text(g.across_plan.side_is)).c_str(), g.offset_in_mm(g.across_plan.up_is),
-      std::string(landmarks::to_text(g.across_plan.up_is)).c_str(), g.depth_mm, g.sigma_offset_mm,
-      g.sigma_angle_deg));
+  const auto part = [&](landmarks::AnatomicalDirection direction) {
+    const double value_mm = g.offset_in_mm(direction);
+    return format("%.2f mm ", std::abs(value_mm)) + std::string(landmarks::to_text(direction, value_mm >= 0));
+  };
+  context.say(format("  offset %.2f mm: %s, %s; guide %.1f mm beyond the entry; one sigma %.2f mm, %.2f deg",
+                     g.offset_mm, part(g.across_plan.side_is).c_str(), part(g.across_plan.up_is).c_str(),
+                     g.depth_mm, g.sigma_offset_mm, g.sigma_angle_deg));
   if (g.drill)
     context.say(format("  drill %.1f mm deep, %.1f mm remaining, %.1f mm to the exit (+- %.1f mm)",
                        g.drill->depth_mm, g.drill->remaining_mm, g.drill->to_exit_mm, g.drill->sigma_mm));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/report/pdf_text_map.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 
@@ -229,14 +230,7 @@ double PdfDocument::table(double x_mm, double y_mm, const std::vector<double>& w
   return y_mm + 2;
 }
 
-void PdfDocument::save(const std::filesystem::path& file) {
-  pdf_->check();
-  files::write_atomically(file, [this](const std::filesystem::path& temporary) {
-    HPDF_SaveToFile(pdf_->document, temporary.c_str());
-    if (pdf_->failure.status != HPDF_OK)
-      throw IoError(temporary, "cannot write the PDF (disk full or read-only?)");
-  });
-}
+void PdfDocument::save(const std::filesystem::path& file) { files::write_atomically(file, bytes()); }
 
 std::string PdfDocument::bytes() {
   pdf_->check();
@@ -248,7 +242,7 @@ std::string PdfDocument::bytes() {
   HPDF_ReadFromStream(pdf_->document, reinterpret_cast<HPDF_BYTE*>(bytes.data()), &length);
   pdf_->check();
   if (length != bytes.size()) throw IoError("the PDF writer gave less than the whole document");
-  return bytes;
+  return with_text_map(std::move(bytes));
 }
 
 }  // namespace arthronaut::report

@@ -33,8 +33,7 @@ bool is_empty_at_the_edge(const std::filesystem::path& picture) {
 std::vector<Page> pages_of(const std::filesystem::path& pdf) {
   const TemporaryFolder folder;
   const auto words = folder / "words.html";
-  EXPECT_EQ(std::system(("pdftotext -bbox " + pdf.string() + " " + words.string() + " 2>/dev/null").c_str()),
-            0);
+  EXPECT_EQ(std::system(("pdftotext -bbox " + pdf.string() + " " + words.string()).c_str()), 0);
   EXPECT_EQ(
       std::system(
           ("pdftoppm -r 50 -gray " + pdf.string() + " " + (folder / "p").string() + " 2>/dev/null").c_str()),
