@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "navigation/camera/frame.h"
 
@@ -29,15 +30,30 @@ struct CaptureTime {
 class StreamClock {
  public:
   // Both of one piece of data; stamps need not come quite in order. One that lies half a second before the
-  // one before it is of a sender that was started again, and begins anew. What only comes late never does,
-  // however late it is.
+  // one before it is of a sender that was started again, and begins anew. A sender's count that went back by
+  // less is known once the stamps are where they were before, having come there picture by picture; not in a
+  // stream whose pictures are put in order by its decoder. What only comes late begins never anew, however
+  // late it is.
   void arrived(std::int64_t stamp_ns, std::int64_t arrived_ns);
   // On the steady clock, of a picture with this stamp. Precondition: something has arrived.
   [[nodiscard]] std::int64_t captured_ns(std::int64_t stamp_ns) const { return stamp_ns + apart_ns_; }
 
  private:
+  // Stamps that went back.
+  struct Step {
+    std::int64_t from_ns, to_ns;  // the newest before, the first after
+    std::int64_t behind_ns;       // how old the youngest of the last pictures before was
+    std::int64_t newest_ns, least_apart_ns, count = 0;  // since
+  };
+  void follow_step(std::int64_t stamp_ns, std::int64_t apart_ns);
+
   bool has_begun_ = false;
   std::int64_t apart_ns_ = 0, at_ns_ = 0, stamp_ns_ = 0;
+  std::int64_t first_ns_ = 0, newest_ns_ = 0, count_ = 0;  // stamps
+  std::int64_t in_order_ = 0;                              // since one went back
+  // The least age of this quarter of a second, and of the one before.
+  std::int64_t quarter_ns_ = 0, least_age_ns_ = 0, least_age_before_ns_ = 0;
+  std::optional<Step> step_;
 };
 
 }  // namespace arthronaut::sources

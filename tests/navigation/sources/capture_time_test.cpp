@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <vector>
 
 namespace arthronaut::sources {
 namespace {
@@ -70,6 +71,55 @@ TEST(StreamClock, FollowsASlowClockAndANewOne) {
   EXPECT_NEAR(static_cast<double>(packets.captured_ns(last - last / 10'000) - last), 0, 1e6);
   clock.arrived(0, 4000 * kSecond);
   EXPECT_EQ(clock.captured_ns(0), 4000 * kSecond);
+}
+
+// A sender whose count goes back by less than half a second: its pictures look so much older until the count
+// is where it was, and then are as old as they are, also on a machine that is behind by then.
+TEST(StreamClock, IsRightAgainAfterACountThatWentBack) {
+  constexpr std::int64_t kMs = 1'000'000, kInterval = 33'333'333;
+  for (const std::int64_t behind : {0, 150}) {
+    for (const std::int64_t back : {40, 120, 300, 480}) {
+      StreamClock clock;
+      for (std::int64_t i = 0; i < 300; ++i) {
+        const std::int64_t captured = i * kInterval, jitter = i * 7 % 5 * kMs;
+        const std::int64_t stamp = captured - (i < 100 ? 0 : back * kMs);
+        clock.arrived(stamp, captured + jitter + (i < 60 ? 0 : behind * kMs));
+        const double off_ms = 1e-6 * static_cast<double>(clock.captured_ns(stamp) - captured);
+        EXPECT_LE(off_ms, 6) << "younger than it is: " << back << " ms back, " << behind << " behind, " << i;
+        const bool is_known = i < 100 || i > 100 + back * kMs / kInterval + 1;
+        EXPECT_GE(off_ms, is_known ? -6 : -6 - back) << back << " ms back, " << behind << " behind, " << i;
+      }
+    }
+  }
+}
+
+// Pictures that come in another order than they are shown in are no such count, on a machine that falls
+// behind and while some are lost either.
+TEST(StreamClock, Hazard3PicturesThatArePutInOrderStayAsOldAsTheyAre) {
+  constexpr std::int64_t kInterval = 33'333'333;
+  // As they come: I P B B B, with B pictures that others rest on, and one between two.
+  const std::vector<std::vector<std::int64_t>> orders{{4, 1, 2, 3}, {4, 2, 1, 3}, {2, 1}};
+  for (const auto& order : orders) {
+    StreamClock clock;
+    std::uint32_t draws = 1;
+    std::int64_t number = 0;
+    clock.arrived(0, 0);
+    for (std::int64_t group = 0; group < 300; ++group) {
+      for (const std::int64_t at : order) {
+        ++number;
+        draws = draws * 1664525U + 1013904223U;
+        if (draws % 10 < 2) continue;
+        const std::int64_t stamp = (group * static_cast<std::int64_t>(order.size()) + at) * kInterval;
+        // What is shown last of a group comes first, once it was captured; then the others, and ever later.
+        const std::int64_t captured = stamp, arrived = (number + 4) * kInterval + number * kInterval / 10;
+        clock.arrived(stamp, arrived);
+        EXPECT_LE(1e-6 * static_cast<double>(clock.captured_ns(stamp) - captured), 5 * 33.4) << number;
+      }
+    }
+    // At 30 seconds behind nothing is called new.
+    EXPECT_LE(1e-6 * static_cast<double>(clock.captured_ns(number * kInterval) - number * kInterval),
+              5 * 33.4);
+  }
 }
 
 // A machine that is too busy falls behind its stream, however far: what is old is never called new.
