@@ -11,25 +11,47 @@ constexpr std::int64_t kMostBytes = std::int64_t{64} << 20;
 constexpr std::int64_t kMostPackets = 4096;
 constexpr std::int64_t kLongest_ns = 20'000'000'000;
 
-// Calls visit(first byte) for each NAL unit of a packet, until it says true. Units have start codes before
-// them, or four bytes of length.
+// Calls visit(first byte of it) for each NAL unit of a packet, until it says true. Units have start codes
+// before them, or four bytes of length. What is behind a packet's end can be read, and is 0.
 template <typename Visit>
 void for_each_unit(const AVPacket& packet, bool has_lengths, const Visit& visit) {
   const std::uint8_t* at = packet.data;
   const std::uint8_t* const end = at + packet.size;
   while (has_lengths && end - at > 4) {
     const std::int64_t size = std::int64_t{at[0]} << 24 | at[1] << 16 | at[2] << 8 | at[3];
-    if (visit(at[4]) || size > end - at - 4) return;
+    if (visit(at + 4) || size > end - at - 4) return;
     at += 4 + size;
   }
   for (; !has_lengths && end - at > 3; ++at) {
     if (at[0] != 0 || at[1] != 0 || at[2] != 1) continue;
-    if (visit(at[3])) return;
+    if (visit(at + 3)) return;
     at += 3;
   }
 }
 
+constexpr int type_of(const std::uint8_t* unit, bool is_h264) {
+  return is_h264 ? unit[0] & 0x1F : unit[0] >> 1 & 0x3F;
+}
+
 }  // namespace
+
+bool is_one_picture(const AVPacket& packet, AVCodecID codec) {
+  const bool is_h264 = codec == AV_CODEC_ID_H264;
+  if (!is_h264 && codec != AV_CODEC_ID_HEVC) return false;
+  int first_slices = 0;
+  bool begins_with_one = true;
+  for_each_unit(packet, false, [&](const std::uint8_t* unit) {
+    constexpr int kSlice = 1, kIdr = 5, kLastPicture = 31;
+    const int type = type_of(unit, is_h264);
+    if (is_h264 ? type != kSlice && type != kIdr : type > kLastPicture) return false;
+    // first_mb_in_slice is 0, coded as one bit; first_slice_segment_in_pic_flag.
+    const bool is_first = (unit[is_h264 ? 1 : 2] & 0x80) != 0;
+    begins_with_one = begins_with_one && (is_first || first_slices > 0);
+    first_slices += is_first ? 1 : 0;
+    return false;
+  });
+  return begins_with_one && first_slices == 1;
+}
 
 bool may_begin_at(const AVPacket& packet, const AVCodecParameters& parameters) {
   if ((packet.flags & AV_PKT_FLAG_CORRUPT) != 0) return false;
@@ -43,9 +65,9 @@ bool may_begin_at(const AVPacket& packet, const AVCodecParameters& parameters) {
   // The parameters of either begin with a 1 where units carry their lengths.
   const bool has_lengths = parameters.extradata_size > 0 && parameters.extradata[0] == 1;
   bool found = false;
-  for_each_unit(packet, has_lengths, [&](std::uint8_t first) {
+  for_each_unit(packet, has_lengths, [&](const std::uint8_t* unit) {
     constexpr int kSlice = 1, kIdr = 5, kFirstBla = 16, kLastIdr = 20, kLastPicture = 31;
-    const int type = is_h264 ? first & 0x1F : first >> 1 & 0x3F;
+    const int type = type_of(unit, is_h264);
     found = is_h264 ? type == kIdr : type >= kFirstBla && type <= kLastIdr;
     return is_h264 ? type >= kSlice && type <= kIdr : type <= kLastPicture;
   });

@@ -43,6 +43,10 @@ using EncodedPacketPtr = std::shared_ptr<const EncodedPacket>;
 // Whether decoding may begin at this packet of that format.
 [[nodiscard]] bool may_begin_at(const AVPacket& packet, const AVCodecParameters& parameters);
 
+// Whether it holds a whole picture and nothing of another one: what a stream of these codecs may be decoded
+// by without its units being put together anew. False for other codecs.
+[[nodiscard]] bool is_one_picture(const AVPacket& packet, AVCodecID codec);
+
 class EncodedPackets {
  public:
   EncodedPackets();

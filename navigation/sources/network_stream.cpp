@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "navigation/sources/capture_time.h"
+#include "navigation/sources/datagram_input.h"
 #include "navigation/sources/encoded_packets.h"
 #include "navigation/sources/libav.h"
 #include "navigation/sources/recovering_source.h"
@@ -38,21 +39,31 @@ struct FreeDictionary {
   ~FreeDictionary() { av_dict_free(&entries); }
 };
 
+bool is_transport(const AVFormatContext& container) {
+  return std::string_view(container.iformat->name) == "mpegts";
+}
+
 // How many later pictures have begun to arrive when libavformat gives one out. Where a picture ends is told
 // by the beginning of the next one alone, in what it parses (all but a codec whose RTP packets say so) and
-// once more in the packets of MPEG-TS, whose length senders leave open.
+// once more in the packets of MPEG-TS, whose length senders leave open, where nobody tells it
+// (DatagramInput).
 std::size_t held_back(const AVFormatContext& container, AVCodecID codec) {
-  const bool is_parsed = codec == AV_CODEC_ID_H264 || codec == AV_CODEC_ID_HEVC ||
-                         codec == AV_CODEC_ID_MPEG2VIDEO || codec == AV_CODEC_ID_MPEG4;
-  const bool is_ts = std::string_view(container.iformat->name) == "mpegts";
-  return (is_parsed ? 1 : 0) + (is_ts ? 1 : 0);
+  const bool may_be_parsed = codec == AV_CODEC_ID_H264 || codec == AV_CODEC_ID_HEVC ||
+                             codec == AV_CODEC_ID_MPEG2VIDEO || codec == AV_CODEC_ID_MPEG4;
+  const bool is_parsed = may_be_parsed && (container.flags & AVFMT_FLAG_NOPARSE) == 0;
+  return (is_parsed ? 1 : 0) + (is_transport(container) ? 1 : 0);
 }
 
 // One connection: from the address to decoded pictures. What goes wrong in it ends it.
 class Connection {
  public:
+  // How its packets are cut. AsTheyCome: each is taken for one picture, which saves the wait for the next
+  // one.
+  enum class Cut { AsTheyCome, ByParser };
+
   // Throws DeviceError.
-  Connection(const std::string& address, std::int64_t deadline_ns, bool is_again, EncodedPackets& packets)
+  Connection(const std::string& address, std::int64_t deadline_ns, bool is_again, Cut cut,
+             EncodedPackets& packets)
       : packets_(packets), packet_(av_packet_alloc()), picture_(av_frame_alloc()), data_by_ns_(deadline_ns) {
     AVFormatContext* opening = avformat_alloc_context();
     opening->interrupt_callback = {[](void* self) { return static_cast<Connection*>(self)->is_late(); },
@@ -68,9 +79,17 @@ class Connection {
     av_dict_set(&options.entries, "fifo_size", "200000", 0);
     av_dict_set(&options.entries, "overrun_nonfatal", "1", 0);
     av_dict_set(&options.entries, "buffer_size", "8388608", 0);
-    const int error = avformat_open_input(&opening, address.c_str(), nullptr, &options.entries);
+    if (cut == Cut::AsTheyCome && address.starts_with("udp://"))
+      datagrams_ = std::make_unique<DatagramInput>(address, opening->interrupt_callback, &options.entries);
+    int error = datagrams_ != nullptr ? datagrams_->error() : 0;
+    if (error == 0) {
+      if (datagrams_ != nullptr) opening->pb = datagrams_->context();
+      error = avformat_open_input(&opening, address.c_str(), nullptr, &options.entries);
+    }
     container_.reset(opening);
     if (error < 0) fail(address, libav_message(is_late() ? AVERROR(ETIMEDOUT) : error));
+    if (datagrams_ != nullptr && is_transport(*container_))
+      container_->flags |= AVFMT_FLAG_NOPARSE | AVFMT_FLAG_NOFILLIN;
     // A server that has said what it sends (RTSP) is believed: looking into it costs half a second.
     stream_index_ = is_again ? video_in_container() : -1;
     if (stream_index_ < 0) {
@@ -84,6 +103,7 @@ class Connection {
     if (decoder_ == nullptr) fail(address, problem);
     packets_.begin(stream());
     held_back_ = held_back(*container_, stream().codecpar->codec_id);
+    if ((container_->flags & AVFMT_FLAG_NOPARSE) != 0) datagrams_->ends().follow(stream().id);
   }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -109,6 +129,8 @@ class Connection {
   [[nodiscard]] bool gives_data() const {
     return !has_ended_ && received_ns_ > 0 && steady_now_ns() - received_ns_ < kSilence_ns;
   }
+  // Its packets are not a picture each: nothing more comes of it, and it has to be opened anew.
+  [[nodiscard]] bool needs_parser() const { return odd_packets_ >= kOddPackets; }
   // What waited too long is passed over.
   [[nodiscard]] bool is_behind() const { return is_behind_; }
   // Since the connection was made: pictures that came, and were left out.
@@ -145,8 +167,14 @@ class Connection {
     throw DeviceError(shown_address(address) + ": " + reason);
   }
 
+  // One that lost something on its way is no sign.
+  void judge_cut(const AVPacket& packet) {
+    if ((container_->flags & AVFMT_FLAG_NOPARSE) == 0 || (packet.flags & AV_PKT_FLAG_CORRUPT) != 0) return;
+    odd_packets_ = is_one_picture(packet, stream().codecpar->codec_id) ? 0 : odd_packets_ + 1;
+  }
+
   bool feed() {
-    if (av_read_frame(container_.get(), packet_.get()) < 0) return false;
+    if (needs_parser() || av_read_frame(container_.get(), packet_.get()) < 0) return false;
     const bool is_video = packet_->stream_index == stream_index_;
     if (is_video) take(*packet_);
     av_packet_unref(packet_.get());
@@ -157,8 +185,11 @@ class Connection {
     received_ns_ = steady_now_ns();
     std::shift_right(given_out_ns_.begin(), given_out_ns_.end(), 1);
     given_out_ns_[0] = received_ns_;
+    judge_cut(packet);
     // It was there already when the one that was held back for it was given out.
-    const std::int64_t there_ns = given_out_ns_[held_back_] > 0 ? given_out_ns_[held_back_] : received_ns_;
+    const bool was_ended = datagrams_ != nullptr && datagrams_->ends().was_ended(packet.pos);
+    const std::size_t held = was_ended ? 0 : held_back_;
+    const std::int64_t there_ns = given_out_ns_[held] > 0 ? given_out_ns_[held] : received_ns_;
     if (packet.pts != AV_NOPTS_VALUE) clock_.arrived(stamp_ns(packet.pts), there_ns);
     const std::int64_t time_ns =
         packet.pts == AV_NOPTS_VALUE ? received_ns_ : clock_.captured_ns(stamp_ns(packet.pts));
@@ -178,7 +209,10 @@ class Connection {
     return false;
   }
 
+  static constexpr int kOddPackets = 3;  // on end: no accident
+
   EncodedPackets& packets_;
+  std::unique_ptr<DatagramInput> datagrams_;  // of a UDP port; else null
   LibavPtr<AVFormatContext> container_;
   LibavPtr<AVCodecContext> decoder_;
   LibavPtr<AVPacket> packet_;
@@ -187,6 +221,7 @@ class Connection {
   std::int64_t data_by_ns_, received_ns_ = 0;
   std::array<std::int64_t, 3> given_out_ns_{};  // the newest packets, the newest first; 0: none
   std::size_t held_back_ = 0;                   // see there
+  int odd_packets_ = 0;                         // on end, that are not one picture each
   long damaged_count_ = 0;
   bool has_ended_ = false, is_behind_ = false;
   int stream_index_ = -1;
@@ -195,9 +230,10 @@ class Connection {
 // One connection as a source; whoever opened it opens another one when it breaks.
 class NetworkStream final : public FrameSource {
  public:
+  // cut: as it was found to be, also for the next connection.
   NetworkStream(const std::string& address, const Opening& opening,
-                const std::shared_ptr<EncodedPackets>& packets)
-      : stamps_(opening.stamps), remark_(opening.remark) {
+                const std::shared_ptr<EncodedPackets>& packets, std::shared_ptr<Connection::Cut> cut)
+      : stamps_(opening.stamps), remark_(opening.remark), cut_(std::move(cut)) {
     info_.name = shown_address(address);
     info_.kind = SourceKind::Live;
     info_.ends = false;
@@ -206,11 +242,16 @@ class NetworkStream final : public FrameSource {
     avformat_network_init();
     const std::int64_t deadline_ns =
         steady_now_ns() + (opening.is_again ? kOpensAgainWithin_ns : kOpensWithin_ns);
-    connection_ = std::make_unique<Connection>(address, deadline_ns, opening.is_again, *packets);
+    const auto first_picture = [&] {
+      connection_.reset();  // a port can be listened to once
+      connection_ = std::make_unique<Connection>(address, deadline_ns, opening.is_again, *cut_, *packets);
+      last_picture_ns_ = steady_now_ns();
+      return connection_->next(opening.is_again ? last_picture_ns_ + kPictureless_ns : deadline_ns,
+                               deadline_ns);
+    };
+    const AVFrame* picture = first_picture();
+    if (picture == nullptr && learns_cut()) picture = first_picture();
     opening.identity = connection_->identity();
-    last_picture_ns_ = steady_now_ns();
-    const AVFrame* const picture =
-        connection_->next(opening.is_again ? last_picture_ns_ + kPictureless_ns : deadline_ns, deadline_ns);
     // One that is taken up between two key frames is kept: connecting anew might miss every one of them.
     if (picture == nullptr && opening.is_again && connection_->gives_data()) return;
     if (picture == nullptr) throw DeviceError(why_no_picture("gives no picture"));
@@ -227,6 +268,7 @@ class NetworkStream final : public FrameSource {
     const std::int64_t now_ns = steady_now_ns();
     if (const AVFrame* const picture = connection_->next(now_ns + kPictureless_ns, now_ns + kSilence_ns))
       return frame_of(*picture);
+    (void)learns_cut();
     const std::string why = why_no_picture("broke off; connecting again");
     if (!connection_->gives_data() || steady_now_ns() - last_picture_ns_ > kKeyFrameWithin_ns)
       throw DeviceError(why);
@@ -247,6 +289,12 @@ class NetworkStream final : public FrameSource {
     return frame;
   }
 
+  // True: its packets are other than they were taken for.
+  bool learns_cut() {
+    if (connection_->needs_parser()) *cut_ = Connection::Cut::ByParser;
+    return connection_->needs_parser();
+  }
+
   // Since the last one; without_data: when nothing came.
   [[nodiscard]] std::string why_no_picture(const char* without_data) const {
     if (connection_->damaged_count() > damaged_before_)
@@ -260,6 +308,7 @@ class NetworkStream final : public FrameSource {
 
   LiveStamps& stamps_;
   std::string& remark_;
+  std::shared_ptr<Connection::Cut> cut_;
   std::unique_ptr<Connection> connection_;
   DecodedFrames frames_;
   SourceInfo info_;
@@ -271,9 +320,11 @@ class NetworkStream final : public FrameSource {
 }  // namespace
 
 std::unique_ptr<FrameSource> open_network_stream(const std::string& address) {
-  return recovering([address, packets = std::make_shared<EncodedPackets>()](const Opening& opening) {
-    return std::make_unique<NetworkStream>(address, opening, packets);
-  });
+  return recovering(
+      [address, packets = std::make_shared<EncodedPackets>(),
+       cut = std::make_shared<Connection::Cut>(Connection::Cut::AsTheyCome)](const Opening& opening) {
+        return std::make_unique<NetworkStream>(address, opening, packets, cut);
+      });
 }
 
 }  // namespace arthronaut::sources
