@@ -63,6 +63,7 @@ void Operation::start_source(const SourceSetup& source) {
   p.drilling.evidence_is_seen = false;
   p.touch.refusal = TouchRefusal::None;
   p.in_view.world_was_seen = p.in_view.guide_was_seen = false;
+  p.in_view.guided_ns.reset();
   p.in_view.control_touched_ns = 0;  // of another clock
   p.in_view.control_set_ns = std::numeric_limits<std::int64_t>::min();
   p.pipeline->set_plan(p.plan ? std::optional(p.plan->tunnel) : std::nullopt, p.plan ? p.plan->length_mm : 0);
@@ -195,6 +196,7 @@ OperationStatePtr Operation::state() {
   p.changed = false;
   state->verification = p.verification();
   state->time_out = p.time_out();
+  state->guided_lately = p.guided_lately();
   state->resumed = p.resumed;
   state->control_point_due = p.control_point_due();
   state->places_in_doubt = p.places_in_doubt();

@@ -78,6 +78,7 @@ struct Operation::Parts {
   [[nodiscard]] std::optional<std::size_t> guide_in_view() const;
   [[nodiscard]] std::optional<Eigen::Vector3d> control_point_of_now_mm() const;
   [[nodiscard]] ControlPointDue control_point_due() const;
+  [[nodiscard]] bool guided_lately() const;
   [[nodiscard]] int places_in_doubt() const;
   [[nodiscard]] Verification verification() const;
   [[nodiscard]] TimeOut time_out() const;
@@ -175,6 +176,7 @@ struct Operation::Parts {
     std::int64_t world_ns = 0, control_touched_ns = 0;
     // When the control point was touched first; of a source before this one: before all of its frames.
     std::int64_t control_set_ns = std::numeric_limits<std::int64_t>::min();
+    std::optional<std::int64_t> guided_ns;  // the newest picture that guided, by the registration in force
     bool world_was_seen = false, was_lost_for_long = false, guide_was_seen = false;
   } in_view;
   struct Medium {

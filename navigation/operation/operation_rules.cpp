@@ -10,6 +10,8 @@ namespace {
 constexpr int kFramesBetweenLooks = 30;
 // A marker that was out of sight for so long may have been hit meanwhile.
 constexpr std::int64_t kLongLoss_ns = 30'000'000'000;
+// A guide that is away for longer was put down: the hand is free for something else.
+constexpr std::int64_t kGuideAway_ns = 2'000'000'000;
 // A control point that was touched so lately need not be touched again before drilling.
 constexpr std::int64_t kControlHolds_ns = 300'000'000'000;
 
@@ -53,6 +55,7 @@ void Operation::Parts::follow_ledger() {
     hide_guidance(guidance::GuidanceState::Stale);
     if (drilling.evidence) drilling.evidence->clear();
     drilling.evidence_is_seen = false;
+    in_view.guided_ns.reset();
     if (in_force.registration != nullptr) {
       const RegistrationOrigin origin = (*ledger.entries())[*ledger.entry_in_force()].origin;
       note_in_force(origin == RegistrationOrigin::Given || origin == RegistrationOrigin::Resumed);
@@ -213,6 +216,7 @@ void Operation::Parts::watch_guidance() {
     drilling.evidence_is_seen = drilling.evidence && drilling.evidence->summary().is_usable();
   }
   if (!frame.guidance.is_valid()) return;
+  in_view.guided_ns = frame.timestamp_ns;
   if (verification() == Verification::NotYet) skip_verification("guidance began without one");
 }
 
@@ -345,6 +349,10 @@ int Operation::Parts::places_in_doubt() const {
   if (!contour.is_in_doubt || contour.doubt_has_control_point) return 0;
   return std::max(
       setup.limits.touches_to_verify - ledger.touches().places_since(contour.touches_before_doubt), 0);
+}
+
+bool Operation::Parts::guided_lately() const {
+  return has_source && in_view.guided_ns && frame.timestamp_ns - *in_view.guided_ns <= kGuideAway_ns;
 }
 
 ControlPointDue Operation::Parts::control_point_due() const {

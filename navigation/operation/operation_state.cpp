@@ -172,13 +172,16 @@ NextAction next_action_of(const OperationState& state) {
   if (in_force.standing == Standing::Void && in_force.can_be_confirmed && !state.draws)
     return NextAction::ConfirmByTouch;
   if (in_force.standing != Standing::Stands) return action_without_registration(state);
-  const bool guides = state.frame.guidance.is_valid();
+  // What is to be done does not change with a picture in which the guide is not seen.
+  const bool guides = state.guided_lately;
   if (state.verification == Verification::NotYet && !guides) {
     if (registration.touches.places_to_verify() > 0) return NextAction::VerifyByTouch;
     return action_of_denied(state);
   }
   if (state.control_point_due == ControlPointDue::CannotCheckLooks) return NextAction::VerifyByTouch;
-  if (state.control_point_due == ControlPointDue::Set && !guides) return NextAction::SetControlPoint;
+  // Not asked of a hand that drills or has drilled: a control point that is set then tells nothing of before.
+  if (state.control_point_due == ControlPointDue::Set && !guides && !state.drilled.has_evidence)
+    return NextAction::SetControlPoint;
   if (state.control_point_due > ControlPointDue::Set) return NextAction::CheckControlPoint;
   if (!state.guide_check.may_guide())
     return state.guide_check.has_point                ? NextAction::CheckGuide

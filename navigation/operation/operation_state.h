@@ -122,6 +122,7 @@ struct OperationState {
   RegistrationStatePtr registration = std::make_shared<const RegistrationState>();  // never null
   Verification verification = Verification::NotYet;
   TimeOut time_out = TimeOut::NotAsked;
+  bool guided_lately = false;  // it guides, or did so a moment ago: the guide is in the surgeon's hand
   ControlPointDue control_point_due = ControlPointDue::None;
   int places_in_doubt = 0;                          // still to be touched, with CannotCheckLooks
   TouchRefusal touch_refusal = TouchRefusal::None;  // of the last touch, or check of the guide, asked for

@@ -177,7 +177,7 @@ TEST(OperationRail, ASkippedVerificationIsNotTicked) {
   Course course;
   course.stand();
   course.state.verification = operation::Verification::Skipped;
-  course.state.frame.guidance.state = guidance::GuidanceState::Valid;
+  course.state.guided_lately = true;
   const Rail rail = course.rail();
   expect_whole(rail);
   EXPECT_EQ(step_of_now(rail), Step::Guide);

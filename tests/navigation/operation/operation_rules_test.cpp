@@ -184,6 +184,35 @@ TEST_F(OperationRules, TheControlPointIsDueWhenTheMarkerMayHaveMoved) {
   EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckBeforeDrilling);
 }
 
+// A guide that is lost for a picture, or for a second, asks for nothing else; one that was put down does.
+// Once it has stood where it must to drill, a control point comes too late: what is asked is whether it is
+// drilled.
+TEST_F(OperationRules, WhatIsNextStaysWhileTheGuideIsLostForAMoment) {
+  give();
+  run_.apply(SkipVerification{});
+  EXPECT_EQ(run_.state()->next_action, NextAction::SetControlPoint);
+  run_.show_guide(-8);
+  EXPECT_EQ(run_.state()->next_action, NextAction::FollowBullseye);
+  for (int i = 0; i < 60; ++i) {
+    if (i % 3 == 0)
+      run_.show(run_.frame());
+    else
+      run_.show_guide(-8);
+    ASSERT_EQ(run_.state()->next_action, NextAction::FollowBullseye) << i;
+  }
+  run_.wait(1);
+  run_.show(run_.frame());
+  EXPECT_EQ(run_.state()->next_action, NextAction::FollowBullseye);
+  run_.wait(1.5);
+  run_.show(run_.frame());
+  EXPECT_EQ(run_.state()->next_action, NextAction::SetControlPoint);
+  for (int i = 0; i < 60; ++i) run_.show_guide(0.2);
+  EXPECT_EQ(run_.state()->next_action, NextAction::RecordDrilled);
+  run_.wait(20);
+  run_.show(run_.frame());
+  EXPECT_EQ(run_.state()->next_action, NextAction::RecordDrilled) << "drilled, and the guide put down";
+}
+
 // A loss that is told once is over with the touch, whatever source it was in.
 TEST_F(OperationRules, ABumpedMarkerEndsGuidanceUntilItIsSaidWhatItWas) {
   give();
