@@ -1,6 +1,7 @@
 #include "app/start/import_sources.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "app/folders/folder_listing.h"
 #include "planning/bones/mesh_file.h"
@@ -13,17 +14,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What of a knee its name says it is that is neither femur nor tibia, though it may lie on one; else empty.
+std::string other_part(const fs::path& file) {
+  std::string name = file.filename().string();
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  for (const char* part : {"cartilage", "meniscus", "menisci", "patella", "fibula"})
+    if (name.find(part) != std::string::npos) return part;
+  return "";
+}
+
 void add_mesh(ImportSources& found, const fs::path& file) {
   ImportSource mesh;
   mesh.source = file;
-  mesh.bone = importing::bone_kind_in_name(file);
+  const std::string part = other_part(file);
+  if (part.empty()) mesh.bone = importing::bone_kind_in_name(file);
   mesh.title = "Mesh: " + file.filename().string();
   std::error_code error;
   mesh.detail = files::format("%.1f MB", static_cast<double>(fs::file_size(file, error)) / 1e6);
   if (mesh.bone)
     mesh.detail += ", the " + std::string(bones::to_text(*mesh.bone)) + " by its name";
+  else if (!part.empty())
+    mesh.refusal = part + " by its name: nothing is planned on it";
   else
-    mesh.refusal = "its name says neither femur nor tibia: name the file after the bone";
+    mesh.refusal = "its name says neither femur nor tibia. Select it, and press F or T if it is one";
   found.sources.push_back(std::move(mesh));
 }
 

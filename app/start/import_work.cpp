@@ -28,6 +28,7 @@ void ImportWork::look_into(const fs::path& root) {
   sources_.root = root;
   result_ = {};
   said_side_.reset();
+  wishes_ = {};
   failure_ = {};
   noted_ = 0;
   state_ = State::Looking;  // until poll(), whatever it is: the window sees every step
@@ -98,13 +99,15 @@ void ImportWork::start(const ImportWishes& wishes) {
   start_next();
 }
 
-void ImportWork::start_next() {
+void ImportWork::start_next(std::optional<bones::LengthUnit> unit) {
   const ImportSource& source = sources_.sources.at(wishes_.sources[next_]);
   importing::BoneImportOptions options;
   options.side = wishes_.side;
   if (source.series) options.series = source.series->uid;
   options.kind = source.bone;
   options.images_only = wishes_.images_only;
+  if (source.series) options.labels = wishes_.labels;
+  options.unit = unit;
   progress_ = {};
   try {
     process_ = std::make_unique<importing::ImportProcess>(
@@ -116,17 +119,37 @@ void ImportWork::start_next() {
   }
 }
 
+// The unit that a person has said is for those meshes that need one: another beside them may be in mm.
+void ImportWork::take_refusal() {
+  failure_ = process_->failure();
+  process_.reset();
+  const auto& fitting = failure_.units;
+  if (wishes_.unit && std::find(fitting.begin(), fitting.end(), *wishes_.unit) != fitting.end()) {
+    failure_ = {};
+    start_next(wishes_.unit);
+    return;
+  }
+  state_ = State::Choosing;
+}
+
+const ImportSource* ImportWork::refused_source() const {
+  const bool is_refused = state_ == State::Choosing && !failure_.words.empty();
+  return is_refused && next_ < wishes_.sources.size() ? &sources_.sources.at(wishes_.sources[next_])
+                                                      : nullptr;
+}
+
+void ImportWork::set_bone(std::size_t source, bones::BoneKind bone) {
+  if (state_ != State::Choosing || sources_.sources.at(source).series) return;
+  sources_.sources[source].bone = bone;
+  sources_.sources[source].refusal.clear();
+}
+
 void ImportWork::take_bones() {
   using Process = importing::ImportProcess;
   const Process::State state = process_->poll();
   progress_ = process_->progress();
   if (state == Process::State::Running) return;
-  if (state != Process::State::Done) {
-    failure_ = process_->failure();
-    state_ = State::Choosing;
-    process_.reset();
-    return;
-  }
+  if (state != Process::State::Done) return take_refusal();
   importing::BoneImport made = process_->take_result();
   process_.reset();
   if (next_ == 0) {

@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,6 +31,9 @@ struct ImportWishes {
   std::optional<bones::Side> side = {};  // nullopt: as names and images tell; asked for where they do not
   // The images alone, for a case in which the bones are painted; of a grey volume.
   bool images_only = false;
+  // Of a label map without names; of meshes that no bone is as large as in mm, and that one is in this unit.
+  std::map<bones::BoneKind, int> labels = {};
+  std::optional<bones::LengthUnit> unit = {};
 };
 
 class ImportWork {
@@ -46,6 +50,8 @@ class ImportWork {
   void start(const ImportWishes& wishes);             // Choosing; without a source: nothing
   // Running, Asking: back to Choosing. Looking: Idle. Choosing: no more pictures are made.
   void cancel();
+  // Choosing. Which bone a mesh of the list is.
+  void set_bone(std::size_t source, bones::BoneKind bone);
   // Asking. The side must be known then, or said; the one that is said last holds, and becomes of the case
   // alone: result() tells what was found. Name: of the case, empty for "Knee" and the date.
   void set_side(bones::Side side);
@@ -66,18 +72,21 @@ class ImportWork {
   [[nodiscard]] std::vector<std::string> doubts() const;
   // Why the last step was refused or cancelled; empty when it was not.
   [[nodiscard]] const std::string& failure() const { return failure_.words; }
-  [[nodiscard]] importing::FailureReason failure_reason() const { return failure_.reason; }
+  [[nodiscard]] const importing::Failure& refusal() const { return failure_; }  // with what may be answered
   // The images show both knees, and nobody has said which one is meant.
   [[nodiscard]] bool found_both_knees() const {
     return failure_.reason == importing::FailureReason::ShowsBothKnees;
   }
+  // Choosing: the source that was refused; null where none was.
+  [[nodiscard]] const ImportSource* refused_source() const;
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }  // Done: the case
 
  private:
   void take_sources();
   void note_pictures();
   void take_bones();
-  void start_next();
+  void start_next(std::optional<bones::LengthUnit> unit = {});
+  void take_refusal();
   void end_work();
 
   std::function<void()> wake_;

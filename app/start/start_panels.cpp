@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 
+#include "app/start/import_questions.h"
 #include "app/start/side_line.h"
 #include "app/start/start_view.h"
 #include "app/widgets/list_rows.h"
@@ -92,6 +93,59 @@ void StartView::draw_import(const widgets::Ui& ui, const widgets::Rect& area) {
   }
 }
 
+void StartView::draw_answers(const widgets::Ui& ui, const widgets::Rect& bar) {
+  switch (question()) {
+    case importing::FailureReason::ShowsBothKnees:
+      return widgets::draw_buttons(
+          ui, bar, {"start.import", "start.paint", "start.tick", "start.right", "start.left", "start.back"});
+    case importing::FailureReason::NeedsUnit:
+      return widgets::draw_buttons(
+          ui, bar, {"start.unit_m", "start.unit_cm", "start.unit_in", "start.tick", "start.back"});
+    case importing::FailureReason::NeedsLabels:
+      return widgets::draw_buttons(ui, bar, {"start.import", "start.femur", "start.tibia", "start.back"});
+    default:
+      break;
+  }
+  if (selects_mesh())
+    widgets::draw_buttons(ui, bar,
+                          {"start.import", "start.tick", "start.femur", "start.tibia", "start.back"});
+  else
+    widgets::draw_buttons(ui, bar, {"start.import", "start.paint", "start.tick", "start.back"});
+}
+
+void StartView::draw_refusal(const widgets::Ui& ui) {
+  const importing::Failure& refusal = work_.refusal();
+  switch (refusal.reason) {
+    case importing::FailureReason::ShowsBothKnees:
+      return widgets::status_row(
+          ui, Severity::Caution, "Both knees",
+          "The images show both. Which one is it to be? Press R or L, then Enter" +
+              std::string(!state_.side                         ? ""
+                          : *state_.side == bones::Side::Right ? "  \u2013  the right one"
+                                                               : "  \u2013  the left one"));
+    case importing::FailureReason::IsNoCt:
+      return widgets::status_row(
+          ui, Severity::Caution, "No CT",
+          "In an MR no grey value is bone alone. Press P: the images are taken, you paint a few "
+          "strokes, and the bones grow from them");
+    case importing::FailureReason::NeedsUnit:
+      if (const ImportSource* mesh = work_.refused_source())
+        widgets::status_row(ui, Severity::Caution, "Unit?", unit_question(mesh->title, refusal));
+      return;
+    case importing::FailureReason::NeedsLabels:
+      widgets::status_row(ui, Severity::Caution, "Which labels?",
+                          "The map does not say which labels are the bones. These are likely by their size "
+                          "and place: press F or T for another, then Enter, and look at what was made");
+      for (const bones::BoneKind bone : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
+        widgets::status_row(ui, Severity::Quiet, bone == bones::BoneKind::Femur ? "Femur" : "Tibia",
+                            chosen_label(refusal.labels, state_.labels, bone));
+      return;
+    case importing::FailureReason::Other:
+      if (!refusal.words.empty()) widgets::status_row(ui, Severity::Bad, "Refused", refusal.words);
+      return;
+  }
+}
+
 void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
   const widgets::Rect head = rest.cut_top(ui.theme.px(88));
@@ -103,26 +157,9 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
                      widgets::fitting(ui.theme.body, found.root.string(), head.width));
   const widgets::Rect buttons = rest.cut_bottom(ui.theme.px(56), ui.theme.px(12));
-  if (work_.found_both_knees())
-    widgets::draw_buttons(
-        ui, buttons,
-        {"start.import", "start.paint", "start.tick", "start.right", "start.left", "start.back"});
-  else
-    widgets::draw_buttons(ui, buttons, {"start.import", "start.paint", "start.tick", "start.back"});
+  draw_answers(ui, buttons);
   widgets::begin_panel(ui, "start.sources", rest);
-  if (work_.found_both_knees())
-    widgets::status_row(ui, Severity::Caution, "Both knees",
-                        "The images show both. Which one is it to be? Press R or L, then Enter" +
-                            std::string(!state_.side                         ? ""
-                                        : *state_.side == bones::Side::Right ? "  \u2013  the right one"
-                                                                             : "  \u2013  the left one"));
-  else if (work_.failure_reason() == importing::FailureReason::IsNoCt)
-    widgets::status_row(
-        ui, Severity::Caution, "No CT",
-        "In an MR no grey value is bone alone. Press P: the images are taken, you paint a few "
-        "strokes, and the bones grow from them");
-  else if (!work_.failure().empty())
-    widgets::status_row(ui, Severity::Bad, "Refused", work_.failure());
+  draw_refusal(ui);
   const float height = ui.theme.px(132), picture = ui.theme.px(116);
   for (std::size_t i = 0; i < found.sources.size(); ++i) {
     const ImportSource& source = found.sources[i];

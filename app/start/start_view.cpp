@@ -55,6 +55,7 @@ void StartView::take(const fs::path& path) {
   state_.ticked.clear();
   state_.side.reset();
   state_.side_was_said = false;
+  state_.unit.reset();
   thumbnails_.clear();
   work_.look_into(path);
 }
@@ -92,6 +93,8 @@ void StartView::tick() {
     made_.show(work_.result());
     state_.name = "Knee " + files::utc_now_as("%Y-%m-%d");
   }
+  if (before == State::Running && asks_for_labels())
+    state_.labels = importing::likely_labels(work_.refusal().labels);
   if (before == State::Saving && now == State::Done) {
     state_.page = Page::Cases;
     open_(work_.folder());
@@ -169,19 +172,6 @@ void StartView::accept() {
     case Page::Pacs:
       return;  // by keys of its own
   }
-}
-
-void StartView::start_import(bool images_only) {
-  if (state_.ticked.empty()) return;
-  // What an import before this one guessed is not given to it as known.
-  if (!state_.side_was_said) state_.side.reset();
-  work_.start({.sources = state_.ticked, .side = state_.side, .images_only = images_only});
-}
-
-void StartView::save_import() {
-  if (!state_.side) return;
-  work_.set_side(*state_.side);
-  work_.save(new_case_folder(cases_folder(), state_.name), state_.name);
 }
 
 void StartView::add_actions(widgets::Actions& actions) {
@@ -291,77 +281,6 @@ void StartView::add_page_actions(widgets::Actions& actions) {
                {},
                [this] { go_back(); },
                {"stop the import", [this] { return imports(); }}});
-}
-
-void StartView::add_import_actions(widgets::Actions& actions) {
-  const auto chooses = [this] { return state_.page == Page::Import && work_.state() == State::Choosing; };
-  const auto asks = [this] { return state_.page == Page::Import && work_.state() == State::Asking; };
-  actions.add({"start.tick",
-               "Take it",
-               "Takes the selected series, or leaves it; meshes of different bones go together",
-               GLFW_KEY_SPACE,
-               0,
-               false,
-               [this, chooses] {
-                 return chooses() && state_.selected < work_.sources().sources.size() &&
-                        work_.sources().sources[state_.selected].can_be_imported();
-               },
-               {},
-               [this] {
-                 const auto& sources = work_.sources().sources;
-                 const auto at = std::find(state_.ticked.begin(), state_.ticked.end(), state_.selected);
-                 if (at != state_.ticked.end()) {
-                   state_.ticked.erase(at);
-                   return;
-                 }
-                 // A volume stands alone; a mesh beside meshes of other bones.
-                 const ImportSource& taken = sources[state_.selected];
-                 std::erase_if(state_.ticked, [&](std::size_t i) {
-                   return taken.series || sources[i].series || sources[i].bone == taken.bone;
-                 });
-                 state_.ticked.push_back(state_.selected);
-               }});
-  actions.add({"start.import",
-               "Make the bones",
-               "Cuts femur and tibia out of what was taken; in a process of its own",
-               GLFW_KEY_ENTER,
-               0,
-               false,
-               [this, chooses] { return chooses() && !state_.ticked.empty(); },
-               {},
-               [this] { start_import(); }});
-  actions.add(
-      {"start.paint",
-       "Paint the bones",
-       "Takes the images alone, then you paint strokes that the bones are grown from: for an MR, and for "
-       "a CT whose bones are not found",
-       GLFW_KEY_P,
-       0,
-       false,
-       [this, chooses] {
-         return chooses() && state_.ticked.size() == 1 &&
-                work_.sources().sources[state_.ticked.front()].series.has_value();
-       },
-       {},
-       [this] { start_import(true); }});
-  actions.add({"start.save",
-               "Make the case",
-               "Writes the case and opens it",
-               GLFW_KEY_ENTER,
-               0,
-               false,
-               [this, asks] { return asks() && state_.side.has_value(); },
-               {},
-               [this] { save_import(); }});
-  // Asked once: of what was made, or before where the images show both knees.
-  const auto can_say_side = [this, chooses, asks] {
-    return (chooses() && work_.found_both_knees()) || asks();
-  };
-  actions.add({"start.right", "Right knee", "The images are of a right knee", GLFW_KEY_R, 0, false,
-               can_say_side, [this] { return state_.side == bones::Side::Right; },
-               [this] { say_side(bones::Side::Right); }});
-  actions.add({"start.left", "Left knee", "The images are of a left knee", GLFW_KEY_L, 0, false, can_say_side,
-               [this] { return state_.side == bones::Side::Left; }, [this] { say_side(bones::Side::Left); }});
 }
 
 }  // namespace arthronaut::start

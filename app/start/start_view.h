@@ -53,6 +53,7 @@ class StartView {
   enum class Page { Cases, Browse, Import, Pacs };
   void add_page_actions(widgets::Actions& actions);
   void add_import_actions(widgets::Actions& actions);
+  void add_question_actions(widgets::Actions& actions);
   void browse();
   void move_selection(int by);
   void go_back();
@@ -62,10 +63,18 @@ class StartView {
   void save_import();
   [[nodiscard]] std::size_t row_count() const;
   [[nodiscard]] bool imports() const;
+  [[nodiscard]] importing::FailureReason question() const;
+  [[nodiscard]] bool asks(importing::FailureReason reason) const;
+  [[nodiscard]] bool asks_for_labels() const;
+  [[nodiscard]] bool selects_mesh() const;
+  void tick_selected();
+  void say_bone(bones::BoneKind kind);
 
   void draw_browser(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_import(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_sources(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_answers(const widgets::Ui& ui, const widgets::Rect& bar);
+  void draw_refusal(const widgets::Ui& ui);
   void say_side(bones::Side side);
   void draw_result(const widgets::Ui& ui, const widgets::Rect& area);
   // A row of this page's list; true when it was chosen by a click twice.
@@ -78,8 +87,10 @@ class StartView {
     bool can_close = false;
     std::vector<std::size_t> ticked;  // of the sources
     std::optional<bones::Side> side;
-    bool side_was_said = false;  // by a person
-    std::string name;            // of the new case
+    bool side_was_said = false;             // by a person
+    std::map<bones::BoneKind, int> labels;  // of the map that is asked about
+    std::optional<bones::LengthUnit> unit;  // of meshes that need one
+    std::string name;                       // of the new case
   };
 
   std::function<void(const std::filesystem::path&)> open_;

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "planning/bones/mesh_formats.h"
+#include "planning/bones/unit_unknown.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -43,13 +44,20 @@ const Format* format_of(const std::filesystem::path& file) {
 
 bool is_size_of_bone(double size_mm) { return size_mm >= kSmallestBone_mm && size_mm <= kLargestBone_mm; }
 
+std::vector<LengthUnit> units_of_bone(double size) {
+  std::vector<LengthUnit> fitting;
+  for (const auto& unit : kUnits)
+    if (is_size_of_bone(size * unit.mm)) fitting.push_back(unit.unit);
+  return fitting;
+}
+
 // Why a mesh without a stated unit is refused, and what would make a bone of it.
 std::string wrong_size(double size) {
   std::string text =
       files::format("is %.3g", size) + " mm large if it is in millimetres, which no bone of the knee is";
   std::string fitting;
-  for (const auto& unit : kUnits) {
-    if (!is_size_of_bone(size * unit.mm)) continue;
+  for (const LengthUnit fits : units_of_bone(size)) {
+    const UnitName& unit = kUnits[static_cast<std::size_t>(fits)];
     fitting += (fitting.empty() ? "" : " or ") + std::string("--unit ") + std::string(unit.name) + " (" +
                std::string(unit.plural) + ")";
   }
@@ -109,6 +117,11 @@ LengthUnit length_unit_from_text(std::string_view text) {
   throw InvalidInput("\"" + std::string(text) + "\" is not a unit: mm, cm, m or in");
 }
 
+UnitUnknown::UnitUnknown(const std::filesystem::path& file, double size_in_file)
+    : InvalidInput(file, "", wrong_size(size_in_file)),
+      size_in_file_(size_in_file),
+      fitting_units_(units_of_bone(size_in_file)) {}
+
 bool is_mesh_file(const std::filesystem::path& file) { return format_of(file) != nullptr; }
 
 MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions& options) {
@@ -127,7 +140,7 @@ MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions
   result.unit_in_file = options.unit.value_or(LengthUnit::Millimetre);
   if (!options.unit) {
     const double size = geometry::bounds_of(result.mesh).size_mm().maxCoeff();
-    if (!is_size_of_bone(size)) throw InvalidInput(file, "", wrong_size(size));
+    if (!is_size_of_bone(size)) throw UnitUnknown(file, size);
   }
   to_lps_mm(result.mesh, result.space_in_file, mm_per(result.unit_in_file));
   return result;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "planning/bones/unit_unknown.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/images/bone_surface.h"
@@ -78,8 +79,25 @@ ImportedBone finished(BoneKind kind, const std::string& source, const geometry::
   return imported;
 }
 
+ImportRefused refusal(const std::filesystem::path& source, const std::string& words, Failure failure) {
+  failure.words = InvalidInput(source, "", words).what();
+  return ImportRefused(std::move(failure));
+}
+
 [[noreturn]] void ask_for_kind(const std::filesystem::path& source) {
   throw InvalidInput(source, "", "its name does not say which bone it is: add --bone femur or --bone tibia");
+}
+
+bones::MeshFile read_asking_for_unit(const std::filesystem::path& source, const BoneImportOptions& options) {
+  try {
+    return bones::read_mesh_file(source, {options.space, options.unit});
+  } catch (const bones::UnitUnknown& error) {
+    if (error.fitting_units().empty()) throw;
+    throw ImportRefused({.reason = FailureReason::NeedsUnit,
+                         .words = error.what(),
+                         .size_in_file = error.size_in_file(),
+                         .units = error.fitting_units()});
+  }
 }
 
 void import_mesh(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result,
@@ -90,7 +108,7 @@ void import_mesh(const std::filesystem::path& source, const BoneImportOptions& o
   const auto kind = options.kind ? options.kind : bone_kind_in_name(source);
   if (!kind) ask_for_kind(source);
   tell("Reading", kUnknown);
-  const bones::MeshFile file = bones::read_mesh_file(source, {options.space, options.unit});
+  const bones::MeshFile file = read_asking_for_unit(source, options);
   const char* said_by = options.space             ? "as --space says"
                         : file.space_was_declared ? "as the file says"
                                                   : "the file does not say";
@@ -108,11 +126,11 @@ void refuse_without_threshold(const Volume& volume, const std::filesystem::path&
   if (options.threshold) return;
   const float least = *std::min_element(volume.values.begin(), volume.values.end());
   if (volume.modality == "CT" || (volume.modality.empty() && least < kAir_hu)) return;
-  throw ImportRefused(
+  throw refusal(
       source,
       "is no CT, so there is no threshold that finds bone: paint seeds and grow them (arthronaut segment), "
       "give --threshold, or import a label map or a mesh of it",
-      FailureReason::IsNoCt);
+      {.reason = FailureReason::IsNoCt});
 }
 
 std::string word_of(BoneKind kind) { return std::string(bones::to_text(kind)); }
@@ -248,9 +266,11 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
     } else if (is_label_map && !options.threshold) {
       const auto named = labels_by_name(volume, result.lines);
       if (named.empty() || (options.kind && !named.contains(*options.kind))) {
-        throw InvalidInput(
+        throw refusal(
+            source,
             "is a label map with the labels " + list_of(labels) +
-            ": say which are the bones, for example --label femur=" + std::to_string(labels[1].first));
+                ": say which are the bones, for example --label femur=" + std::to_string(labels[1].first),
+            {.reason = FailureReason::NeedsLabels, .labels = found_labels(volume)});
       }
       import_labels(volume, named, options, result, tell);
     } else {
@@ -258,7 +278,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
       fibula_was_seen = import_ct(volume, options, result, tell);
     }
   } catch (const segmentation::ShowsBothKnees& error) {
-    throw ImportRefused(source, error.what(), FailureReason::ShowsBothKnees);
+    throw refusal(source, error.what(), {.reason = FailureReason::ShowsBothKnees});
   } catch (const InvalidInput& error) {
     // Those of the surface speak of "the volume": the file's name goes before it, once.
     const std::string message = error.what();

@@ -25,11 +25,6 @@ namespace arthronaut::importing {
 
 struct Message;  // import_messages.h
 
-struct Failure {
-  FailureReason reason = FailureReason::Other;
-  std::string words;  // for a person
-};
-
 struct ChildProcessOptions {
   std::filesystem::path source;                       // for messages
   std::filesystem::path program = "/proc/self/exe";   // one that answers kImportChildWord

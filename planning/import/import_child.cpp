@@ -129,7 +129,7 @@ void answer(int socket, const ChildRequest& request) {
   } catch (const fs::filesystem_error& error) {
     send_all(socket, message_of(Failure{.words = in_words(error)}));
   } catch (const ImportRefused& error) {
-    send_all(socket, message_of(Failure{error.reason(), error.what()}));
+    send_all(socket, message_of(error.failure()));
   } catch (const std::exception& error) {
     send_all(socket, message_of(Failure{.words = error.what()}));
   }

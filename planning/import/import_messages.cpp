@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "planning/geometry/error.h"
+#include "planning/import/message_archive.h"
 
 namespace arthronaut::importing {
 
@@ -16,47 +17,6 @@ struct Header {
   std::uint32_t mark = kMark;
   MessageKind kind = MessageKind::Request;
   std::uint64_t length = 0;
-};
-
-// Writes or reads one value after another: describe() below is the one list of what a message holds.
-class Writer {
- public:
-  static constexpr bool kReads = false;
-  void bytes(const void* from, std::size_t count) { text_.append(static_cast<const char*>(from), count); }
-  // Of a list; writes it.
-  std::size_t count(std::size_t count, std::size_t) {
-    bytes(&count, sizeof(count));
-    return count;
-  }
-  [[nodiscard]] std::string take() { return std::move(text_); }
-
- private:
-  std::string text_;
-};
-
-class Reader {
- public:
-  static constexpr bool kReads = true;
-  explicit Reader(std::string_view text) : text_(text) {}
-  void bytes(void* to, std::size_t count) {
-    if (text_.size() < count) throw InvalidInput("the importing process sent a message that is cut off");
-    if (count > 0) std::memcpy(to, text_.data(), count);
-    text_.remove_prefix(count);
-  }
-  void refuse_rest() const {
-    if (!text_.empty()) throw InvalidInput("the importing process sent a message with something behind it");
-  }
-  // Refuses what the rest of the message cannot hold, before it is allocated.
-  std::size_t count(std::size_t, std::size_t least_bytes_each) {
-    std::size_t count = 0;
-    bytes(&count, sizeof(count));
-    if (count > text_.size() / least_bytes_each)
-      throw InvalidInput("the importing process sent a message that is cut off");
-    return count;
-  }
-
- private:
-  std::string_view text_;
 };
 
 template <typename Archive, typename T>
@@ -105,12 +65,14 @@ constexpr std::size_t kLeastBytes<images::ImageSeries> = 8 * sizeof(std::size_t)
                                                          3 * sizeof(double);
 template <>
 constexpr std::size_t kLeastBytes<ImportedBone> = sizeof(bones::MeshRepairReport);
+template <>
+constexpr std::size_t kLeastBytes<bones::LengthUnit> = sizeof(bones::LengthUnit);
+template <>
+constexpr std::size_t kLeastBytes<FoundLabel> = sizeof(std::int32_t) + 7 * sizeof(double);
 
+// Below, where all that a list may hold is known.
 template <typename Archive, typename T>
-void describe(Archive& archive, std::vector<T>& values) {
-  values.resize(archive.count(values.size(), kLeastBytes<T>));
-  for (T& value : values) describe(archive, value);
-}
+void describe(Archive& archive, std::vector<T>& values);
 
 template <typename Archive>
 void describe(Archive& archive, std::map<bones::BoneKind, int>& labels) {
@@ -214,9 +176,20 @@ void describe(Archive& archive, BoneImport& import) {
 }
 
 template <typename Archive>
+void describe(Archive& archive, FoundLabel& label) {
+  describe(archive, label.label);
+  describe(archive, label.volume_cm3);
+  archive.bytes(label.lowest_mm.data(), 3 * sizeof(double));
+  archive.bytes(label.highest_mm.data(), 3 * sizeof(double));
+}
+
+template <typename Archive>
 void describe(Archive& archive, Failure& failure) {
   describe(archive, failure.reason);
   describe(archive, failure.words);
+  describe(archive, failure.size_in_file);
+  describe(archive, failure.units);
+  describe(archive, failure.labels);
 }
 
 template <typename Archive>
@@ -255,6 +228,12 @@ void describe(Archive& archive, SeriesPicture& picture) {
   thumbnail.grey.resize(archive.count(thumbnail.grey.size(), 1));
   archive.bytes(thumbnail.grey.data(), thumbnail.grey.size());
   describe(archive, picture.refusal);
+}
+
+template <typename Archive, typename T>
+void describe(Archive& archive, std::vector<T>& values) {
+  values.resize(archive.count(values.size(), kLeastBytes<T>));
+  for (T& value : values) describe(archive, value);
 }
 
 // Every text that may be as long as a file likes.
@@ -308,8 +287,14 @@ void refuse_unsound(const ImportProgress& progress) {
 }
 
 void refuse_unsound(const Failure& failure) {
-  if (failure.words.size() > kLongestText_bytes || failure.reason > FailureReason::IsNoCt)
-    throw InvalidInput("the importing process sent a failure that is none");
+  bool is_sound = failure.words.size() <= kLongestText_bytes &&
+                  failure.reason <= FailureReason::NeedsLabels && std::isfinite(failure.size_in_file);
+  for (const bones::LengthUnit unit : failure.units)
+    is_sound = is_sound && unit >= bones::LengthUnit::Millimetre && unit <= bones::LengthUnit::Inch;
+  for (const FoundLabel& label : failure.labels)
+    is_sound = is_sound && std::isfinite(label.volume_cm3) && label.lowest_mm.allFinite() &&
+               label.highest_mm.allFinite();
+  if (!is_sound) throw InvalidInput("the importing process sent a failure that is none");
 }
 
 void refuse_unsound(images::SeriesList& list) {
@@ -371,7 +356,9 @@ std::string message_of(const SeriesPicture& picture) {
   return written(MessageKind::SeriesPicture, SeriesPicture{picture.thumbnail, clipped(picture.refusal)});
 }
 std::string message_of(const Failure& failure) {
-  return written(MessageKind::Failure, Failure{failure.reason, clipped(failure.words)});
+  Failure shown = failure;
+  shown.words = clipped(std::move(shown.words));
+  return written(MessageKind::Failure, shown);
 }
 
 std::string clipped(std::string text) {

@@ -109,6 +109,31 @@ TEST_F(ImportWorkTest, MeshesOfTwoSidesAreRefused) {
   EXPECT_NE(work_.failure().find("different sides"), std::string::npos) << work_.failure();
 }
 
+// Meshes in metres are made once a person has said so, of each that needs it; one beside it may be in mm. And
+// of a mesh whose name tells nothing it is said which bone it is.
+TEST_F(ImportWorkTest, AsksForTheUnitAndTheBoneOfAMesh) {
+  write_meshes("part_1.stl", "tibia.stl");
+  bones::Bone femur = knee().bones.at(BoneKind::Femur);
+  for (auto& vertex : femur.mesh.vertices_mm) vertex /= 1000;
+  bones::write_mesh_stl(folder_ / "part_1.stl", femur.mesh);
+  work_.look_into(folder_.path());
+  ASSERT_TRUE(reach(State::Choosing));
+  ASSERT_FALSE(work_.sources().sources[0].can_be_imported());
+  work_.set_bone(0, BoneKind::Femur);
+  ASSERT_TRUE(work_.sources().sources[0].can_be_imported());
+  work_.start({.sources = {0, 1}});
+  ASSERT_TRUE(reach(State::Choosing));
+  EXPECT_EQ(work_.refusal().reason, importing::FailureReason::NeedsUnit) << work_.failure();
+  EXPECT_THAT(work_.refusal().units, testing::ElementsAre(bones::LengthUnit::Metre));
+  EXPECT_EQ(work_.refused_source(), &work_.sources().sources[0]);
+  work_.start({.sources = {0, 1}, .unit = bones::LengthUnit::Metre});
+  ASSERT_TRUE(reach(State::Asking)) << work_.failure();
+  ASSERT_EQ(work_.result().bones.size(), 2U);
+  for (const auto& made : work_.result().bones)
+    EXPECT_NEAR(geometry::bounds_of(made.bone.mesh).size_mm().norm(),
+                geometry::bounds_of(knee().bones.at(made.bone.kind).mesh).size_mm().norm(), 0.01);
+}
+
 // The side that the second mesh's name tells is a guess as well as the first one's.
 TEST_F(ImportWorkTest, HowTheSideIsKnownComesWithIt) {
   write_meshes("femur.stl", "tibia_left.stl");

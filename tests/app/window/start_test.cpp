@@ -153,6 +153,28 @@ TEST_F(StartWindow, AnImportThatAsksIsNotLost) {
   EXPECT_TRUE(app.wait_for_state("import", "asking"));
 }
 
+// A femur in metres whose name says nothing: F says what it is, M its unit, and the bones are made.
+TEST_F(StartWindow, AsksWhatAMeshIsAndInWhichUnit) {
+  std::filesystem::create_directory(folder_ / "given");
+  cases::Case made = knee();
+  bones::write_mesh_stl(folder_ / "given" / "tibia.stl", made.bones.at(bones::BoneKind::Tibia).mesh);
+  geometry::TriangleMesh& femur = made.bones.at(bones::BoneKind::Femur).mesh;
+  for (Eigen::Vector3d& vertex : femur.vertices_mm) vertex /= 1000;
+  bones::write_mesh_stl(folder_ / "given" / "part.stl", femur);
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {(folder_ / "given").string()});
+  ASSERT_TRUE(app.wait_for_state("import", "choosing", 120));
+  ASSERT_TRUE(app.wait_for_widget("start.source.0"));
+  app.click("start.source.0");
+  ASSERT_TRUE(app.wait_for_state("selected", "0"));
+  app.press("f");
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_widget("start.unit_m", 120));
+  EXPECT_FALSE(app.widgets().contains("start.import")) << "there is one thing to do";
+  app.press("m");
+  ASSERT_TRUE(app.wait_for_state("import", "asking", 240));
+}
+
 // What is no case and holds no images is said, and the start stays.
 TEST_F(StartWindow, SaysThatAFolderHoldsNothing) {
   std::filesystem::create_directory(folder_ / "empty");

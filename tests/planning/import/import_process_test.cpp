@@ -9,6 +9,8 @@
 #include <set>
 
 #include "planning/geometry/error.h"
+#include "planning/images/volume_writer.h"
+#include "planning/import/label_choice.h"
 #include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
 #include "tests/planning/geometry/shapes.h"
@@ -160,6 +162,46 @@ TEST_F(ImportProcessTest, ReasonsThatCanBeAnsweredAreToldApart) {
   ImportProcess other(asked);
   ASSERT_EQ(finished(other), State::Failed);
   EXPECT_EQ(other.failure().reason, FailureReason::Other);
+}
+
+// With what may be answered: the units in which the mesh is a bone, and the labels with their sizes. A mesh
+// that is none in any unit is merely refused.
+TEST_F(ImportProcessTest, UnitsAndLabelsThatAreNotSaidAreAskedFor) {
+  test::write_bytes(folder_ / "femur.stl", test::binary_stl(test::ellipsoid({0.04, 0.03, 0.025}, 2)));
+  ImportProcess metres(request(folder_ / "femur.stl"));
+  ASSERT_EQ(finished(metres), State::Failed);
+  EXPECT_EQ(metres.failure().reason, FailureReason::NeedsUnit) << metres.message();
+  EXPECT_THAT(metres.failure().units, testing::ElementsAre(bones::LengthUnit::Metre));
+  EXPECT_NEAR(metres.failure().size_in_file, 0.08, 1e-6);
+  test::write_bytes(folder_ / "femur.stl", test::binary_stl(test::ellipsoid({4e-6, 3e-6, 2e-6}, 2)));
+  ImportProcess tiny(request(folder_ / "femur.stl"));
+  ASSERT_EQ(finished(tiny), State::Failed);
+  EXPECT_EQ(tiny.failure().reason, FailureReason::Other);
+
+  images::Volume map;
+  map.size = {20, 30, 40};
+  map.lps_from_index.linear() = Eigen::Vector3d(1, 2, 1).asDiagonal();
+  map.values.assign(static_cast<std::size_t>(map.size.prod()), 0.0F);
+  const auto fill = [&](float label, int from, int to) {
+    for (int k = from; k < to; ++k)
+      for (int j = 5; j < 25; ++j)
+        for (int i = 5; i < 15; ++i) map.values[map.index(i, j, k)] = label;
+  };
+  fill(3, 2, 12);
+  fill(4, 13, 15);
+  fill(8, 16, 36);
+  images::write_volume(folder_ / "map.nrrd", map);
+  ImportProcess labels(request(folder_ / "map.nrrd"));
+  ASSERT_EQ(finished(labels), State::Failed);
+  ASSERT_EQ(labels.failure().reason, FailureReason::NeedsLabels) << labels.message();
+  const std::vector<FoundLabel>& found = labels.failure().labels;
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[2].label, 8);
+  EXPECT_NEAR(found[2].volume_cm3, 10 * 20 * 20 * 2 / 1000.0, 1e-9);
+  EXPECT_EQ(found[2].lowest_mm, Eigen::Vector3d(5, 10, 16));
+  EXPECT_EQ(found[2].highest_mm, Eigen::Vector3d(14, 48, 35));
+  EXPECT_EQ(likely_labels(found), (std::map<BoneKind, int>{{BoneKind::Femur, 8}, {BoneKind::Tibia, 3}}));
+  EXPECT_TRUE(likely_labels({found[0]}).empty());
 }
 
 // Its header is within the limit, what is made of it is not: 15.6 million voxels, all of them bone.
