@@ -142,7 +142,8 @@ std::vector<std::string> judge(const Context& context, const SegmentArguments& a
     segmented.push_back({importing::quality_of(made, labelled_ml, volume), made.bone.mesh});
     for (const importing::QualityLine& line : importing::quality_lines(segmented.back().quality)) {
       const std::string words = std::string(bones::to_text(kind)) + ": " + line.name + ": " + line.text;
-      if (line.verdict == importing::QualityVerdict::Good)
+      if (line.verdict == importing::QualityVerdict::Good ||
+          line.verdict == importing::QualityVerdict::NotChecked)
         context.say(words);
       else
         reasons.push_back(words);

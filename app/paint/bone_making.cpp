@@ -88,9 +88,12 @@ void BoneMaking::forget() {
 
 void BoneMaking::judge() {
   for (importing::BoneQuality& quality : qualities_)
-    for (const importing::ImportedBone& made : result_.bones)
-      if (made.bone.kind == quality.kind)
-        quality = importing::quality_of(made, quality.labelled_ml, *images_);
+    for (importing::ImportedBone& made : result_.bones) {
+      if (made.bone.kind != quality.kind) continue;
+      quality = importing::quality_of(made, quality.labelled_ml, *images_);
+      // After the lines are made of it, which say it by themselves: it stays with the bone, for Plan to say.
+      if (const std::string leak = importing::leak_doubt(quality); !leak.empty()) made.doubts.push_back(leak);
+    }
 }
 
 void BoneMaking::save() {

@@ -43,6 +43,8 @@ widgets::Severity severity_of(importing::QualityVerdict verdict) {
       return widgets::Severity::Caution;
     case importing::QualityVerdict::Bad:
       return widgets::Severity::Bad;
+    case importing::QualityVerdict::NotChecked:
+      return widgets::Severity::Quiet;
   }
   return widgets::Severity::Bad;
 }

@@ -7,6 +7,20 @@
 
 namespace arthronaut::importing {
 
+namespace {
+
+// The direction in which it lies from the middle of the bone, along the patient's axes.
+std::string where(const Eigen::Vector3d& from_middle_mm) {
+  Eigen::Index axis = 0;
+  from_middle_mm.cwiseAbs().maxCoeff(&axis);
+  const bool is_positive = from_middle_mm[axis] > 0;
+  if (axis == 0) return is_positive ? "on the patient's left" : "on the patient's right";
+  if (axis == 1) return is_positive ? "behind" : "in front";
+  return is_positive ? "above" : "below";
+}
+
+}  // namespace
+
 BoneQuality quality_of(const ImportedBone& made, double labelled_ml, const images::Volume& images) {
   const segmentation::DarkRim rim = segmentation::rim_outside(made.bone.mesh, images);
   return {.kind = made.bone.kind,
@@ -16,7 +30,15 @@ BoneQuality quality_of(const ImportedBone& made, double labelled_ml, const image
           .edges_not_manifold = made.repair.edges_not_manifold,
           .triangles = made.repair.triangles_now,
           .cortex_outside_mm = rim.is_seen() ? rim.thickness_mm : 0,
+          .surface_middle_mm = geometry::bounds_of(made.bone.mesh).center_mm(),
+          .beneath = segmentation::bone_beneath(made.bone.mesh, images),
           .doubts = made.doubts};
+}
+
+std::string leak_doubt(const BoneQuality& quality) {
+  if (quality.beneath.outcome != segmentation::BoneBeneath::Outcome::NotEverywhere) return "";
+  return files::format("no bone is seen beneath %.0f cm\u00B2 of the surface, ", quality.beneath.area_cm2) +
+         where(quality.beneath.center_mm - quality.surface_middle_mm) + ": has it run into soft tissue?";
 }
 
 std::vector<QualityLine> quality_lines(const BoneQuality& quality) {
@@ -40,7 +62,14 @@ std::vector<QualityLine> quality_lines(const BoneQuality& quality) {
          files::format("a rim of %.1f mm, dark as cortex is in an MR, lies outside: the bone is so "
                        "much larger all about, and walls are thicker than they are said to be",
                        quality.cortex_outside_mm)});
-  if (quality.doubts.empty()) lines.push_back({Good, "Anatomy", "nothing speaks against it"});
+  using Outcome = segmentation::BoneBeneath::Outcome;
+  if (const std::string leak = leak_doubt(quality); !leak.empty())
+    lines.push_back({Caution, "Beneath", leak});
+  else if (quality.beneath.outcome == Outcome::NotChecked)
+    lines.push_back({NotChecked, "Beneath", "not checked: " + quality.beneath.reason});
+  else
+    lines.push_back({Good, "Beneath", "bone lies beneath all of the surface"});
+  if (quality.doubts.empty()) lines.push_back({Good, "Shape", "nothing speaks against it"});
   for (const std::string& doubt : quality.doubts) lines.push_back({Caution, "Look", doubt});
   return lines;
 }

@@ -8,6 +8,7 @@
 
 #include "planning/images/volume.h"
 #include "planning/import/bone_import.h"
+#include "planning/segmentation/bone_beneath.h"
 
 namespace arthronaut::importing {
 
@@ -20,14 +21,21 @@ struct BoneQuality {
   // Of an MR: so thick a rim, dark as cortex is, lies outside of the surface (segmentation/dark_rim.h); 0
   // where none is seen.
   double cortex_outside_mm = 0;
-  std::vector<std::string> doubts;  // of the mesh and of the anatomy; empty: nothing speaks against it
+  Eigen::Vector3d surface_middle_mm = Eigen::Vector3d::Zero();  // of its box
+  segmentation::BoneBeneath beneath;  // whether bone lies beneath all of the surface
+  std::vector<std::string> doubts;    // of the mesh and of its shape; empty: nothing speaks against it
 };
 
 // images: that it was labelled in.
 [[nodiscard]] BoneQuality quality_of(const ImportedBone& made, double labelled_ml,
                                      const images::Volume& images);
 
-enum class QualityVerdict { Good, Caution, Bad };  // Bad: it cannot be planned on
+enum class QualityVerdict {
+  Good,
+  Caution,
+  Bad,        // it cannot be planned on
+  NotChecked  // what was to be looked at could not be: no tick
+};
 struct QualityLine {
   QualityVerdict verdict = QualityVerdict::Good;
   std::string name, text;  // "Closed", "81234 triangles without a hole"
@@ -35,5 +43,7 @@ struct QualityLine {
 // A surface that holds more than this share less or more than what was labelled is to be looked at.
 inline constexpr double kMostVolumeOff_fraction = 0.05;
 [[nodiscard]] std::vector<QualityLine> quality_lines(const BoneQuality& quality);
+// That no bone lies beneath a part of the surface, for the case to keep; empty where none was seen.
+[[nodiscard]] std::string leak_doubt(const BoneQuality& quality);
 
 }  // namespace arthronaut::importing

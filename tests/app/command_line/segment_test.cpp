@@ -67,9 +67,9 @@ class SegmentCommand : public ::testing::Test {
 TEST_F(SegmentCommand, JudgesTheBonesAndDrawsThem) {
   const auto result = segment({"--label", "femur=5,tibia=6", "--report", folder_ / "quality.pdf"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_THAT(result.output,
-              AllOf(HasSubstr("femur: Closed: "), HasSubstr("tibia: Closed: "),
-                    HasSubstr("femur: Anatomy: nothing speaks against it"), HasSubstr("quality.pdf")));
+  EXPECT_THAT(result.output, AllOf(HasSubstr("femur: Closed: "), HasSubstr("tibia: Closed: "),
+                                   HasSubstr("femur: Shape: nothing speaks against it"),
+                                   HasSubstr("femur: Beneath: "), HasSubstr("quality.pdf")));
   std::ifstream pdf(folder_ / "quality.pdf", std::ios::binary);
   std::string begin(5, ' ');
   pdf.read(begin.data(), 5);

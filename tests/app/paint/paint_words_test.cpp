@@ -48,6 +48,7 @@ TEST(PaintWords, WhatCannotBePlannedOnIsDrawnSo) {
   EXPECT_EQ(severity_of(QualityVerdict::Good), Severity::Good);
   EXPECT_EQ(severity_of(QualityVerdict::Caution), Severity::Caution);
   EXPECT_EQ(severity_of(QualityVerdict::Bad), Severity::Bad);
+  EXPECT_EQ(severity_of(QualityVerdict::NotChecked), Severity::Quiet) << "no tick";
 }
 
 }  // namespace

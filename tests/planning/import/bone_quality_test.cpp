@@ -16,6 +16,7 @@ TEST(BoneQuality, IsGoodOnlyWhereNothingSpeaksAgainstIt) {
   quality.surface_ml = 99;
   quality.is_closed = true;
   quality.triangles = 1234;
+  quality.beneath.outcome = segmentation::BoneBeneath::Outcome::Everywhere;
   const auto verdicts = [&] {
     std::vector<QualityVerdict> all;
     for (const QualityLine& line : quality_lines(quality)) all.push_back(line.verdict);
@@ -34,6 +35,27 @@ TEST(BoneQuality, IsGoodOnlyWhereNothingSpeaksAgainstIt) {
   quality.doubts = {"it has one condyle"};
   EXPECT_EQ(quality_lines(quality).back().text, "it has one condyle");
   EXPECT_EQ(verdicts().back(), QualityVerdict::Caution);
+}
+
+// Soft tissue that was painted as bone is told with its size and place; where nobody could look it is no
+// tick.
+TEST(BoneQuality, SaysWhereNoBoneLiesBeneathTheSurface) {
+  BoneQuality quality;
+  const auto beneath = [&] {
+    const auto lines = quality_lines(quality);
+    return *std::ranges::find(lines, "Beneath", &QualityLine::name);
+  };
+  quality.beneath.reason = "too little of it";
+  EXPECT_EQ(beneath().verdict, QualityVerdict::NotChecked);
+  EXPECT_EQ(beneath().text, "not checked: too little of it");
+  EXPECT_EQ(leak_doubt(quality), "");
+  quality.beneath = {.outcome = segmentation::BoneBeneath::Outcome::NotEverywhere,
+                     .area_cm2 = 12.3,
+                     .center_mm = {10, 42, 5}};
+  quality.surface_middle_mm = {0, 20, 0};
+  EXPECT_EQ(beneath().verdict, QualityVerdict::Caution);
+  EXPECT_THAT(beneath().text, testing::AllOf(HasSubstr("12 cm"), HasSubstr("behind")));
+  EXPECT_EQ(leak_doubt(quality), beneath().text);
 }
 
 // Of an MR: what is dark about the surface, and how thick.
