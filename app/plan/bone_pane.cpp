@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "app/plan/edge_words.h"
@@ -15,7 +16,8 @@ namespace {
 
 using bones::BoneKind;
 
-constexpr double kReach_px = 22;
+// Of a sign's size: what is pressed beyond that is the view, which is turned.
+constexpr double kReach = 1.2;
 constexpr double kSeeThroughOpacity = 0.3;  // of 10 mm of bone in the images
 constexpr ImU32 kHidden = IM_COL32(232, 237, 242, 110);
 
@@ -23,6 +25,32 @@ std::optional<BoneKind> only_bone_of(scene::ViewDirection view) {
   if (view == scene::ViewDirection::Distal || view == scene::ViewDirection::Notch) return BoneKind::Femur;
   if (view == scene::ViewDirection::Plateau) return BoneKind::Tibia;
   return std::nullopt;
+}
+
+float radius_px(const PaneMark& mark) {
+  if (mark.id.empty()) return 4;  // one of many
+  return mark.shape == PaneMark::Shape::Cross || mark.shape == PaneMark::Shape::Pin ? 8 : 13;
+}
+
+// Where a word does not run over one that was drawn before: beside its sign, or a line below or above.
+ImVec2 free_place(const ImVec2& wanted, const ImVec2& size, std::vector<ImVec4>& taken) {
+  const auto rect = [&](int line) {
+    const float top = wanted.y + static_cast<float>(line) * size.y;
+    return ImVec4(wanted.x, top, wanted.x + size.x, top + size.y);
+  };
+  const auto is_free = [&](const ImVec4& place) {
+    return std::ranges::none_of(taken, [&](const ImVec4& other) {
+      return place.x < other.z && other.x < place.z && place.y < other.w && other.y < place.w;
+    });
+  };
+  ImVec4 place = rect(0);
+  for (const int line : {0, 1, -1, 2, -2})
+    if (is_free(rect(line))) {
+      place = rect(line);
+      break;
+    }
+  taken.push_back(place);
+  return {place.x, place.y};
 }
 
 // Whether the point lies in a closed line, by how often a ray from it crosses.
@@ -171,12 +199,14 @@ PaneEvent BonePane::draw(const widgets::Ui& ui, const widgets::Rect& area,
   const Eigen::Vector2d size(area.width, area.height);
   const auto take_hold = [&](const Eigen::Vector2d& pixel) {
     held_.clear();
-    double nearest = kReach_px * ui.theme.scale;
+    double nearest = std::numeric_limits<double>::infinity();
     for (const PaneMark& mark : marks) {
       if (!mark.can_be_dragged) continue;
       const auto at = scene::project(pane_.camera(), mark.point_mm, size);
-      if (!at || (*at - pixel).norm() >= nearest || is_out_of_sight(mark)) continue;
-      nearest = (*at - pixel).norm();
+      if (!at) continue;
+      const double away = (*at - pixel).norm();
+      if (away >= nearest || away > kReach * ui.theme.px(radius_px(mark)) || is_out_of_sight(mark)) continue;
+      nearest = away;
       held_ = mark.id;
       held_offset_px_ = *at - pixel;
     }
@@ -215,6 +245,7 @@ void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
   const float line = ui.theme.px(3);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const PaneMark* under_mouse = nullptr;
+  std::vector<ImVec4> words;  // that were drawn
   for (const PaneMark& mark : marks) {
     const auto projected = scene::project(pane_.camera(), mark.point_mm, size);
     if (!projected) continue;
@@ -222,10 +253,7 @@ void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
     const bool is_behind = is_out_of_sight(mark), is_one_of_many = mark.id.empty();
     if (is_behind && is_one_of_many) continue;
     const ImU32 color = is_behind ? kHidden : mark.color;
-    const float r =
-        ui.theme.px(is_one_of_many                                                               ? 4.F
-                    : mark.shape == PaneMark::Shape::Cross || mark.shape == PaneMark::Shape::Pin ? 8.F
-                                                                                                 : 13.F);
+    const float r = ui.theme.px(radius_px(mark));
     switch (mark.shape) {
       case PaneMark::Shape::Ring:
         draw.AddCircle(at, r, color, 32, is_behind ? line * 0.5F : line);
@@ -260,8 +288,9 @@ void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
     if (!mark.word.empty() && (!is_behind || mark.can_be_dragged)) {
       const std::string word = mark.word + (is_behind ? " (behind)" : "");
       const ImFont* font = is_behind ? ui.theme.body : ui.theme.strong;
-      const ImVec2 place(at.x + r * 1.4F,
-                         at.y - (mark.shape == PaneMark::Shape::Pin ? 2.1F * r : 0) - font->FontSize / 2);
+      const ImVec2 place = free_place(
+          {at.x + r * 1.4F, at.y - (mark.shape == PaneMark::Shape::Pin ? 2.1F * r : 0) - font->FontSize / 2},
+          font->CalcTextSizeA(font->FontSize, std::numeric_limits<float>::max(), 0, word.c_str()), words);
       draw.AddText(font, font->FontSize, {place.x + 1, place.y + 1}, widgets::kBackground, word.c_str());
       draw.AddText(font, font->FontSize, place, is_behind ? kHidden : widgets::kText, word.c_str());
     }

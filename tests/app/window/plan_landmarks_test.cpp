@@ -59,7 +59,8 @@ TEST_F(PlanLandmarks, ALandmarkIsPlacedWhereOneLies) {
   EXPECT_EQ(app.state("placing"), "nothing");
 }
 
-// A hand that clicks on a landmark to look at it trembles: that confirms nothing.
+// A hand that clicks on a landmark to look at it trembles: that confirms nothing. One that presses beside it
+// turns the view.
 TEST_F(PlanLandmarks, AClickThatTremblesMovesNoLandmark) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_.path());
@@ -67,8 +68,12 @@ TEST_F(PlanLandmarks, AClickThatTremblesMovesNoLandmark) {
   const auto [x, y] = middle(app, "plan.blumensaat_posterior_handle");
   app.drag(x, y, x + 1, y + 1);
   EXPECT_FALSE(app.wait_for_state("plan", "moving", 1));
+  const int beside = x + static_cast<int>(0.7 * app.widgets().at("plan.blumensaat_posterior_handle").width);
+  app.drag(beside, y, beside + 8, y);
+  EXPECT_FALSE(app.wait_for_state("plan", "moving", 1));
   EXPECT_EQ(app.state("undo"), "");
-  app.drag(x, y, x + 8, y);
+  const auto [turned_x, turned_y] = middle(app, "plan.blumensaat_posterior_handle");
+  app.drag(turned_x, turned_y, turned_x + 8, turned_y);
   EXPECT_TRUE(app.wait_for_state("undo", "Drag: Blumensaat's line, posterior end", 5));
 }
 
