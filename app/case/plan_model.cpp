@@ -21,14 +21,6 @@ bool has_grid(const landmarks::Landmarks& marks, bones::BoneKind kind, const geo
                                         : landmarks::tibial_grid(marks).has_value();
 }
 
-// Whether somebody has looked at all that the grid follows from.
-bool is_confirmed(const landmarks::Landmarks& marks, const landmarks::LandmarkStates& states,
-                  bones::BoneKind kind) {
-  return std::ranges::all_of(landmarks::grid_landmarks(kind, marks), [&](const std::string& name) {
-    return marks.contains(name) && landmarks::state_of(states, name) == landmarks::LandmarkState::Confirmed;
-  });
-}
-
 geometry::Bounds joined(geometry::Bounds all, const geometry::Bounds& other) {
   all.min_mm = all.min_mm.cwiseMin(other.min_mm);
   all.max_mm = all.max_mm.cwiseMax(other.max_mm);
@@ -47,7 +39,7 @@ PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
   for (const auto& [kind, bone] : knee_.bones) {
     const landmarks::Landmarks& marks = knee_.landmarks[kind];
     if (bone.mesh.empty() || (has_grid(marks, kind, bone.mesh, knee_.side) &&
-                              is_confirmed(marks, knee_.landmark_states[kind], kind)))
+                              landmarks::is_grid_confirmed(kind, marks, knee_.landmark_states[kind])))
       continue;
     proposals[kind] = std::async(std::launch::async, [&mesh = bone.mesh, kind = kind, side = knee_.side] {
       return landmarks::propose(mesh, kind, {.side = side});

@@ -18,6 +18,8 @@
 #include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
+#include "planning/landmarks/grid_landmarks.h"
+#include "planning/landmarks/propose.h"
 #include "planning/plan_export/markups_file.h"
 #include "planning/plan_export/plan_export.h"
 #include "planning/tunnels/diameter_range.h"
@@ -81,16 +83,22 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
   return tunnel;
 }
 
-// By norms and landmarks. Throws InvalidInput where there is no default; `verdict` says how far it may be
-// relied on.
-tunnels::Tunnel default_tunnel(const PlanArguments& arguments, const cases::Case& knee, bones::BoneKind kind,
+// By norms and landmarks. Those that the case lacks are proposed, and become the case's: whoever reads it, as
+// a report, has the grid that was planned by. Throws InvalidInput where there is no default; `verdict` says
+// how far it may be relied on.
+tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee, bones::BoneKind kind,
                                const geometry::Surface& surface, PlanVerdict& verdict) {
+  landmarks::Landmarks& marks = knee.landmarks[kind];
+  landmarks::LandmarkStates& states = knee.landmark_states[kind];
   default_plan::BoneInput input{
-      .bone = &knee.bones.at(kind), .surface = &surface, .landmarks = {}, .states = {}};
-  if (const auto marks = knee.landmarks.find(kind); marks != knee.landmarks.end())
-    input.landmarks = marks->second;
-  if (const auto states = knee.landmark_states.find(kind); states != knee.landmark_states.end())
-    input.states = states->second;
+      .bone = &knee.bones.at(kind), .surface = &surface, .landmarks = marks, .states = states};
+  landmarks::Proposal proposal;
+  if (!landmarks::is_grid_confirmed(kind, marks, states)) {
+    proposal = landmarks::propose(input.bone->mesh, kind, {.side = knee.side});
+    input.proposal = &proposal;
+    for (const auto& [name, at_mm] : proposal.landmarks)
+      if (marks.try_emplace(name, at_mm).second) states[name] = landmarks::LandmarkState::Proposed;
+  }
   const norms::Bundle bundle = norms::bundle_from_text(arguments.type);
   input.beside = default_plan::beside({kind, bundle}, knee.plan.tunnels);
   const auto planned =
@@ -139,22 +147,13 @@ void put(const tunnels::Tunnel& tunnel, const std::string& mesh_sha256, const Pl
 }
 
 void take_markups(const PlanArguments& arguments, const Context& context, cases::Case& knee) {
-  const auto markups = plan_export::read_markups(arguments.markups);
-  bool took = false;
-  for (const auto& [key, tunnel] : markups.tunnels) {
-    const auto bone = knee.bones.find(key.bone);
-    if (bone == knee.bones.end()) continue;
-    if (!tunnels::measure(tunnel, geometry::Surface(bone->second.mesh)).enters_bone) {
-      throw InvalidInput(arguments.markups, tunnels::name_of(key) + " tunnel",
-                         "does not enter the case's bone: markups of another knee?");
-    }
-    put(tunnel, bones::mesh_sha256(bone->second.mesh), arguments, context, knee);
-    took = true;
-  }
-  if (!took)
-    throw InvalidInput(
-        arguments.markups, "markups",
-        "hold no line \"femur tunnel\" or \"tibia tunnel\", nor of bundles, as \"femur AM tunnel\"");
+  std::map<bones::BoneKind, geometry::Surface> surfaces;
+  const auto surface_of = [&](bones::BoneKind kind) -> const geometry::Surface* {
+    const auto bone = knee.bones.find(kind);
+    return bone == knee.bones.end() ? nullptr : &surfaces.try_emplace(kind, bone->second.mesh).first->second;
+  };
+  for (const auto& [key, tunnel] : plan_export::read_tunnels(arguments.markups, surface_of))
+    put(tunnel, bones::mesh_sha256(knee.bones.at(key.bone).mesh), arguments, context, knee);
 }
 
 void show(const PlanArguments& arguments, const Context& context, const cases::Case& knee,
@@ -359,6 +358,7 @@ void add_plan_command(CLI::App& app, Context& context) {
     if (writes) {
       cases::name_meshes(knee);
       knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
+      if (arguments->by_default) cases::save_case(arguments->case_folder, knee);  // with its landmarks
     }
     if (arguments->lists_versions) return list_versions(*arguments, context, knee);
     const plan_review::CaseReview review(knee);

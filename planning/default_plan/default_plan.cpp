@@ -225,17 +225,14 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
     return input.landmarks.contains(name) &&
            landmarks::state_of(input.states, name) == landmarks::LandmarkState::Confirmed;
   };
-  bool all_confirmed = true;
-  for (const std::string& name : landmarks::grid_landmarks(kind, input.landmarks))
-    all_confirmed &= is_confirmed(name);
   Landmarks marks = input.landmarks;
-  if (!all_confirmed) {
+  if (!landmarks::is_grid_confirmed(kind, input.landmarks, input.states)) {
     if (proposal == nullptr) {
       made = landmarks::propose(input.bone->mesh, kind, {.side = side});
       proposal = &made;
     }
-    landmarks::LandmarkStates states = input.states;
-    landmarks::take_proposal(*proposal, marks, states);
+    // What is there was proposed as its owner wished (Blumensaat's line has two ways), and is what is shown.
+    marks.insert(proposal->landmarks.begin(), proposal->landmarks.end());
     std::string names;
     for (const std::string& name : landmarks::grid_landmarks(kind, marks)) {
       if (!is_confirmed(name)) names += (names.empty() ? "" : ", ") + name;

@@ -1,5 +1,7 @@
 #include "planning/landmarks/grid_landmarks.h"
 
+#include <algorithm>
+
 namespace arthronaut::landmarks {
 
 std::vector<std::string> grid_landmarks(bones::BoneKind bone, const Landmarks& known) {
@@ -14,6 +16,12 @@ std::vector<std::string> grid_landmarks(bones::BoneKind bone, const Landmarks& k
       known.contains("lateral_condyle_low"))
     names.insert(names.end(), {"lateral_condyle_deep", "lateral_condyle_shallow", "lateral_condyle_low"});
   return names;
+}
+
+bool is_grid_confirmed(bones::BoneKind bone, const Landmarks& known, const LandmarkStates& states) {
+  return std::ranges::all_of(grid_landmarks(bone, known), [&](const std::string& name) {
+    return known.contains(name) && state_of(states, name) == LandmarkState::Confirmed;
+  });
 }
 
 }  // namespace arthronaut::landmarks

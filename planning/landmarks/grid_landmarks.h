@@ -13,4 +13,8 @@ namespace arthronaut::landmarks {
 // when these are known. Of what it needs also those that are not known.
 [[nodiscard]] std::vector<std::string> grid_landmarks(bones::BoneKind bone, const Landmarks& known);
 
+// Whether somebody has looked at all of these, and none is missing.
+[[nodiscard]] bool is_grid_confirmed(bones::BoneKind bone, const Landmarks& known,
+                                     const LandmarkStates& states);
+
 }  // namespace arthronaut::landmarks

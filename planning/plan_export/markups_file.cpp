@@ -176,4 +176,20 @@ MarkupsPlan read_markups(const std::filesystem::path& file) {
   return plan;
 }
 
+std::map<tunnels::TunnelKey, tunnels::Tunnel> read_tunnels(
+    const std::filesystem::path& file,
+    const std::function<const geometry::Surface*(bones::BoneKind)>& surface_of) {
+  std::map<tunnels::TunnelKey, tunnels::Tunnel> tunnels = read_markups(file).tunnels;
+  std::erase_if(tunnels, [&](const auto& one) { return surface_of(one.first.bone) == nullptr; });
+  if (tunnels.empty())
+    throw InvalidInput(
+        file, "markups",
+        "hold no line \"femur tunnel\" or \"tibia tunnel\", nor of bundles, as \"femur AM tunnel\"");
+  for (const auto& [key, tunnel] : tunnels)
+    if (!tunnels::measure(tunnel, *surface_of(key.bone)).enters_bone)
+      throw InvalidInput(file, tunnels::name_of(key) + " tunnel",
+                         "does not enter the case's bone: markups of another knee?");
+  return tunnels;
+}
+
 }  // namespace arthronaut::plan_export

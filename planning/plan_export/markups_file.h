@@ -7,11 +7,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 
 #include "planning/bones/bone.h"
 #include "planning/cases/case.h"
+#include "planning/geometry/surface.h"
 #include "planning/tunnels/tunnel.h"
 
 namespace arthronaut::plan_export {
@@ -28,5 +30,11 @@ struct MarkupsPlan {
 // no markups, a unit other than mm, a line without two points or without length, a position that is not
 // finite, a tunnel that is there twice, a bone's single tunnel beside one of a bundle.
 [[nodiscard]] MarkupsPlan read_markups(const std::filesystem::path& file);
+
+// The tunnels of such a file that are of bones that there are; `surface_of` is null for others. Throws as
+// read_markups, and InvalidInput where there is none of them, or one does not enter its bone.
+[[nodiscard]] std::map<tunnels::TunnelKey, tunnels::Tunnel> read_tunnels(
+    const std::filesystem::path& file,
+    const std::function<const geometry::Surface*(bones::BoneKind)>& surface_of);
 
 }  // namespace arthronaut::plan_export

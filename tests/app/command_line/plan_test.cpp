@@ -127,13 +127,25 @@ TEST_F(PlanCommand, WhatWouldDoNothingIsRefused) {
   EXPECT_THAT(set.errors, HasSubstr("--set: \"femur.notch_apex=1,2,nan\" is not BONE.NAME=x,y,z"));
 }
 
-// A knee without landmarks: they are proposed, and that is a reason to look before relying on it.
-TEST_F(PlanCommand, ADefaultOnProposedLandmarksIsNotReliable) {
+// A knee without landmarks: they are proposed, and that is a reason to look before relying on it. They stay
+// in the case, as proposed, so that its grid is there for the checks and for whoever reads it; what a person
+// had placed stays as it was.
+TEST_F(PlanCommand, ADefaultOnProposedLandmarksIsNotReliableAndKeepsThem) {
   knee_.landmarks.clear();
+  const Eigen::Vector3d placed = made_.femur_landmarks.at("notch_apex") + Eigen::Vector3d(0.5, 0, 0);
+  knee_.landmarks[bones::BoneKind::Femur]["notch_apex"] = placed;
   save(knee_);
   const auto result = run({"plan", "--bone", "femur", "--default"});
   EXPECT_EQ(result.exit_code, 4) << result.output << result.errors;
   EXPECT_THAT(result.output + result.errors, HasSubstr("blumensaat_anterior"));
+  EXPECT_THAT(result.output, Not(HasSubstr("not checked")));
+  const cases::Case kept = cases::load_case(folder_ / "knee.arthro");
+  const auto& states = kept.landmark_states.at(bones::BoneKind::Femur);
+  EXPECT_TRUE(kept.landmarks.at(bones::BoneKind::Femur).contains("blumensaat_anterior"));
+  EXPECT_EQ(landmarks::state_of(states, "blumensaat_anterior"), landmarks::LandmarkState::Proposed);
+  EXPECT_EQ(kept.landmarks.at(bones::BoneKind::Femur).at("notch_apex"), placed);
+  EXPECT_EQ(landmarks::state_of(states, "notch_apex"), landmarks::LandmarkState::Confirmed);
+  EXPECT_FALSE(kept.landmarks.contains(bones::BoneKind::Tibia));
 }
 
 // Hazard 46: on landmarks that somebody confirmed, a bone that was cut off is a doubtful one all the same.

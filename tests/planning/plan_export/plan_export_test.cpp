@@ -230,5 +230,27 @@ TEST(Markups, ReadRasAndRefuseTheRest) {
   EXPECT_THROW((void)read_markups(folder.path() / "none.mrk.json"), IoError);
 }
 
+// Of a case with one bone alone the other's tunnel is passed over; one that lies beside its bone is of
+// another knee.
+TEST(Markups, GiveTheTunnelsOfTheBonesThatAreThere) {
+  const test::TemporaryFolder folder;
+  auto knee = knee_case();
+  const geometry::Surface femur(knee.bones.at(BoneKind::Femur).mesh);
+  const auto of_femur = [&](BoneKind kind) { return kind == BoneKind::Femur ? &femur : nullptr; };
+  const auto file = folder / "plan.mrk.json";
+  files::write_atomically(file, markups_of(knee));
+  const auto tunnels = read_tunnels(file, of_femur);
+  ASSERT_EQ(tunnels.size(), 1U);
+  EXPECT_LT((tunnels.at(BoneKind::Femur).entry_mm - knee.plan.tunnels.at(BoneKind::Femur).entry_mm).norm(),
+            1e-6);
+  EXPECT_THAT(
+      test::message_of<InvalidInput>([&] { (void)read_tunnels(file, [](BoneKind) { return nullptr; }); }),
+      testing::HasSubstr("hold no line"));
+  const geometry::Surface elsewhere(test::box({1, 1, 1}));
+  EXPECT_THAT(
+      test::message_of<InvalidInput>([&] { (void)read_tunnels(file, [&](BoneKind) { return &elsewhere; }); }),
+      testing::HasSubstr("another knee"));
+}
+
 }  // namespace
 }  // namespace arthronaut::plan_export
