@@ -49,6 +49,9 @@ class PlanView : public mode::Mode {
   }
   void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
+  // The tunnels of 3D Slicer's markups, as one step; why not, where they are not of this case. Precondition:
+  // a case is open.
+  void take_markups(const std::filesystem::path& file);
   // An export, which the end of the program or another case would cut off.
   [[nodiscard]] bool has_running_work() const override { return export_.is_running(); }
   [[nodiscard]] bool is_busy() const override {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/plan/plan_view.h"
+#include "planning/plan_export/markups_file.h"
 
 namespace arthronaut::plan {
 
@@ -51,6 +52,28 @@ void PlanView::export_plan() {
   export_.start(model_->knee(), model_->revision(), case_folder_);
 }
 
+void PlanView::take_markups(const std::filesystem::path& file) {
+  state_.placing = Placing::Nothing;
+  if (history_.status().save == open_case::PlanStatus::Save::ReadOnly) {
+    state_.hint = {"Nothing is taken from " + file.filename().string() + ": the case is read-only"};
+    return;
+  }
+  try {  // a file from elsewhere
+    const auto tunnels = plan_export::read_tunnels(file, [this](bones::BoneKind kind) {
+      return model_->has_bone(kind) ? &model_->surface(kind) : nullptr;
+    });
+    history_.apply_tunnels(tunnels, "Take the tunnels of " + file.filename().string());
+    std::string names;
+    for (const auto& [key, tunnel] : tunnels) names += (names.empty() ? "" : ", ") + tunnels::name_of(key);
+    state_.hint = {"Taken from " + file.filename().string() + ": " + names +
+                       ". Ctrl+Z brings back the plan that was there.",
+                   true, model_->revision()};
+    follow_plan();
+  } catch (const std::runtime_error& error) {
+    state_.hint = {error.what()};
+  }
+}
+
 void PlanView::add_version_actions(widgets::Actions& actions) {
   const auto has_plan = [this] {
     return model_ != nullptr && !model_->knee().plan.tunnels.empty() &&
@@ -69,7 +92,9 @@ void PlanView::add_version_actions(widgets::Actions& actions) {
       {"plan.export",
        "Export",
        "For other programs, into the folder \"export\" of the case: the plan as JSON, CSV and markups of 3D "
-       "Slicer, the drilled bones as STL and PLY",
+       "Slicer, the drilled bones as STL and PLY. Markups that were moved there are taken back when the file "
+       "is "
+       "dropped on this window",
        GLFW_KEY_E,
        GLFW_MOD_CONTROL,
        false,

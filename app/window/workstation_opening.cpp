@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "app/library/workstation_library.h"
+#include "app/plan/plan_view.h"
 #include "app/review/review_view.h"
 #include "app/window/workstation_window.h"
 #include "planning/files/utc_clock.h"
@@ -24,6 +25,7 @@ void WorkstationWindow::open(const std::filesystem::path& folder) {
   }
   failure_.clear();
   lender_ = nullptr;
+  letting_go_.wait();  // one of them may have the lock of the case that is wanted
   const auto wake = [] { GraphicsWindow::wake(); };
   // One that the modes still know is this program's already.
   if (known_to_modes_ != nullptr && std::filesystem::equivalent(wanted, known_to_modes_->folder(), error))
@@ -52,9 +54,10 @@ void WorkstationWindow::take_opened_case() {
     for (const auto& mode : modes_)
       all_know &= guarded([&] { mode->case_opened({model(), case_->folder(), case_->read_only_reason()}); });
   if (all_know)
-    known_to_modes_.reset();
+    letting_go_.take(std::move(known_to_modes_));
   else if (before != nullptr && before->model() != nullptr)
     known_to_modes_ = std::move(before);
+  letting_go_.take(std::move(before));
   if (!is_same_folder) paint_.close();
   const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
   if (is_unpainted()) paint_.open(knee, case_->folder(), case_->is_read_only());
@@ -82,9 +85,11 @@ void WorkstationWindow::take_dropped() {
     return;
   }
   failure_.clear();
+  const mode::Mode* const in_front = shows_start() || shows_paint() ? nullptr : &shown();
+  if (in_front == plan_ && in_front != nullptr && dropped.front().string().ends_with(".mrk.json"))
+    return plan_->take_markups(dropped.front());
   // In Review what is dropped is what the case looks like now, unless it is another case.
-  const bool is_in_review = !shows_start() && !shows_paint() && &shown() == review_;
-  if (is_in_review && !std::filesystem::exists(dropped.front() / "case.json"))
+  if (in_front == review_ && in_front != nullptr && !std::filesystem::exists(dropped.front() / "case.json"))
     return review_->take_dropped(dropped.front());
   leave_shown();
   shows_start_ = true;

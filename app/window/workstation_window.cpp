@@ -115,6 +115,9 @@ void WorkstationWindow::run() {
   shown().leave();
   start_.leave();
   paint_.leave();
+  // What still runs is asked to end and waited for, which nobody needs to look at.
+  window_.make_current();
+  glfwHideWindow(glfwGetCurrentContext());
 }
 
 bool WorkstationWindow::should_end() {

@@ -20,7 +20,11 @@
 #include "app/window/frame_fault.h"
 #include "app/window/room.h"
 #include "app/window/workstation.h"
+#include "navigation/worker/letting_go.h"
 
+namespace arthronaut::plan {
+class PlanView;
+}
 namespace arthronaut::review {
 class ReviewView;
 }
@@ -79,6 +83,7 @@ class WorkstationWindow {
   WorkstationOptions options_;
   Room room_;
   widgets::GraphicsWindow window_;
+  worker::LettingGo letting_go_;  // of cases that were closed: they may still have landmarks in the making
   // The open case, and the one that is being opened in its place; null where there is none.
   std::unique_ptr<open_case::CaseOpening> case_, opening_;
   // The last case with bones, which the modes know until the next one with bones; null while that is case_.
@@ -88,7 +93,8 @@ class WorkstationWindow {
   widgets::Actions actions_;
   widgets::WidgetLog log_;
   std::vector<std::unique_ptr<mode::Mode>> modes_;  // in the order of their buttons
-  review::ReviewView* review_ = nullptr;            // one of them
+  plan::PlanView* plan_ = nullptr;                  // two of them
+  review::ReviewView* review_ = nullptr;
   std::size_t shown_ = 0;
   widgets::Heartbeat heartbeat_;
   widgets::SlowScreen slow_;

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
 #include <thread>
 
 #include "app/plan/plan_view.h"
 #include "app/scene/offscreen_context.h"
+#include "planning/files/atomic_file.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/phantom/phantom_knee.h"
+#include "planning/plan_export/markups_file.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::plan {
@@ -98,6 +101,26 @@ TEST_F(DefaultActions, AnotherCaseKnowsNothingOfIt) {
   EXPECT_EQ(other->tunnel(BoneKind::Femur)->entry_mm, entry_mm);
   action("plan.default").run();
   view_.reset();
+}
+
+// Markups as 3D Slicer gives them back: what was moved there becomes the plan, as one step; what is of
+// another knee changes nothing.
+TEST_F(DefaultActions, MarkupsThatWereMovedBecomeThePlan) {
+  cases::Case moved = model_.knee();
+  const Eigen::Vector3d before = moved.plan.tunnels.at(BoneKind::Femur).entry_mm;
+  tunnels::Tunnel& femoral = moved.plan.tunnels.at(BoneKind::Femur);
+  femoral.entry_mm =
+      model_.surface(BoneKind::Femur).closest_point(before + Eigen::Vector3d(0, 0, 2)).point_mm;
+  const auto file = folder_ / "moved.mrk.json";
+  files::write_atomically(file, plan_export::markups_of(moved));
+  view_->take_markups(file);
+  EXPECT_LT((model_.tunnel(BoneKind::Femur)->entry_mm - femoral.entry_mm).norm(), 1e-3);
+  const auto other = folder_ / "other.mrk.json";
+  std::ofstream(other) << plan_export::markups_of(model_.knee()).replace(0, 1, "[");
+  view_->take_markups(other);
+  EXPECT_LT((model_.tunnel(BoneKind::Femur)->entry_mm - before).norm(), 3) << "broken: nothing is taken";
+  action("plan.undo").run();
+  EXPECT_EQ(model_.tunnel(BoneKind::Femur)->entry_mm, before);
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+#include "navigation/worker/letting_go.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+
+namespace arthronaut::worker {
+namespace {
+
+struct Slow {
+  explicit Slow(std::shared_future<void> until, std::atomic<int>& gone)
+      : until(std::move(until)), gone(gone) {}
+  ~Slow() {
+    until.wait();
+    ++gone;
+  }
+  std::shared_future<void> until;
+  std::atomic<int>& gone;
+};
+
+// The caller goes on while the destructor still waits; wait() does not.
+TEST(LettingGo, HoldsNobodyUp) {
+  std::promise<void> may_go;
+  const std::shared_future<void> until = may_go.get_future().share();
+  std::atomic<int> gone = 0;
+  LettingGo letting_go;
+  letting_go.take(std::unique_ptr<Slow>());
+  letting_go.take(std::make_unique<Slow>(until, gone));
+  letting_go.take(std::make_unique<Slow>(until, gone));
+  EXPECT_EQ(gone, 0);
+  may_go.set_value();
+  letting_go.wait();
+  EXPECT_EQ(gone, 2);
+}
+
+}  // namespace
+}  // namespace arthronaut::worker
