@@ -72,19 +72,10 @@ void PaintView::add_brush_actions(widgets::Actions& actions) {
                GLFW_KEY_O, 0, false, edits, [this] { return brushing_.brush.is_ball; },
                [this] { brushing_.brush.is_ball = !brushing_.brush.is_ball; }});
   const auto is_shown = [this] { return is_ready(); };
-  actions.add(
-      {"paint.window",
-       "Window",
-       "In a CT bone, soft tissue, as the values are; in an MR as the values are. Or drag with the right "
-       "button",
-       GLFW_KEY_W,
-       0,
-       false,
-       is_shown,
-       {},
-       [this] {
-         look_.window = scene::next_window(look_.window, look_.automatic, painting_->volume().modality);
-       }});
+  actions.add({"paint.window", "Window", plan::kWindowTooltip, GLFW_KEY_W, 0, false, is_shown, {}, [this] {
+                 look_.window =
+                     scene::next_window(look_.window, look_.automatic, painting_->volume().modality);
+               }});
   actions.add({"paint.fit",
                "Whole",
                "Shows the whole slices again; Ctrl and the wheel zoom, Shift and drag shifts",
@@ -163,20 +154,31 @@ void PaintView::add_preview_actions(widgets::Actions& actions) {
                [this] { take_preview(); }});
   actions.add({"paint.stop",
                "Stop",
-               "Stops what runs, or leaves what is shown; nothing that was painted is lost",
+               "Stops what runs; nothing that was painted is lost",
                GLFW_KEY_ESCAPE,
                0,
                false,
-               [this] { return can_stop(); },
+               [this] { return is_working(); },
                {},
-               [this] {
-                 hint_.clear();
-                 making_.cancel();
-                 if (previewing_.kind != Preview::None)
-                   drop_preview();
-                 else
-                   job_.cancel();
-               }});
+               [this] { put_aside(); }});
+  actions.add({"paint.put_aside",
+               "Back to painting",
+               "Leaves what is shown; nothing that was painted is lost",
+               GLFW_KEY_ESCAPE,
+               0,
+               false,
+               [this] { return can_stop() && !is_working(); },
+               {},
+               [this] { put_aside(); }});
+}
+
+void PaintView::put_aside() {
+  hint_.clear();
+  making_.cancel();
+  if (previewing_.kind != Preview::None)
+    drop_preview();
+  else
+    job_.cancel();
 }
 
 void PaintView::add_edit_actions(widgets::Actions& actions) {

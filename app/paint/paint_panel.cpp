@@ -153,7 +153,7 @@ void PaintView::draw_work(const widgets::Ui& ui) {
 void PaintView::draw_quality(const widgets::Ui& ui) {
   bool is_doubted = false;
   for (const importing::BoneQuality& quality : making_.qualities())
-    is_doubted = is_doubted || !quality.doubts.empty();
+    is_doubted = is_doubted || !quality.doubts.empty() || !importing::leak_doubt(quality).empty();
   widgets::text_in(ui.theme.strong, is_doubted ? widgets::kCaution : widgets::kText,
                    is_doubted ? "Look before you rely on these surfaces"
                               : "The white outlines are the surfaces: do they follow the bones?");
@@ -165,7 +165,7 @@ void PaintView::draw_quality(const widgets::Ui& ui) {
   }
   const float width = ImGui::GetContentRegionAvail().x;
   widgets::action_button(ui, "paint.accept", width, ui.theme.px(52));
-  widgets::action_button(ui, "paint.stop", width, ui.theme.px(44));
+  widgets::action_button(ui, "paint.put_aside", width, ui.theme.px(44));
 }
 
 void PaintView::draw_steps(const widgets::Ui& ui) {
@@ -207,7 +207,7 @@ void PaintView::draw_panel(const widgets::Ui& ui, const widgets::Rect& area) {
     const float width = (ImGui::GetContentRegionAvail().x - ui.theme.px(8)) / 2;
     widgets::action_button(ui, "paint.take", width);
     ImGui::SameLine(0, ui.theme.px(8));
-    widgets::action_button(ui, "paint.stop", width);
+    widgets::action_button(ui, is_working() ? "paint.stop" : "paint.put_aside", width);
   }
   const std::string brush = label_name(brushing_.label) + " on " +
                             (brushing_.layer == Layer::Strokes ? "strokes" : "bones") + ", " +

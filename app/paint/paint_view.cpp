@@ -92,10 +92,11 @@ bool PaintView::can_edit() const {
          (making == BoneMaking::State::Idle || making == BoneMaking::State::Done);
 }
 
-bool PaintView::can_stop() const {
-  return job_.is_running() || previewing_.kind != Preview::None ||
-         making_.state() == BoneMaking::State::Making || is_judging();
+bool PaintView::is_working() const {
+  return job_.is_running() || making_.state() == BoneMaking::State::Making;
 }
+
+bool PaintView::can_stop() const { return is_working() || previewing_.kind != Preview::None || is_judging(); }
 
 void PaintView::tick(double now_s) {
   if (auto loaded = store_.take_loaded()) {

@@ -56,7 +56,9 @@ class PaintView {
 
   [[nodiscard]] bool is_ready() const { return painting_.has_value(); }
   [[nodiscard]] bool can_edit() const;
-  [[nodiscard]] bool can_stop() const;  // something runs, or is shown before it is taken
+  [[nodiscard]] bool is_working() const;  // something runs that Esc stops
+  [[nodiscard]] bool can_stop() const;    // the same, or something is shown before it is taken
+  void put_aside();
   [[nodiscard]] bool is_judging() const { return making_.state() == BoneMaking::State::Judging; }
   void begin_growth();
   void grow();

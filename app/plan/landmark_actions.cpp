@@ -78,9 +78,11 @@ void PlanView::confirm_landmarks(bool all) {
   const auto& marks = model_->landmarks(state_.key.bone);
   for (const auto& [name, position] : marks)
     if (all || name == landmark()) states[name] = LandmarkState::Confirmed;
-  history_.apply_landmarks(state_.key.bone, marks, states,
-                           all ? "Confirm all landmarks" : "Confirm: " + landmark_title(), false,
-                           widgets::GraphicsWindow::now_s());
+  history_.apply_landmarks(
+      state_.key.bone, marks, states,
+      all ? "Confirm all landmarks of the " + std::string(bones::to_text(state_.key.bone))
+          : "Confirm: " + landmark_title(),
+      false, widgets::GraphicsWindow::now_s());
   history_.settle_now();
   if (const auto next = next_proposed(landmark_rows(*model_, state_.key.bone), state_.landmark))
     select_landmark(*next);

@@ -273,17 +273,9 @@ void PlanView::add_slice_actions(widgets::Actions& actions) {
                },
                {},
                [this] { paint_(); }});
-  actions.add(
-      {"plan.window",
-       "Window",
-       "In a CT bone, soft tissue, as the values are; in an MR as the values are. Or drag with the right "
-       "button",
-       GLFW_KEY_W,
-       0,
-       false,
-       has_slices,
-       {},
-       [this] { slices_.go_to_next_window(); }});
+  actions.add({"plan.window", "Window", kWindowTooltip, GLFW_KEY_W, 0, false, has_slices, {}, [this] {
+                 slices_.go_to_next_window();
+               }});
   actions.add(
       {"plan.fit", "Whole", "Shows the whole slices again", GLFW_KEY_F, 0, false, has_slices, {}, [this] {
          slices_.fit();

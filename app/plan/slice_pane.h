@@ -16,6 +16,10 @@
 
 namespace arthronaut::plan {
 
+// Of the action that goes through the windows of grey values.
+inline constexpr const char* kWindowTooltip =
+    "In a CT bone, soft tissue, as the values are; in an MR as the values are. Or drag with the right button";
+
 // A surface whose outline is drawn.
 struct OutlinedMesh {
   const geometry::TriangleMesh* mesh = nullptr;

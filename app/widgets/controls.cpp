@@ -231,11 +231,12 @@ void text_centered(const Ui& ui, const Rect& rect, ImFont* font, ImU32 color, st
 
 void caption(const Ui& ui, const Rect& picture, ImU32 color, std::string_view text) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const ImVec2 size = text_size(ui.theme.strong, text);
   const float beside = ui.theme.px(14), above = ui.theme.px(9);
+  const float wrap = std::max(picture.width - 2 * beside, 1.F);
+  const ImVec2 size = text_size(ui.theme.strong, text, wrap);
   draw.AddRectFilled(picture.min(), {picture.x + size.x + 2 * beside, picture.y + size.y + 2 * above},
                      IM_COL32(12, 15, 19, 200), ui.theme.px(6));
-  draw_text(draw, ui.theme.strong, {picture.x + beside, picture.y + above}, color, text);
+  draw_text(draw, ui.theme.strong, {picture.x + beside, picture.y + above}, color, text, wrap);
 }
 
 std::string fixed(double value, int decimals) {

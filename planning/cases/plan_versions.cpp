@@ -21,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kSeen = 0.05;  // mm and deg: less is the same
+
 fs::path versions_folder(const fs::path& case_folder) { return case_folder / "plan_versions"; }
 
 // 0: no version's name.
@@ -76,8 +78,13 @@ std::string TunnelDifference::in_words() const {
     case Kind::Moved:
       break;
   }
-  return name +
-         files::format(": entry %.1f mm off, %.1f deg, %+.1f mm wide", entry_mm, angle_deg, diameter_mm);
+  std::string words;
+  const auto add = [&](const std::string& what) { words += (words.empty() ? ": " : ", ") + what; };
+  if (entry_mm > kSeen) add(files::format("entry %.1f mm off", entry_mm));
+  if (angle_deg > kSeen) add(files::format("turned by %.1f deg", angle_deg));
+  if (std::abs(diameter_mm) > kSeen)
+    add(files::format("%.1f mm %s", std::abs(diameter_mm), diameter_mm > 0 ? "wider" : "narrower"));
+  return name + words;
 }
 
 std::vector<TunnelDifference> compare_plans(const Plan& here, const Plan& there) {
@@ -96,7 +103,6 @@ std::vector<TunnelDifference> compare_plans(const Plan& here, const Plan& there)
       difference.angle_deg =
           geometry::deg_from_rad(geometry::angle_between_rad(a->second.direction, b->second.direction));
       difference.diameter_mm = b->second.diameter_mm - a->second.diameter_mm;
-      constexpr double kSeen = 0.05;
       if (difference.entry_mm > kSeen || difference.angle_deg > kSeen ||
           std::abs(difference.diameter_mm) > kSeen)
         difference.kind = Kind::Moved;

@@ -30,7 +30,7 @@ struct TunnelDifference {
   double entry_mm = 0, angle_deg = 0, diameter_mm = 0;
   // Whether going from there to here loses the tunnel as it is there.
   [[nodiscard]] bool is_lost_here() const { return kind == Kind::Moved || kind == Kind::OnlyThere; }
-  [[nodiscard]] std::string in_words() const;  // "femur: entry 2.1 mm, 3.4 deg, +0.5 mm wide"
+  [[nodiscard]] std::string in_words() const;  // "femur: entry 2.1 mm off, 0.5 mm wider"
 };
 // Of the tunnels that either plans. Same: not further apart than is seen, 0.05 mm and 0.05 deg.
 [[nodiscard]] std::vector<TunnelDifference> compare_plans(const Plan& here, const Plan& there);

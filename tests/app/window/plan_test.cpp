@@ -248,7 +248,7 @@ TEST_F(PlanWindow, DefaultPlanAndLandmarksByKeys) {
   app.press("Next");  // Page down
   ASSERT_TRUE(app.wait_for_state("landmark", "blumensaat_posterior"));
   app.press("shift+Return");
-  ASSERT_TRUE(app.wait_for_state("undo", "Confirm all landmarks"));
+  ASSERT_TRUE(app.wait_for_state("undo", "Confirm all landmarks of the femur"));
   ASSERT_TRUE(app.wait_for_state("plan", "saved"));
   const cases::Case saved = cases::load_case(case_folder());
   const auto states = saved.landmark_states.find(bones::BoneKind::Femur);

@@ -85,7 +85,7 @@ TEST_F(PlanVersions, AreComparedTunnelByTunnel) {
   EXPECT_DOUBLE_EQ(differences[0].entry_mm, 5);
   EXPECT_NEAR(differences[0].angle_deg, 90, 1e-9);
   EXPECT_DOUBLE_EQ(differences[0].diameter_mm, -0.5);
-  EXPECT_EQ(differences[0].in_words(), "femur: entry 5.0 mm off, 90.0 deg, -0.5 mm wide");
+  EXPECT_EQ(differences[0].in_words(), "femur: entry 5.0 mm off, turned by 90.0 deg, 0.5 mm narrower");
   EXPECT_EQ(differences[1].kind, Kind::OnlyThere);
   EXPECT_EQ(compare_plans(other, plan_)[1].kind, Kind::OnlyHere);
 }
