@@ -69,7 +69,10 @@ bool CaseOpening::take() {
   if (!opening_.is_ready()) return false;
   try {  // the top of the opening thread: a case that cannot be read is said on the screen
     OpenedCase opened = opening_.take();
-    if (open_.lock.is_held()) opened.lock = std::move(open_.lock);
+    if (open_.lock.is_held())
+      opened.lock = std::move(open_.lock);
+    else
+      locked_at_ = Clock::now();
     open_ = std::move(opened);
   } catch (const std::exception& error) {
     failure_ = error.what();

@@ -1,6 +1,7 @@
 // From a folder to what the workstation works on.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -36,6 +37,7 @@ struct OpenedCase {
 // reason. While it is open it is this program's to write, or read-only, and stays so.
 class CaseOpening {
  public:
+  using Clock = std::chrono::steady_clock;
   // Opens the folder, see open_folder(). on_end is called from the other thread when that is done, well or
   // not; its end is waited for.
   CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end);
@@ -59,13 +61,16 @@ class CaseOpening {
   [[nodiscard]] bool is_read_only() const { return !read_only_reason().empty(); }
   // "is open elsewhere: anna on theatre-2 (process 4711) since ..."; empty when it may be written.
   [[nodiscard]] const std::string& read_only_reason() const { return open_.lock.refusal(); }
-  // That it was taken over from a program that had died; else empty.
-  [[nodiscard]] const std::string& notice() const { return open_.lock.notice(); }
+  // That it was taken over from a program that had died: news for a minute after it was opened; else empty.
+  [[nodiscard]] std::string notice(Clock::time_point now = Clock::now()) const {
+    return now - locked_at_ < std::chrono::minutes(1) ? open_.lock.notice() : "";
+  }
   // Whose knee it is; nothing where that is not known.
   [[nodiscard]] const std::optional<cases::Identity>& identity() const { return open_.identity; }
 
  private:
   OpenedCase open_;
+  Clock::time_point locked_at_;
   std::string failure_;
   worker::Awaited<OpenedCase> opening_;
 };

@@ -1,6 +1,8 @@
 #include "app/case/case_opening.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <thread>
@@ -46,6 +48,25 @@ TEST(CaseOpening, SaysWhyACaseCannotBeOpened) {
   EXPECT_EQ(ends, 1);
   EXPECT_EQ(opening.model(), nullptr);
   EXPECT_NE(opening.failure().find("absent.arthro"), std::string::npos) << opening.failure();
+}
+
+// That a case was left behind by a program that died is news, and no state of the case.
+TEST(CaseOpening, SaysForAMinuteThatTheCaseWasTakenOver) {
+  const test::TemporaryFolder folder;
+  cases::save_case(folder.path(),
+                   phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "test"));
+  if (const pid_t other = ::fork(); other == 0) {
+    const cases::CaseLock lock(folder.path());
+    ::_exit(0);  // the lock is not let go
+  } else {
+    ::waitpid(other, nullptr, 0);
+  }
+  CaseOpening opening(folder.path(), [] {});
+  ASSERT_EQ(take_until_done(opening), 1);
+  const auto now = CaseOpening::Clock::now();
+  EXPECT_NE(opening.notice(now).find("Taken over"), std::string::npos);
+  EXPECT_NE(opening.notice(now + std::chrono::seconds(50)), "");
+  EXPECT_EQ(opening.notice(now + std::chrono::seconds(61)), "");
 }
 
 // Hazard 15: a case that is read-only stays so when it is opened again, and one that could not be opened
