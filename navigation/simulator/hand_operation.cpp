@@ -202,11 +202,15 @@ struct HandOperation::State {
   }
 
   float exposure() const {
-    // A white surface at the tool stays below saturation, and the marker on the bone is not in the dark.
+    // A white surface at the tool stays below saturation, and the marker on the bone does, too, and is not in
+    // the dark.
     const HandState& now = control.state();
     const RigidTransform& tool = now.held == Held::Probe ? bone_from_probe : bone_from_guide;
-    const double away_mm = (now.bone_from_camera.inverse() * tool.translation_mm).norm();
-    const double used_mm = std::clamp(away_mm, 10.0, 40.0);
+    const auto away_mm = [&](const Vector3d& in_bone_mm) {
+      return (now.bone_from_camera.inverse() * in_bone_mm).norm();
+    };
+    const double nearer_mm = std::min(away_mm(tool.translation_mm), away_mm(bone_from_world.translation_mm));
+    const double used_mm = std::clamp(nearer_mm, 10.0, 40.0);
     return static_cast<float>(0.85 * used_mm * used_mm);
   }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "navigation/pipeline/navigation_pipeline.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/training/trainee.h"
 #include "planning/files/atomic_file.h"
@@ -55,6 +56,27 @@ TEST(ExerciseRun, ThePivotBeginsWithBothMarkersInView) {
     };
     const ExerciseSetup setup = standard_setup(*find_exercise("pivot"), Level::Easy, seed);
     EXPECT_EQ(run_exercise(setup, still).facts.unseen_s, 0) << seed;
+  }
+}
+
+// Where the probe is pulled away the light follows neither it nor whatever lies behind: the bone's marker,
+// which nobody has moved, is found as before.
+TEST(ExerciseRun, TheBonesMarkerIsSeenWhereverTheToolIs) {
+  int frames = 0;
+  simulator::HandInput away;
+  away.move = {1, 0, 0};
+  const simulator::Hand pulls = [&](const simulator::HandScene&, const simulator::HandState&) {
+    return frames++ < 75 ? std::optional(away) : std::nullopt;
+  };
+  const ExerciseSetup setup = standard_setup(*find_exercise("register"), Level::Easy, 1);
+  const theatre::TheatreSource source =
+      exercise_source(setup, pulls, std::make_shared<ExerciseWatch>(setup), false);
+  pipeline::NavigationPipeline tracking(source.setup.pipeline);
+  pipeline::FrameResult result;
+  const auto opened = source.open();
+  for (camera::FramePtr frame = opened->next(); frame != nullptr; frame = opened->next()) {
+    tracking.process(*frame, result);
+    EXPECT_TRUE(result.world_is_seen()) << frames;
   }
 }
 
