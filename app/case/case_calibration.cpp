@@ -86,12 +86,22 @@ std::string calibration_in_words(bool is_simulated, const fs::path& case_folder,
     for (const std::string& doubt : camera::read_camera_doubts(cases::camera_file(case_folder)))
       words += ", NOT RELIABLE: " + doubt;
   if (!is_any_calibrated) return words + "; tools nominal";
+  // Those of which the same is to be said stand together.
+  std::vector<std::pair<std::string, std::string>> calibrated;  // in words, their names
+  const auto add = [](std::string& names, const std::string& name) {
+    names += (names.empty() ? "" : ", ") + name;
+  };
   for (const NamedProvenance& tool : all.tools) {
-    if (tool.provenance.origin == provenance::Origin::Nominal)
-      nominal += (nominal.empty() ? "" : ", ") + tool.name;
-    else
-      words += "; " + tool.name + " " + in_words(tool.provenance, now_utc);
+    if (tool.provenance.origin == provenance::Origin::Nominal) {
+      add(nominal, tool.name);
+      continue;
+    }
+    const std::string how = in_words(tool.provenance, now_utc);
+    auto same = std::ranges::find(calibrated, how, &std::pair<std::string, std::string>::first);
+    if (same == calibrated.end()) same = calibrated.insert(calibrated.end(), {how, ""});
+    add(same->second, tool.name);
   }
+  for (const auto& [how, names] : calibrated) words += "; " + names + " " + how;
   return nominal.empty() ? words : words + "; nominal: " + nominal;
 }
 

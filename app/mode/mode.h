@@ -66,6 +66,8 @@ class Mode {
 
   // While true the screen must be drawn again soon: pictures or a result are to come, or something moves.
   [[nodiscard]] virtual bool is_busy() const { return false; }
+  // Live pictures are looked at too late to guide: the screen leaves them more of the processor's time.
+  [[nodiscard]] virtual bool pictures_are_late() const { return false; }
   // Something runs that the end of the program would cut off: ending it is then guarded.
   [[nodiscard]] virtual bool has_running_work() const { return false; }
   // A text field was opened in this frame and has not the keyboard yet.

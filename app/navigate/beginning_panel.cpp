@@ -10,15 +10,29 @@ namespace {
 
 constexpr float kSmaller = 0.94F;  // from one size of letters to the next
 
-// The names in small letters, what they say in letters for afar, under each other.
+// What a line's name takes of the same line as its text, where both fit; 0: it stands above, or there is
+// none.
+float width_beside(const widgets::Ui& ui, float width, const CardLine& line, float letters_px) {
+  if (line.name.empty()) return 0;
+  const ImFont* const name = ui.theme.title;
+  const float sign = line.severity == widgets::Severity::Quiet ? 0 : name->FontSize * 1.2F;
+  const float beside =
+      sign + name->CalcTextSizeA(name->FontSize, 1e9F, 0, line.name.c_str()).x + ui.theme.px(18);
+  return beside + ui.theme.afar->CalcTextSizeA(letters_px, 1e9F, 0, line.text.c_str()).x <= width ? beside
+                                                                                                  : 0;
+}
+
+// The names in small letters, what they say in letters for afar, beside or under them.
 float height_of(const widgets::Ui& ui, float width, const Card& card, float letters_px) {
-  float height = ui.theme.px(24);
+  float height = card.keys.empty() ? 0 : ui.theme.px(10);
   const auto add = [&](const std::string& words) {
     if (!words.empty()) height += ui.theme.afar->CalcTextSizeA(letters_px, 1e9F, width, words.c_str()).y;
   };
   add(card.title);
   for (const CardLine& line : card.lines) {
-    height += ui.theme.title->FontSize + ui.theme.px(8);
+    height += ui.theme.px(8);
+    const bool has_own_line = !line.name.empty() && width_beside(ui, width, line, letters_px) <= 0;
+    if (has_own_line) height += ui.theme.title->FontSize;
     add(line.text);
   }
   add(card.keys);
@@ -49,14 +63,20 @@ void draw_card(const widgets::Ui& ui, const widgets::Rect& area, const Card& car
   for (const CardLine& line : card.lines) {
     (void)box.cut_top(ui.theme.px(8));
     const bool is_quiet = line.severity == widgets::Severity::Quiet;
-    const float radius = name->FontSize * 0.4F;
+    const float radius = name->FontSize * 0.4F, beside = width_beside(ui, box.width, line, letters_px);
+    const float lower = beside > 0 ? (letters_px - name->FontSize) * 0.75F : 0;  // on the same base line
     if (!is_quiet)
-      widgets::draw_sign(draw, {box.x + radius, box.y + name->FontSize / 2}, radius, line.severity);
-    put(name, name->FontSize, widgets::kQuietText, line.name, is_quiet ? 0 : 3 * radius);
+      widgets::draw_sign(draw, {box.x + radius, box.y + lower + name->FontSize / 2}, radius, line.severity);
+    const float indent = is_quiet ? 0 : 3 * radius;
+    if (beside > 0)
+      draw.AddText(name, name->FontSize, {box.x + indent, box.y + lower}, widgets::kQuietText,
+                   line.name.c_str());
+    else
+      put(name, name->FontSize, widgets::kQuietText, line.name, indent);
     put(ui.theme.afar, letters_px, is_quiet ? widgets::kText : widgets::color_of(line.severity), line.text,
-        0);
+        beside);
   }
-  (void)box.cut_top(ui.theme.px(10));
+  if (!card.keys.empty()) (void)box.cut_top(ui.theme.px(10));
   put(ui.theme.afar, letters_px, widgets::kAccent, card.keys, 0);
   draw.PopClipRect();
 }

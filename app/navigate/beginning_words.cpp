@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <regex>
 
 #include "navigation/camera/medium.h"
 #include "planning/files/format.h"
@@ -31,6 +32,14 @@ std::string ago(std::chrono::system_clock::duration time) {
   if (minutes < 120) return count_of(static_cast<std::size_t>(minutes), "minute") + " ago";
   if (minutes < 48 * 60) return std::to_string(minutes / 60) + " hours ago";
   return std::to_string(minutes / (24 * 60)) + " days ago";
+}
+
+// How old something is says what its date does, in fewer letters: "camera measured, 4 days old". A date
+// without an age is today's.
+std::string without_dates(const std::string& words) {
+  static const std::regex kDated(" [0-9]{4}-[0-9]{2}-[0-9]{2}(, [0-9]+ days? old)"),
+      kToday(" [0-9]{4}-[0-9]{2}-[0-9]{2}(;|$)");
+  return std::regex_replace(std::regex_replace(words, kDated, "$1"), kToday, " today$1");
 }
 
 CardLine medium_line(const operation::OperationState& state) {
@@ -66,21 +75,22 @@ std::vector<CardLine> time_out_lines(const operation::OperationState& state, con
           medium_line(state)};
 }
 
+// What is asked, and how it is answered, stands above it as the next step.
 Card time_out_card(const operation::OperationState& state, const std::string& patient) {
-  const bool may_be_right = state.medium.fit != pipeline::MediumFit::Contradicts;
-  return {"navigate.time_out", "Time-out: is all of this right?", time_out_lines(state, patient),
-          may_be_right ? "Space: yes, all of it. Nothing guides before"
-                       : "The medium is not: hold Esc, then M for the other one. Nothing guides before"};
+  Card card{"navigate.time_out", "", time_out_lines(state, patient), ""};
+  for (CardLine& line : card.lines) {
+    if (line.topic != CardLine::Topic::CameraAndTools) continue;
+    line.name.clear();  // its text names them
+    line.text = without_dates(line.text);
+  }
+  return card;
 }
 
 Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedTunnel>& plan,
                  std::chrono::system_clock::time_point now) {
   const recording::Resumable& found = left.found;
   const operation::ResumeOperation& was = found.operation;
-  Card card{"navigate.resume",
-            "Resume the operation that was left?",
-            {},
-            "Space: resume    Page up or Esc: begin afresh"};
+  Card card{"navigate.resume", "", {}, "Page up or Esc: begin afresh"};
   card.lines.push_back({Severity::Quiet, "Session",
                         was.session + ", " + std::string(bones::to_text(found.header.bone)) + ", " +
                             (found.was_finished ? "ended " : "cut off ") + ago(now - found.last_written)});

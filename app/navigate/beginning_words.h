@@ -19,12 +19,12 @@ struct CardLine {
   std::string name, text;
   Topic topic = Topic::Other;
 };
-// A question over the picture, and the keys that answer it.
+// A question, which the next step asks in words, and what has to be read before it is answered.
 struct Card {
-  std::string name;  // for tests
-  std::string title;
+  std::string name;   // for tests
+  std::string title;  // may be empty
   std::vector<CardLine> lines;
-  std::string keys;
+  std::string keys;  // other answers than the pedal's; may be empty
 };
 
 // Patient, knee, plan, camera, tools and medium, in the order in which they are read out. `patient`: in

@@ -54,6 +54,41 @@ std::string words_of(NextAction action) {
 }
 
 namespace {
+bool needs_pictures(NextAction action) {
+  switch (action) {
+    case NextAction::ShowWorldMarker:
+    case NextAction::Draw:
+    case NextAction::GoOnDrawing:
+    case NextAction::CheckWorldMarker:
+    case NextAction::ConfirmByTouch:
+    case NextAction::VerifyByTouch:
+    case NextAction::SetControlPoint:
+    case NextAction::CheckControlPoint:
+    case NextAction::CheckGuide:
+    case NextAction::BringGuide:
+    case NextAction::FollowBullseye:
+      return true;
+    default:
+      return false;
+  }
+}
+}  // namespace
+
+std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction action) {
+  if (!needs_pictures(action)) return "";
+  switch (trouble) {
+    case theatre::SourceTrouble::NoPicture:
+      return "wait: no picture comes";
+    case theatre::SourceTrouble::Plain:
+      return "look after light and camera: the picture is plain";
+    case theatre::SourceTrouble::Frozen:
+      return "look after cable and camera: the picture is frozen";
+    default:
+      return "";
+  }
+}
+
+namespace {
 constexpr const char* kLooksOtherwise = "bone looks otherwise: ";
 }
 

@@ -19,6 +19,10 @@ namespace arthronaut::navigate {
 // found is of a place that nobody knows. To be placed anew; and what is then to be done.
 [[nodiscard]] bool must_place_anew(const operation::RegistrationState& registration);
 [[nodiscard]] std::string place_anew_words();
+// What to do instead of something that needs pictures while the source gives none that show anything; empty
+// where that is no hindrance.
+[[nodiscard]] std::string words_without_pictures(theatre::SourceTrouble trouble,
+                                                 operation::NextAction action);
 // Why a touch was not taken a moment ago; empty when it was, or when that is longer ago than it takes to
 // read.
 [[nodiscard]] std::string touch_notice(const operation::OperationState& state);

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "app/navigate/navigate_view.h"
+#include "app/navigate/overlay_lines.h"
 #include "app/navigate/picture_keeping.h"
 
 namespace arthronaut::navigate {
@@ -363,6 +364,18 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
                },
                {},
                [this] { ask(operation::ChooseRegistration{*registration().entry_in_force + 1}); }});
+}
+
+float NavigateView::overlay_opacity(double now_s) const {
+  if (!choices_.overlay_on) return 0;
+  return navigate::overlay_opacity(now_s - choices_.overlay_shown_at_s);
+}
+
+void NavigateView::cycle_overlay() {
+  const double now = theatre::LiveOperation::now_s();
+  const bool is_full = choices_.overlay_on && overlay_opacity(now) > 0.99F;
+  choices_.overlay_on = !is_full;
+  choices_.overlay_shown_at_s = now;
 }
 
 }  // namespace arthronaut::navigate

@@ -47,6 +47,27 @@ GuidanceState cause_of(const operation::OperationState& state) {
   }
 }
 
+// Rounded up, and no finer than can be read while it changes.
+std::string late_by(double age_s) {
+  return age_s < 1 ? widgets::fixed(std::ceil(10 * age_s) / 10, 1) + " s"
+                   : widgets::fixed(std::ceil(age_s), 0) + " s";
+}
+
+// Of pictures that come, late or not; empty: nothing is wrong with them but that.
+std::string headline_of(theatre::SourceTrouble trouble) {
+  using theatre::SourceTrouble;
+  switch (trouble) {
+    case SourceTrouble::Plain:
+      return "No picture";
+    case SourceTrouble::Frozen:
+      return "Picture frozen";
+    case SourceTrouble::Torn:
+      return "Picture torn";
+    default:
+      return "";
+  }
+}
+
 // Why nothing guides. True: it does not whatever the next pictures show, until somebody does something about
 // it.
 bool explain(NavigateDisplay& display, const theatre::LiveState& live) {
@@ -180,6 +201,13 @@ bool awaits_picture(const theatre::LiveState& live) {
   return live.phase == Phase::Starting || (live.phase == Phase::Running && live.picture == nullptr);
 }
 
+bool pictures_are_late(const theatre::LiveState& live) {
+  constexpr double kNearly = 0.7;  // what is left of the limit is a frame of the screen
+  if (live.phase != Phase::Running || live.picture == nullptr) return false;
+  return live.operation->source->kind == sources::SourceKind::Live &&
+         live.published_s - live.captured_s > kNearly * live.stale_after_s;
+}
+
 bool is_of_source_before(const theatre::LiveState& live) {
   return live.phase == Phase::Starting || (live.phase == Phase::Failed && live.picture == nullptr);
 }
@@ -187,8 +215,11 @@ bool is_of_source_before(const theatre::LiveState& live) {
 NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s) {
   constexpr double kHold_s = 2;
   if (live.phase == Phase::NoSource || since_guidance_s < kHold_s) return NavigateLayout::Guide;
-  const bool stands = live.operation->registration->in_force.standing == operation::Standing::Stands;
-  return stands && !live.operation->draws ? NavigateLayout::Guide : NavigateLayout::Register;
+  const operation::OperationState& state = *live.operation;
+  const bool stands = state.registration->in_force.standing == operation::Standing::Stands;
+  // Once it was aimed by it, strokes that may go on are not what is looked at.
+  const bool is_aimed_by = state.guided_lately || state.drilled.has_evidence;
+  return stands && (is_aimed_by || !state.draws) ? NavigateLayout::Guide : NavigateLayout::Register;
 }
 
 NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
@@ -222,10 +253,11 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
         live->trouble == theatre::SourceTrouble::None || live->trouble == theatre::SourceTrouble::Late;
     if (is_short && is_late_alone && explain(display, *live)) return display;
     // Pictures that come late all the while are no silence.
-    const std::string age =
-        is_short ? widgets::fixed(1000 * display.age_s, 0) + " ms" : widgets::fixed(display.age_s, 1) + " s";
     const bool come = is_short || live->trouble == theatre::SourceTrouble::Late;
-    display.headline = come ? "Picture " + age + " late" : "No new picture for " + age;
+    display.headline = is_short ? headline_of(live->trouble) : "";
+    if (display.headline.empty())
+      display.headline = come ? "Picture " + late_by(display.age_s) + " late"
+                              : "No new picture for " + widgets::fixed(std::floor(display.age_s), 0) + " s";
     display.detail = live->trouble_words.empty() ? "What you see is not live" : live->trouble_words;
     return display;
   }

@@ -32,6 +32,9 @@ struct NavigateDisplay {
 [[nodiscard]] bool is_under_way(const theatre::LiveState& live);
 // One is being opened, or is open and has given no picture yet: nothing can be asked of anybody.
 [[nodiscard]] bool awaits_picture(const theatre::LiveState& live);
+// Live pictures are nearly too old to guide, or older, by when they were looked at: the machine has too much
+// to do.
+[[nodiscard]] bool pictures_are_late(const theatre::LiveState& live);
 // What live.operation says is of the source before: the one that was started last is still being opened, or
 // could not be.
 [[nodiscard]] bool is_of_source_before(const theatre::LiveState& live);

@@ -28,6 +28,7 @@ struct NavigateScreen {
   bool undistorts = false;     // shows the picture without the lens' distortion
   std::string next_step = "";  // "register what was touched"
   bool pedal_acts = false;     // it is done by the pedal
+  bool is_exercise = false;    // it is an exercise's own, and no step of the operation
   Rail rail = {};
   std::optional<operation::Step> looked_at = std::nullopt;  // the surgeon went back to it
   std::optional<double> reached_for_s = std::nullopt;       // the guide has stood on the plan for so long

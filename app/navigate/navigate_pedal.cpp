@@ -75,6 +75,7 @@ std::string NavigateView::next_step() {
     return pictures ? "open " + pictures->name : "type the address of a stream, then Enter";
   }
   if (left_behind() != nullptr) return "resume the operation that was left";
+  if (const std::string own = lent_step(); !own.empty()) return own;
   if (choices_.looked_at)
     return words_of(repeat_of(*choices_.looked_at, *live_->operation), *choices_.looked_at);
   const NextAction action = live_->operation->next_action;
@@ -89,6 +90,7 @@ std::string NavigateView::next_step() {
   if (awaits_picture(*live_))
     return stops_once_open_ ? "wait: it stops once it is open" : "wait for the first picture";
   if (is_in_wrong_medium()) return "wrong medium: hold Esc, then M for the other one, then start again";
+  if (const std::string wait = words_without_pictures(); !wait.empty()) return wait;
   if (takes_guide_in_simulation()) return "take the guide (simulation)";
   if (action == NextAction::CheckWorldMarker && must_place_anew(registration())) return place_anew_words();
   if (action == NextAction::VerifyByTouch) return words_of_verifying(*live_->operation);
@@ -123,11 +125,12 @@ void NavigateView::take_next_step() {
   }
   if (resume_.is_looking()) return;
   if (left_behind() != nullptr) return resume();
+  if (!lent_step().empty()) return;
   if (const auto step = std::exchange(choices_.looked_at, std::nullopt)) return repeat_step(*step);
   if (choices_.goes_to_other_bone) return;
   if (tunnel_to_choose().empty() && finishes())
     return finish_step(finish_action(finished_bones(), choices_.bone, is_under_way(*live_)));
-  if (awaits_picture(*live_) || is_in_wrong_medium()) return;
+  if (awaits_picture(*live_) || is_in_wrong_medium() || !words_without_pictures().empty()) return;
   if (!bones_.guided(choices_.bone)) {
     if (!bones_.must_choose(choices_.bone)) go_elsewhere_(Elsewhere::Plan);
     return;
@@ -178,12 +181,13 @@ bool NavigateView::pedal_acts() {
   if (model_ == nullptr || resume_.is_looking() || choices_.goes_to_other_bone) return false;
   if (cameras_.is_open()) return cameras_.chosen().has_value();
   if (left_behind() != nullptr) return true;
+  if (!lent_step().empty()) return false;
   if (choices_.looked_at) return repeat_of(*choices_.looked_at, *live_->operation) != Repeat::NothingNow;
   if (!tunnel_to_choose().empty()) return false;
   if (finishes())
     return finish_action(finished_bones(), choices_.bone, is_under_way(*live_)) != FinishAction::Nothing &&
            was_read();
-  if (awaits_picture(*live_) || is_in_wrong_medium()) return false;
+  if (awaits_picture(*live_) || is_in_wrong_medium() || !words_without_pictures().empty()) return false;
   switch (live_->operation->next_action) {
     case NextAction::BringGuide:
       return takes_guide_in_simulation();
@@ -231,7 +235,7 @@ void NavigateView::take_step_back() {
   if (depth_.is_open()) return depth_.close();
   // What was offered can be had again: it is in the case, and is offered when the case is opened anew.
   if (left_behind() != nullptr) return decline_resume();
-  if (resume_.is_looking() || choices_.goes_to_other_bone) return;
+  if (resume_.is_looking() || choices_.goes_to_other_bone || !lent_step().empty()) return;
   choices_.looked_at = step_before(choices_.looked_at.value_or(step_of_now(rail())));
 }
 
@@ -265,6 +269,12 @@ bool NavigateView::simulates() const {
 // Nothing that is asked in it, the time-out with it, can be answered.
 bool NavigateView::is_in_wrong_medium() const {
   return is_running() && live_->operation->medium.fit == pipeline::MediumFit::Contradicts;
+}
+
+std::string NavigateView::words_without_pictures() const {
+  const NextAction action = live_->operation->next_action;
+  const bool needs_none = action == NextAction::CheckWorldMarker && must_place_anew(registration());
+  return is_running() && !needs_none ? navigate::words_without_pictures(live_->trouble, action) : "";
 }
 
 // The scripted surgeon holds the probe: the guide is taken by starting the other part of the script.

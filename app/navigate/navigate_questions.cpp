@@ -14,7 +14,10 @@ std::string rail_in_letters(const Rail& rail) {
 
 }  // namespace
 
-bool NavigateView::draw_questions(const widgets::Ui& ui, const widgets::Rect& area) {
+bool NavigateView::draw_questions(const widgets::Ui& ui, const TheatreLayout& layout) {
+  const widgets::Rect& area = layout.block;
+  // What is read out has the states' line, too: until it is confirmed nothing guides by them.
+  const widgets::Rect sheet{area.x, area.y, area.width, layout.states.y + layout.states.height - area.y};
   const operation::OperationState& state = *live_->operation;
   bool asks = true;
   if (const LeftBehind* const left = left_behind(); left != nullptr && !cameras_.is_open()) {
@@ -25,7 +28,7 @@ bool NavigateView::draw_questions(const widgets::Ui& ui, const widgets::Rect& ar
   } else if (state.has_source && !is_of_source_before(*live_) && state.time_out == operation::TimeOut::Due &&
              state.next_action == operation::NextAction::ConfirmTimeOut && !choices_.looked_at &&
              !finishes() && !waits_for_take_over() && !cameras_.is_open()) {
-    draw_card(ui, area, time_out_card(state, patient_));
+    draw_card(ui, sheet, time_out_card(state, patient_));
   } else if (finishes() && choices_.looked_at.value_or(operation::Step::Finish) == operation::Step::Finish &&
              !cameras_.is_open() && !depth_.is_open()) {
     draw_card(ui, area, {"navigate.finish", "Finish", finish_list(finished_bones()).lines, ""});

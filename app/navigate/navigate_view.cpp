@@ -7,7 +7,6 @@
 
 #include "app/case/case_calibration.h"
 #include "app/navigate/known_streams.h"
-#include "app/navigate/overlay_lines.h"
 #include "app/navigate/picture_keeping.h"
 #include "app/navigate/tracking_words.h"
 #include "app/scene/scene_camera.h"
@@ -160,10 +159,12 @@ std::string NavigateView::refusal_to_lend(bones::BoneKind bone) {
   return key ? missing_for_simulation(*model_, *key) : "there is no one planned tunnel to aim at";
 }
 
-void NavigateView::lend(bones::BoneKind bone, theatre::TheatreSource source) {
+void NavigateView::lend(bones::BoneKind bone, theatre::TheatreSource source,
+                        std::function<std::string()> next_step) {
   if (choices_.bone != bone) take_other_bone();
   start(std::move(source));
   is_lent_ = true;
+  lent_step_ = std::move(next_step);
 }
 
 const operation::OperationSetup* NavigateView::setup_in_use() const {
@@ -236,18 +237,6 @@ void NavigateView::type_address() {
 
 bool NavigateView::is_running() const { return live_->phase == Phase::Running; }
 
-float NavigateView::overlay_opacity(double now_s) const {
-  if (!choices_.overlay_on) return 0;
-  return navigate::overlay_opacity(now_s - choices_.overlay_shown_at_s);
-}
-
-void NavigateView::cycle_overlay() {
-  const double now = theatre::LiveOperation::now_s();
-  const bool is_full = choices_.overlay_on && overlay_opacity(now) > 0.99F;
-  choices_.overlay_on = !is_full;
-  choices_.overlay_shown_at_s = now;
-}
-
 bool NavigateView::is_busy() const {
   return is_under_way(*live_) || registration().is_fitting || heard_.waits_to_say() || cameras_.is_open();
 }
@@ -313,9 +302,13 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
   screen.selected_stroke = choices_.stroke;
   screen.undistorts = choices_.undistorts;
   screen.next_step = next_step();
+  screen.is_exercise = !lent_step().empty();
   choices_.note_next(screen.next_step, now_s);
   screen.pedal_acts = pedal_acts();
   screen.rail = rail();
+  if (screen.is_exercise)  // none of the operation's steps is to be done now
+    for (RailStep& step : screen.rail)
+      if (step.state == StepState::Now) step.state = StepState::Open;
   screen.looked_at = choices_.looked_at;
   screen.patient = patient_;
   follow_reached(display, now_s);
@@ -378,10 +371,14 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_rail(ui, layout.rail, screen);
   draw_words(ui, layout.words, screen);
   draw_states(ui, layout.states, screen);
-  const bool is_covered = choices_.shows_menu || draw_questions(ui, layout.block);
+  const bool is_covered = choices_.shows_menu || draw_questions(ui, layout);
   if (choices_.shows_menu) draw_menu(ui, layout.block, screen);
-  if (!is_covered || !layout.scene_is_in_block) scene_.draw(ui, layout.scene, screen);
-  if (!is_covered) {
+  // Where nothing is registered there is nobody to coach.
+  const bool is_all_scene =
+      screen.is_exercise && screen.layout == NavigateLayout::Register && layout.scene_is_in_block;
+  if (!is_covered || !layout.scene_is_in_block)
+    scene_.draw(ui, is_all_scene ? layout.block : layout.scene, screen);
+  if (!is_covered && !is_all_scene) {
     if (screen.layout == NavigateLayout::Guide) draw_bullseye(ui, layout.target, screen);
     if (screen.layout == NavigateLayout::Register)
       draw_registration(ui, layout.main, screen);

@@ -50,6 +50,7 @@ class NavigateView : public mode::Mode {
                                                        const widgets::Rect& window) const override;
   [[nodiscard]] bool is_busy() const override;
   [[nodiscard]] bool has_running_work() const override { return is_running(); }
+  [[nodiscard]] bool pictures_are_late() const override { return navigate::pictures_are_late(*live_); }
   [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
   [[nodiscard]] std::string notice() const override;
   [[nodiscard]] bool awaits_text() const override { return depth_.wants_focus() || cameras_.wants_text(); }
@@ -58,8 +59,8 @@ class NavigateView : public mode::Mode {
   // something runs, a real operation was begun in this case, or nothing can be simulated; empty: it can.
   [[nodiscard]] std::string refusal_to_lend(bones::BoneKind bone);
   // Precondition: refusal_to_lend() is empty. From here to the next case_opened() this mode starts nothing of
-  // its own, and says so.
-  void lend(bones::BoneKind bone, theatre::TheatreSource source);
+  // its own, and says so; while next_step says something, that is asked for and the pedals do nothing.
+  void lend(bones::BoneKind bone, theatre::TheatreSource source, std::function<std::string()> next_step);
   [[nodiscard]] const theatre::LiveStatePtr& live() const { return live_; }  // never null
   [[nodiscard]] const operation::OperationSetup* setup_in_use() const;       // null: no operation yet
   void ask(operation::Command command);
@@ -99,8 +100,9 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] bool finishes() const;  // all tunnels of this bone are drilled
   [[nodiscard]] bool takes_guide_in_simulation() const;
   [[nodiscard]] bool is_in_wrong_medium() const;
-  [[nodiscard]] bool must_set_up() const;  // before pictures can be navigated
-  [[nodiscard]] bool simulates() const;    // the source that is started next is the simulated operation
+  [[nodiscard]] std::string words_without_pictures() const;  // empty: what is next can be done
+  [[nodiscard]] bool must_set_up() const;                    // before pictures can be navigated
+  [[nodiscard]] bool simulates() const;  // the source that is started next is the simulated operation
   void take_touch(bool is_control_point);
   void add_registration_actions(widgets::Actions& actions);
   // Of two tunnels in one bone, which is drilled: tunnel_choice.cpp.
@@ -118,6 +120,7 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] bool refuses_while_lent();  // and says so
   void look_along_plan();
   [[nodiscard]] std::string next_step();
+  [[nodiscard]] std::string lent_step() const { return is_lent_ && lent_step_ ? lent_step_() : ""; }
   [[nodiscard]] bool can_simulate() const;
   [[nodiscard]] bool is_running() const;
   [[nodiscard]] const operation::RegistrationState& registration() const {
@@ -135,7 +138,7 @@ class NavigateView : public mode::Mode {
   void draw_menu(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
   // What asks something: an operation that was left, the cameras, the time-out, the depth stop, the check
   // list at the end. False: nothing does.
-  bool draw_questions(const widgets::Ui& ui, const widgets::Rect& area);
+  bool draw_questions(const widgets::Ui& ui, const TheatreLayout& layout);
 
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
@@ -160,10 +163,11 @@ class NavigateView : public mode::Mode {
   std::map<bones::BoneKind, sources::SourceKind> started_;  // the same, of each bone's
   sounds::SoundWatch heard_;
   sounds::Player player_;
-  bool stops_once_open_ = false;  // the source that is being opened is not wanted any more
-  bool end_was_asked_ = false;    // of the source that was started last
-  bool is_lent_ = false;          // what was started last is an exercise's
-  double refused_s_ = -1e9;       // when something was refused because of that
+  bool stops_once_open_ = false;            // the source that is being opened is not wanted any more
+  bool end_was_asked_ = false;              // of the source that was started last
+  bool is_lent_ = false;                    // what was started last is an exercise's
+  std::function<std::string()> lent_step_;  // with that; see lend()
+  double refused_s_ = -1e9;                 // when something was refused because of that
   std::string notice_;
 };
 

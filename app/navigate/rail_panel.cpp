@@ -76,7 +76,7 @@ void draw_words(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
   (void)inner.cut_left(ui.theme.px(20));
   widgets::Rect head = inner.cut_top(ui.theme.title->FontSize);
   const Step step = screen.looked_at.value_or(step_of_now(screen.rail));
-  std::string title = numbered(step);
+  std::string title = screen.is_exercise ? "Exercise" : numbered(step);
   if (is_back) title += ", once more";
   ImFont* const small = ui.theme.title;
   draw.AddText(small, small->FontSize, head.min(), is_back ? widgets::kCaution : widgets::kAccent,

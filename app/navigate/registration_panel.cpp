@@ -125,19 +125,23 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
     put(row.severity, is_quiet ? widgets::kText : widgets::color_of(row.severity), row.name + " " + row.text);
   };
   // A picture that is not of now, or a touch that was not taken, comes before everything else.
-  if (!screen.display.is_live || !screen.display.world_is_placed) {
+  const bool is_told = !screen.display.is_live || !screen.display.world_is_placed;
+  if (is_told) {
     const bool is_amiss = screen.display.has_picture;  // before there is one nothing is
     put(is_amiss ? widgets::Severity::Caution : widgets::Severity::Quiet,
         is_amiss ? widgets::kCaution : widgets::kText, screen.display.headline);
     put(widgets::Severity::Quiet, widgets::kText, screen.display.detail);
+    (void)rest.cut_top(ui.theme.px(12));
   }
   if (const std::string notice = screen.has_source() ? touch_notice(*screen.live->operation) : "";
       !notice.empty())
     put(widgets::Severity::Caution, widgets::kCaution, "No touch taken: " + notice);
   const SeverityText& state = words.state;
-  put(state.severity,
-      state.severity == widgets::Severity::Quiet ? widgets::kText : widgets::color_of(state.severity),
-      state.name);
+  // That strokes are collected is no word to put behind why none can be.
+  if (!is_told || state.severity != widgets::Severity::Quiet)
+    put(state.severity,
+        state.severity == widgets::Severity::Quiet ? widgets::kText : widgets::color_of(state.severity),
+        state.name);
   if (rest.height > ui.theme.px(24)) {
     ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(24)).min());
     ImGui::BeginChild("navigate.progress", {rest.width, ui.theme.px(18)}, false,

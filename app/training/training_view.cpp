@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/case/exercise_case.h"
+#include "navigation/training/exercise_step.h"
 #include "planning/files/utc_clock.h"
 #include "planning/phantom/phantom_case.h"
 
@@ -238,7 +239,11 @@ void TrainingView::start() {
   theatre::TheatreSource source =
       training::exercise_source(run_->setup, run_->inbox->hand(run_->inbox), run_->watch, true);
   run_->source = source.setup;
-  theatre_.start(exercise.bone, std::move(source));
+  theatre_.start(exercise.bone, std::move(source),
+                 [watch = run_->watch, goal = exercise.goal, live = theatre_.live]() -> std::string {
+                   const auto truth = watch->log()->newest();
+                   return truth ? training::exercise_step(goal, *live()->operation, truth->hand) : "";
+                 });
 }
 
 // Something else has the theatre: it is not ended, asked or wiped from here.

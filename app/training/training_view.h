@@ -36,7 +36,10 @@ struct Theatre {
   std::function<std::string(bones::BoneKind bone)> refusal;
   // Begins with nothing known of what was done there before.
   std::function<void(const mode::OpenCase& opened)> begin_anew;
-  std::function<void(bones::BoneKind bone, theatre::TheatreSource source)> start;
+  // next_step: what the exercise asks of its trainee now; empty: what the operation asks.
+  std::function<void(bones::BoneKind bone, theatre::TheatreSource source,
+                     std::function<std::string()> next_step)>
+      start;
   std::function<theatre::LiveStatePtr()> live;              // never null
   std::function<const operation::OperationSetup*()> setup;  // of the operation that was started; null: none
   std::function<void(operation::Command command)> ask;

@@ -12,20 +12,27 @@ class DrawPace {
   // the hand's. Frames that take longer than kInterval_s * kShare follow each other every kInterval_s all the
   // same, or as soon as they can: a screen that falls behind is no safer.
   static constexpr double kShare = 0.6, kInterval_s = 0.04;
+  // While pictures are looked at too late the screen gives way to them, frame by frame down to this: a screen
+  // of a third of its rate with guidance is worth more than a quick one without.
+  static constexpr double kLeastShare = 0.2;
 
   // by_processor false: a graphics card draws, nothing waits.
   explicit DrawPace(bool by_processor) : by_processor_(by_processor) {}
 
-  void drawn(double begun_s, double shown_s) {
+  // pictures_are_late: they guide nobody, or are about to.
+  void drawn(double begun_s, double shown_s, bool pictures_are_late = false) {
     if (!by_processor_) return;
-    due_s_ = begun_s + std::clamp((shown_s - begun_s) / kShare, 0.0, kInterval_s);
+    // Taken back slowly, so that the screen does not swing between too much and too little.
+    constexpr double kGiven = 0.9, kTakenBack = 0.004;
+    share_ = std::clamp(pictures_are_late ? share_ * kGiven : share_ + kTakenBack, kLeastShare, kShare);
+    due_s_ = begun_s + std::clamp((shown_s - begun_s) / share_, 0.0, kInterval_s * kShare / share_);
   }
   // A frame for which only news ask begins no sooner; one that a hand asks for begins at once.
   [[nodiscard]] double due_s() const { return due_s_; }
 
  private:
   bool by_processor_;
-  double due_s_ = -1e9;
+  double share_ = kShare, due_s_ = -1e9;
 };
 
 // Whether something that moves all the time is drawn anew in this frame: where the processor draws, kRate

@@ -259,9 +259,9 @@ void GraphicsWindow::draw_frame() {
   state_->drawing.draw();
 }
 
-void GraphicsWindow::show_frame() {
+void GraphicsWindow::show_frame(bool pictures_are_late) {
   state_->drawing.show();
-  state_->pace.drawn(state_->begun_s, glfwGetTime());
+  state_->pace.drawn(state_->begun_s, glfwGetTime(), pictures_are_late);
 }
 
 long GraphicsWindow::drawn_px() const { return state_->drawing.drawn_px(); }

@@ -34,7 +34,8 @@ class GraphicsWindow {
   // input or wake() cut the wait for it short.
   bool begin_frame(double timeout_s);
   void draw_frame();
-  void show_frame();
+  // pictures_are_late: the next frames leave them more time (DrawPace).
+  void show_frame(bool pictures_are_late = false);
   [[nodiscard]] long drawn_px() const;  // in the last frame: where the processor draws, what changed
   // A text field is about to take the keyboard: what is typed waits for it, a few frames at most.
   void await_text_field();

@@ -1,6 +1,8 @@
 // Keys for where the screen is shown: on two screens, as a picture, as a video, as a stream.
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
+
 #include "app/window/workstation_window.h"
 
 namespace arthronaut::window {
@@ -64,7 +66,8 @@ void WorkstationWindow::end_frame(double now_s) {
   }
   {
     const widgets::WidgetLog::Timed timed(log_, "swap_ms");
-    window_.show_frame();
+    window_.show_frame(std::any_of(modes_.begin(), modes_.end(),
+                                   [](const auto& mode) { return mode->pictures_are_late(); }));
   }
   log_.add("drawn_px", static_cast<double>(window_.drawn_px()));
   shown().on_screen();

@@ -47,8 +47,11 @@ void WorkstationWindow::make_modes() {
           .screen = screen,
           .refusal = [screen](bones::BoneKind bone) { return screen->refusal_to_lend(bone); },
           .begin_anew = [screen](const mode::OpenCase& opened) { screen->case_opened(opened); },
-          .start = [screen](bones::BoneKind bone,
-                            theatre::TheatreSource source) { screen->lend(bone, std::move(source)); },
+          .start =
+              [screen](bones::BoneKind bone, theatre::TheatreSource source,
+                       std::function<std::string()> next_step) {
+                screen->lend(bone, std::move(source), std::move(next_step));
+              },
           .live = [screen] { return screen->live(); },
           .setup = [screen] { return screen->setup_in_use(); },
           .ask = [screen](operation::Command command) { screen->ask(std::move(command)); },

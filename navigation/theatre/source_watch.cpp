@@ -9,7 +9,7 @@ namespace {
 // Three pictures of a slow source (10 a second); half a second is what may pass until it is told.
 constexpr std::int64_t kSilence_ns = 300'000'000;
 // What is over in a moment is on the screen long enough to be read.
-constexpr std::int64_t kReadable_ns = 2'000'000'000;
+constexpr std::int64_t kReadable_ns = 2'000'000'000, kSaidAnew_ns = 1'000'000'000;
 // Sources of 30 pictures a second that are sent 60 times repeat half of them, and are none the worse for it.
 constexpr double kTooManyRepeats = 0.6;
 
@@ -64,8 +64,10 @@ bool SourceWatch::picture(const pipeline::PictureObservation& view, double guida
     return set(SourceTrouble::Frozen,
                "The source sends the same picture again and again: check cable and camera");
   if (was_late_) {
-    // The words change with the number only when it is said anew.
-    if (trouble_ == SourceTrouble::Late && late_ns_ != now_ns) return false;
+    // The words change with the number only when it is said anew: once a second can be read.
+    if (trouble_ == SourceTrouble::Late && (late_ns_ != now_ns || now_ns - late_said_ns_ < kSaidAnew_ns))
+      return false;
+    late_said_ns_ = now_ns;
     return set(SourceTrouble::Late,
                files::format("Pictures are late: %.0f ms from capture to guidance, %.0f ms may pass",
                              late_ms_, late_after_ms_));

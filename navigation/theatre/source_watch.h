@@ -39,7 +39,7 @@ class SourceWatch {
   double late_after_ms_ = 100;
   SourceTrouble trouble_ = SourceTrouble::None;
   std::string words_;
-  std::int64_t last_picture_ns_ = 0, torn_ns_ = 0, late_ns_ = 0;
+  std::int64_t last_picture_ns_ = 0, torn_ns_ = 0, late_ns_ = 0, late_said_ns_ = 0;
   double late_ms_ = 0;
   bool has_begun_ = false, was_torn_ = false, was_late_ = false;
 };

@@ -36,6 +36,23 @@ TEST(NavigateDisplay, EveryInvalidStateHidesTheNumbersAndSaysWhy) {
   }
 }
 
+// By when they were looked at, not by when they are shown: a slow screen alone takes nothing from them.
+TEST(NavigateDisplay, Hazard34TellsThatTheMachineIsLateWithThePictures) {
+  const auto is_late = [](double age_s, const auto& change) {
+    Shown shown;
+    shown.live.published_s = shown.live.captured_s + age_s;
+    change(shown);
+    return pictures_are_late(shown.whole());
+  };
+  const auto nothing = [](Shown&) {};
+  EXPECT_FALSE(is_late(0.05, nothing));
+  EXPECT_TRUE(is_late(0.08, nothing)) << "of the 100 ms that may pass until it is on the screen";
+  EXPECT_TRUE(is_late(0.5, nothing));
+  EXPECT_FALSE(is_late(0.5, [](Shown& s) { s.source.kind = sources::SourceKind::Recording; }));
+  EXPECT_FALSE(is_late(0.5, [](Shown& s) { s.live.phase = Phase::Ended; }));
+  EXPECT_FALSE(is_late(0.5, [](Shown& s) { s.live.picture = nullptr; }));
+}
+
 // A pose that does not stand takes the overlay with it, even where guidance claims to be valid.
 TEST(NavigateDisplay, OverlayNeedsThePoseOfThisFrame) {
   const auto lost =
@@ -112,6 +129,9 @@ TEST(NavigateDisplay, TheLayoutFollowsWhatIsDone) {
   EXPECT_EQ(layout_of(shown.whole(), 0.5), NavigateLayout::Guide);
   shown.stand(Standing::Stands, {});
   EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Register) << "the probe still draws";
+  shown.operation.drilled.has_evidence = true;
+  EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Guide) << "it was aimed by";
+  shown.operation.drilled.has_evidence = false;
   shown.operation.draws = false;
   EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Guide);
 }

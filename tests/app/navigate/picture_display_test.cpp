@@ -16,7 +16,7 @@ TEST(NavigateDisplay, AnOldPictureIsNotLive) {
   const NavigateDisplay display = display_after([](Shown& shown) { shown.live.captured_s = kNow_s - 2; });
   EXPECT_TRUE(display.has_picture);
   EXPECT_FALSE(display.is_live || display.overlay_is_valid || display.guidance_is_valid);
-  EXPECT_EQ(display.headline, "No new picture for 2.0 s");
+  EXPECT_EQ(display.headline, "No new picture for 2 s");
 }
 
 // Both are said of the source that was started last: while it is opened it has to be stopped like one that
@@ -117,12 +117,12 @@ TEST(NavigateDisplay, Hazard3ALatePictureIsNotLive) {
   EXPECT_TRUE(aged(0.09, 0.1).guidance_is_valid);
   const NavigateDisplay late = aged(0.25, 0.1);
   EXPECT_FALSE(late.is_live || late.overlay_is_valid || late.guidance_is_valid);
-  EXPECT_EQ(late.headline, "Picture 250 ms late");
+  EXPECT_EQ(late.headline, "Picture 0.3 s late");
   const NavigateDisplay behind = display_after([](Shown& shown) {
     shown.live.captured_s = kNow_s - 1.7;
     shown.live.trouble = theatre::SourceTrouble::Late;
   });
-  EXPECT_EQ(behind.headline, "Picture 1.7 s late") << "pictures come, and are old";
+  EXPECT_EQ(behind.headline, "Picture 2 s late") << "pictures come, and are old";
   EXPECT_TRUE(aged(0.25, 2).guidance_is_valid);
 }
 
@@ -157,7 +157,7 @@ TEST(NavigateDisplay, Hazard27ALastingReasonIsNotCoveredByALatePicture) {
   const auto due = [](Shown& shown) { shown.operation.time_out = operation::TimeOut::Due; };
   EXPECT_EQ(late(0.25, due).headline, "Time-out not confirmed");
 
-  EXPECT_EQ(late(1.5, wrong_medium).headline, "No new picture for 1.5 s");
+  EXPECT_EQ(late(1.5, wrong_medium).headline, "No new picture for 1 s");
   const auto broken = [&](Shown& shown) {
     wrong_medium(shown);
     shown.live.trouble = theatre::SourceTrouble::NoPicture;
@@ -167,12 +167,20 @@ TEST(NavigateDisplay, Hazard27ALastingReasonIsNotCoveredByALatePicture) {
   const auto lost = [](Shown& shown) {
     shown.operation.frame.guidance.state = GuidanceState::WorldMarkerLost;
   };
-  EXPECT_EQ(late(0.25, lost).headline, "Picture 250 ms late");
+  EXPECT_EQ(late(0.25, lost).headline, "Picture 0.3 s late");
+  // What is wrong with the pictures themselves comes before that they are late.
+  const auto hangs = [&](Shown& shown) {
+    shown.live.trouble = theatre::SourceTrouble::Frozen;
+    shown.live.trouble_words = "The source sends the same picture again and again";
+  };
+  EXPECT_EQ(late(0.25, hangs).headline, "Picture frozen");
+  EXPECT_EQ(late(0.25, hangs).detail, "The source sends the same picture again and again");
+  EXPECT_EQ(late(1.5, hangs).headline, "No new picture for 1 s");
   const auto frozen = [&](Shown& shown) {
     wrong_medium(shown);
     shown.operation.frame.is_frozen = true;
   };
-  EXPECT_EQ(late(0.25, frozen).headline, "Picture 250 ms late");
+  EXPECT_EQ(late(0.25, frozen).headline, "Picture 0.3 s late");
 }
 
 }  // namespace

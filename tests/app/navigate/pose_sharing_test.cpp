@@ -107,7 +107,7 @@ TEST_F(PoseSharingTest, Hazard3ALatePictureIsNotSentAsLive) {
   sharing_.tell(live);
   const std::vector<std::string> heard = listener_.until_status();
   ASSERT_EQ(heard.size(), 1U);
-  EXPECT_TRUE(heard.front().starts_with("STATUS: No new picture for 100.")) << heard.front();
+  EXPECT_TRUE(heard.front().starts_with("STATUS: No new picture for 100 s")) << heard.front();
   live.phase = Phase::Ended;
   sharing_.tell(live);
   EXPECT_EQ(listener_.until_status(), std::vector<std::string>{"STATUS: The pictures have ended"});

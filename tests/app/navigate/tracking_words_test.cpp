@@ -10,6 +10,22 @@
 namespace arthronaut::navigate {
 namespace {
 
+// Nobody is told to bring a marker into a picture that stands still; what needs no picture goes on.
+TEST(WordsWithoutPictures, TakeThePlaceOfWhatNeedsThem) {
+  using operation::NextAction;
+  using theatre::SourceTrouble;
+  EXPECT_EQ(words_without_pictures(SourceTrouble::NoPicture, NextAction::GoOnDrawing),
+            "wait: no picture comes");
+  EXPECT_EQ(words_without_pictures(SourceTrouble::Frozen, NextAction::ShowWorldMarker),
+            "look after cable and camera: the picture is frozen");
+  EXPECT_NE(words_without_pictures(SourceTrouble::Plain, NextAction::FollowBullseye), "");
+  for (const SourceTrouble trouble : {SourceTrouble::None, SourceTrouble::Late, SourceTrouble::Torn})
+    EXPECT_EQ(words_without_pictures(trouble, NextAction::GoOnDrawing), "");
+  for (const NextAction action :
+       {NextAction::ConfirmTimeOut, NextAction::RegisterStrokes, NextAction::RecordDrilled})
+    EXPECT_EQ(words_without_pictures(SourceTrouble::NoPicture, action), "");
+}
+
 using widgets::Severity;
 using Phase = theatre::LiveState::Phase;
 

@@ -85,22 +85,29 @@ class TrainingViewTest : public ::testing::Test {
   Screen screen_;
   theatre::LiveStatePtr live_;
   std::optional<theatre::TheatreSource> source_;
+  std::function<std::string()> next_step_;
   std::shared_ptr<const operation::SourceSetup> own_;
   std::vector<operation::Command> asked_;
   int ended_ = 0, begun_anew_ = 0;
   double now_s_ = 0;
   widgets::Actions actions_;
-  TrainingView view_{{.screen = &screen_,
-                      .refusal = [](bones::BoneKind) { return std::string(); },
-                      .begin_anew = [this](const mode::OpenCase&) { ++begun_anew_; },
-                      .start = [this](bones::BoneKind, theatre::TheatreSource source) { source_ = source; },
-                      .live = [this] { return live_; },
-                      .setup = [this] { return &setup_; },
-                      .ask = [this](operation::Command command) { asked_.push_back(std::move(command)); },
-                      .end = [this] { ++ended_; }},
-                     [](const widgets::Ui&, const widgets::Rect& area, const calibration::CalibrateStatus&,
-                        float) { return area; },
-                     folder_ / "training.json"};
+  TrainingView view_{
+      {.screen = &screen_,
+       .refusal = [](bones::BoneKind) { return std::string(); },
+       .begin_anew = [this](const mode::OpenCase&) { ++begun_anew_; },
+       .start =
+           [this](bones::BoneKind, theatre::TheatreSource source, std::function<std::string()> next_step) {
+             source_ = source;
+             next_step_ = std::move(next_step);
+           },
+       .live = [this] { return live_; },
+       .setup = [this] { return &setup_; },
+       .ask = [this](operation::Command command) { asked_.push_back(std::move(command)); },
+       .end = [this] { ++ended_; }},
+      [](const widgets::Ui&, const widgets::Rect& area, const calibration::CalibrateStatus&, float) {
+        return area;
+      },
+      folder_ / "training.json"};
 };
 
 TEST_F(TrainingViewTest, WhatIsKnownIsGivenToItsOwnSourceAsOfASimulation) {
@@ -110,6 +117,15 @@ TEST_F(TrainingViewTest, WhatIsKnownIsGivenToItsOwnSourceAsOfASimulation) {
   ASSERT_EQ(asked_.size(), 2U);
   EXPECT_EQ(std::get<operation::GiveRegistration>(asked_[0]).of.source, sources::SourceKind::Simulation);
   EXPECT_TRUE(view_.has_running_work());
+}
+
+// What the operation would ask for next is no part of aiming.
+TEST_F(TrainingViewTest, AsksForTheStepsOfTheExercise) {
+  begin();
+  EXPECT_EQ(next_step_(), "") << "nothing is in anybody's hand yet";
+  open_own();
+  holds(own_);
+  EXPECT_EQ(next_step_(), "bring the guide into view");
 }
 
 TEST_F(TrainingViewTest, Hazard40NothingIsGivenToAnotherSource) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace arthronaut::widgets {
 namespace {
 
@@ -23,6 +25,28 @@ TEST(DrawPace, Hazard34NeverSlowsTheScreenBelowItsRate) {
   EXPECT_NEAR(pace.due_s(), 10.040, 1e-9);
   pace.drawn(10.040, 10.200);
   EXPECT_LE(pace.due_s(), 10.200) << "at once";
+}
+
+// A screen whose frames take 30 ms: pictures that come late get more of the time within half a second, and it
+// is the screen's again once they do not.
+TEST(DrawPace, Hazard34GivesWayToPicturesThatAreLate) {
+  DrawPace pace(true);
+  double now_s = 10;
+  const auto frames_in = [&](double seconds, bool pictures_are_late) {
+    int frames = 0;
+    for (const double until_s = now_s + seconds; now_s < until_s; ++frames) {
+      const double begun_s = std::max(now_s, pace.due_s());
+      now_s = begun_s + 0.03;
+      pace.drawn(begun_s, now_s, pictures_are_late);
+    }
+    return frames;
+  };
+  EXPECT_NEAR(frames_in(2, false), 50, 2);
+  (void)frames_in(0.5, true);
+  EXPECT_LE(frames_in(2, true), 20);
+  EXPECT_GE(frames_in(2, true), 16) << "it goes on moving";
+  (void)frames_in(8, false);
+  EXPECT_NEAR(frames_in(2, false), 50, 2);
 }
 
 TEST(DrawPace, AGraphicsCardNeverWaits) {

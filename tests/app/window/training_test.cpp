@@ -47,6 +47,8 @@ TEST_F(WorkstationTraining, AnExerciseIsDoneByHandAndScored) {
   ASSERT_TRUE(app.wait_for_state("train_page", "running"));
   ASSERT_TRUE(app.wait_for_state("train_hand", "guide", 120));
   EXPECT_TRUE(app.wait_for_state("source_kind", "SIMULATION"));
+  EXPECT_TRUE(app.wait_for_state("next", "follow the bullseye; on the plan: Enter, done", 60));
+  EXPECT_EQ(app.state("pedal"), "waits");
   EXPECT_TRUE(app.wait_for_state("train_moved", "no"));
   EXPECT_TRUE(app.hold_until("d", "train_moved", "yes"));
   app.press("Return");

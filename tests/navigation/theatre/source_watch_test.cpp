@@ -97,6 +97,19 @@ TEST_F(SourceWatchTest, LatePicturesAreAnAlarm) {
   EXPECT_EQ(watch_.trouble(), SourceTrouble::None);
 }
 
+// By how much is said in words that stand for long enough to be read.
+TEST_F(SourceWatchTest, HowLateIsSaidOnceASecond) {
+  std::string before;
+  int said = 0;
+  for (int i = 0; i < 120; ++i) {
+    pictures(well_, 17, 120 + i);
+    if (watch_.words() != before) ++said;
+    before = watch_.words();
+  }
+  EXPECT_GE(said, 2);
+  EXPECT_LE(said, 4);
+}
+
 // 30 pictures a second sent as 60 are no trouble; 15 sent as 60 are.
 TEST_F(SourceWatchTest, RepeatsAreSaidWhenTheyAreMost) {
   pipeline::PictureObservation view;
