@@ -7,20 +7,6 @@
 
 namespace arthronaut::importing {
 
-namespace {
-
-// The direction in which it lies from the middle of the bone, along the patient's axes.
-std::string where(const Eigen::Vector3d& from_middle_mm) {
-  Eigen::Index axis = 0;
-  from_middle_mm.cwiseAbs().maxCoeff(&axis);
-  const bool is_positive = from_middle_mm[axis] > 0;
-  if (axis == 0) return is_positive ? "on the patient's left" : "on the patient's right";
-  if (axis == 1) return is_positive ? "behind" : "in front";
-  return is_positive ? "above" : "below";
-}
-
-}  // namespace
-
 BoneQuality quality_of(const ImportedBone& made, double labelled_ml, const images::Volume& images) {
   const segmentation::DarkRim rim = segmentation::rim_outside(made.bone.mesh, images);
   return {.kind = made.bone.kind,
@@ -30,7 +16,6 @@ BoneQuality quality_of(const ImportedBone& made, double labelled_ml, const image
           .edges_not_manifold = made.repair.edges_not_manifold,
           .triangles = made.repair.triangles_now,
           .cortex_outside_mm = rim.is_seen() ? rim.thickness_mm : 0,
-          .surface_middle_mm = geometry::bounds_of(made.bone.mesh).center_mm(),
           .beneath = segmentation::bone_beneath(made.bone.mesh, images),
           .doubts = made.doubts};
 }
@@ -38,7 +23,7 @@ BoneQuality quality_of(const ImportedBone& made, double labelled_ml, const image
 std::string leak_doubt(const BoneQuality& quality) {
   if (quality.beneath.outcome != segmentation::BoneBeneath::Outcome::NotEverywhere) return "";
   return files::format("no bone is seen beneath %.0f cm\u00B2 of the surface, ", quality.beneath.area_cm2) +
-         where(quality.beneath.center_mm - quality.surface_middle_mm) + ": has it run into soft tissue?";
+         quality.beneath.reason + ": has it run into soft tissue?";
 }
 
 std::vector<QualityLine> quality_lines(const BoneQuality& quality) {

@@ -21,7 +21,6 @@ struct BoneQuality {
   // Of an MR: so thick a rim, dark as cortex is, lies outside of the surface (segmentation/dark_rim.h); 0
   // where none is seen.
   double cortex_outside_mm = 0;
-  Eigen::Vector3d surface_middle_mm = Eigen::Vector3d::Zero();  // of its box
   segmentation::BoneBeneath beneath;  // whether bone lies beneath all of the surface
   std::vector<std::string> doubts;    // of the mesh and of its shape; empty: nothing speaks against it
 };

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -208,6 +209,20 @@ void measure_patch(const geometry::TriangleMesh& mesh, const Vertices& vertices,
   }
 }
 
+// On which sides of the bone's middle, along the patient's axes.
+std::string place_of(const Vector3d& at_mm, const geometry::Bounds& bone) {
+  constexpr double kAside = 1.0 / 3;  // of half the bone
+  constexpr std::array<std::array<const char*, 2>, 3> kSides{
+      {{"on the patient's right", "on the patient's left"}, {"in front", "behind"}, {"below", "above"}}};
+  const Vector3d share = (at_mm - bone.center_mm()).cwiseQuotient(0.5 * bone.size_mm());
+  std::string words;
+  for (const std::size_t axis : {1U, 0U, 2U}) {
+    const double along = share[static_cast<Eigen::Index>(axis)];
+    if (std::abs(along) > kAside) words += (words.empty() ? "" : ", ") + std::string(kSides[axis][along > 0]);
+  }
+  return words.empty() ? "in its middle" : words;
+}
+
 BoneBeneath not_checked(std::string reason) {
   BoneBeneath found;
   found.reason = std::move(reason);
@@ -256,10 +271,12 @@ BoneBeneath bone_beneath(const geometry::TriangleMesh& surface, const images::Vo
   }
   BoneBeneath found = not_checked(blind);
   measure_patch(surface, vertices, is_without, found);
-  if (found.area_cm2 >= kLeastLeak_cm2)
+  if (found.area_cm2 >= kLeastLeak_cm2) {
     found.outcome = Outcome::NotEverywhere;
-  else if (blind.empty())
+    found.reason = place_of(found.center_mm, geometry::bounds_of(surface));
+  } else if (blind.empty()) {
     found.outcome = Outcome::Everywhere;
+  }
   return found;
 }
 

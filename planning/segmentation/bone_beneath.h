@@ -19,7 +19,8 @@ struct BoneBeneath {
   enum class Outcome { NotChecked, Everywhere, NotEverywhere } outcome = Outcome::NotChecked;
   double area_cm2 = 0;                                  // of the largest patch without bone beneath
   Eigen::Vector3d center_mm = Eigen::Vector3d::Zero();  // of that patch; LPS
-  std::string reason = "bone_beneath was not called";   // NotChecked: why, for a person
+  // NotChecked: why; NotEverywhere: where that is, as "behind, below". For a person.
+  std::string reason = "bone_beneath was not called";
 };
 
 // A patch of this area and more is told.

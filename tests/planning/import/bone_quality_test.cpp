@@ -51,8 +51,7 @@ TEST(BoneQuality, SaysWhereNoBoneLiesBeneathTheSurface) {
   EXPECT_EQ(leak_doubt(quality), "");
   quality.beneath = {.outcome = segmentation::BoneBeneath::Outcome::NotEverywhere,
                      .area_cm2 = 12.3,
-                     .center_mm = {10, 42, 5}};
-  quality.surface_middle_mm = {0, 20, 0};
+                     .reason = "behind, below"};
   EXPECT_EQ(beneath().verdict, QualityVerdict::Caution);
   EXPECT_THAT(beneath().text, testing::AllOf(HasSubstr("12 cm"), HasSubstr("behind")));
   EXPECT_EQ(leak_doubt(quality), beneath().text);

@@ -69,6 +69,7 @@ TEST(BoneBeneath, Hazard50IsEverywhereBeneathAWholeFemurOfACtAndNotBeneathALump)
   const BoneBeneath leaking = look();
   EXPECT_EQ(leaking.outcome, Outcome::NotEverywhere) << leaking.area_cm2 << leaking.reason;
   EXPECT_LT((leaking.center_mm - painted.lump_mm).norm(), 2 * kLump_mm);
+  EXPECT_THAT(leaking.reason, testing::StartsWith("behind"));
 }
 
 TEST(BoneBeneath, Hazard50TellsMarrowFromMuscleInAnMrThatIsBrighterOnOneSide) {
