@@ -9,8 +9,6 @@ namespace arthronaut::worker {
 namespace {
 
 struct Slow {
-  explicit Slow(std::shared_future<void> until, std::atomic<int>& gone)
-      : until(std::move(until)), gone(gone) {}
   ~Slow() {
     until.wait();
     ++gone;
