@@ -77,7 +77,7 @@ TEST_F(PlanCommand, KeepsWhatADefaultTakesThePlaceOf) {
   const tunnels::Tunnel by_hand = knee_.plan.tunnels.at(bones::BoneKind::Femur);
   const auto first = run({"plan", "--bone", "femur", "--default"});
   EXPECT_THAT(first.output, HasSubstr("kept as version 1, --take 1 brings it back"));
-  EXPECT_THAT(first.output, HasSubstr("femur: entry "));
+  EXPECT_THAT(first.output, HasSubstr("femur: turned by "));
   EXPECT_THAT(first.output, HasSubstr("default    at the native footprint ["));
   EXPECT_THAT(run({"plan", "--bone", "femur", "--default"}).output, Not(HasSubstr("kept as version")));
   EXPECT_EQ(run({"plan", "--take", "1"}).exit_code, 0);
