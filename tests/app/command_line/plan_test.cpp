@@ -188,7 +188,7 @@ TEST_F(PlanCommand, VersionsAreKeptComparedAndTaken) {
   EXPECT_EQ(run({"plan", "--bone", "tibia", "--default"}).exit_code, 0);
   const auto listed = run({"plan", "--versions"});
   EXPECT_THAT(listed.output, HasSubstr("femur: the same"));
-  EXPECT_THAT(listed.output, HasSubstr("tibia: entry "));
+  EXPECT_THAT(listed.output, HasSubstr("tibia: turned by "));
   const auto unknown = run({"plan", "--take", "7"});
   EXPECT_EQ(unknown.exit_code, 3);
   EXPECT_THAT(unknown.errors, HasSubstr("no version 7"));
