@@ -94,8 +94,12 @@ void CaseList::draw_head(const widgets::Ui& ui, widgets::Rect head) {
     ImGui::SetKeyboardFocusHere();
     view_.focus = Focus::None;
   }
-  if (ImGui::InputTextWithHint("##search", "Search (F): name, note, side, 2026-01, drilled\u2026",
-                               &view_.query.words)) {
+  const bool is_typed = ImGui::InputTextWithHint(
+      "##search", "Search (F): name, note, side, 2026-01, drilled\u2026", &view_.query.words);
+  // Escape alone would bring back what was there before.
+  const bool is_cleared = ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGuiKey_Escape);
+  if (is_cleared) view_.query.words.clear();
+  if (is_typed || is_cleared) {
     view_.has_chosen = false;
     filter();
   }

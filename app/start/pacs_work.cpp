@@ -39,7 +39,8 @@ void find(const PacsJob& job, PacsNews& news) {
     for (const auto& study : patient.studies) series += study.series.size();
   }
   news.words = studies == 0 ? "The PACS has nothing of the kind"
-                            : files::format("%zu studies with %zu series", studies, series);
+                            : files::format("%zu %s with %zu series", studies,
+                                            studies == 1 ? "study" : "studies", series);
   if (news.found.is_cut) news.words += "; there are more, so ask more closely";
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 namespace arthronaut::library {
@@ -90,7 +89,10 @@ ControlLimits control_limits(std::span<const double> values) {
   for (std::size_t i = 1; i < values.size(); ++i) ranges += std::abs(values[i] - values[i - 1]);
   const double half = kSigmas * ranges / static_cast<double>(values.size() - 1) / kRangeOfTwo;
   limits.is_known = true;
-  limits.center = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  // About the first one: of values that are all the same the mean is that value to the last bit.
+  const double first = values.front();
+  for (const double value : values) limits.center += (value - first) / static_cast<double>(values.size());
+  limits.center += first;
   limits.lower = std::max(limits.center - half, 0.0);
   limits.upper = limits.center + half;
   return limits;

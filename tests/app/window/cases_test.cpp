@@ -39,7 +39,12 @@ TEST_F(CasesWindow, IsSearchedNotedAndOpenedByKeys) {
   app.press("f");
   app.type("bert");
   ASSERT_TRUE(app.wait_for_state("cases_listed", "1"));
+  app.press("Escape");
+  ASSERT_TRUE(app.wait_for_state("cases_listed", "3")) << "the search is cleared";
+  app.press("f");
+  app.type("bert");
   ASSERT_TRUE(app.wait_for_state("case_selected", "Berta"));
+  ASSERT_TRUE(app.wait_for_state("cases_listed", "1"));
   EXPECT_EQ(app.state("case"), "none") << "B and O were letters";
   app.press("Return");
   ASSERT_TRUE(app.wait_for_state("typing", "no"));

@@ -63,5 +63,12 @@ TEST(ControlLimitsTest, AreUnknownOfFewAndNeverBelowNought) {
   EXPECT_EQ(same.upper, 1.5);
 }
 
+// None of them is outside: the last bit of their mean put all of a constant series out of its limits.
+TEST(ControlLimitsTest, OfEqualValuesAreThatValue) {
+  const ControlLimits limits = control_limits(std::vector<double>(125, 0.1));
+  EXPECT_EQ(limits.lower, 0.1);
+  EXPECT_EQ(limits.upper, 0.1);
+}
+
 }  // namespace
 }  // namespace arthronaut::library
