@@ -1,19 +1,23 @@
 #include "app/review/report_run.h"
 
+#include <vector>
+
 #include "planning/files/private_folder.h"
 
 namespace arthronaut::review {
 
 ReportRun::ReportRun(const std::filesystem::path& case_folder, const std::string& session,
                      std::function<void()> on_news, const std::filesystem::path& program)
-    : file_(case_folder / "export" / ("report_" + session + ".pdf")),
+    : file_(case_folder / "export" / (session.empty() ? "report.pdf" : "report_" + session + ".pdf")),
       worker_(
           worker::Backlog::Lossless,
           [case_folder, session, program, file = file_](auto& inbox) {
             files::create_private_folder(file.parent_path());
-            inbox.publish(own_process::run_command(
-                program, {"report", case_folder.string(), "--session", session, "-o", file.string()},
-                file.string() + ".log", [&inbox] { return inbox.stops(); }));
+            std::vector<std::string> words{"report", case_folder.string()};
+            if (!session.empty()) words.insert(words.end(), {"--session", session});
+            words.insert(words.end(), {"-o", file.string()});
+            inbox.publish(own_process::run_command(program, words, file.string() + ".log",
+                                                   [&inbox] { return inbox.stops(); }));
           },
           std::move(on_news)) {}
 

@@ -1,5 +1,6 @@
-// The report of one session, written by `arthronaut report` in a process of its own: report_SESSION.pdf in
-// the folder "export" of the case, which is its owner's alone to read. It names nobody.
+// The report of one session, or of a case without any, written by `arthronaut report` in a process of its
+// own: report_SESSION.pdf or report.pdf in the folder "export" of the case, which is its owner's alone to
+// read. It names nobody.
 //
 // Threads: made and asked on the window's thread; one worker waits for the process. Its destructor ends it.
 #pragma once
@@ -15,7 +16,8 @@ namespace arthronaut::review {
 
 class ReportRun {
  public:
-  // session: its folder's name. on_news is called from the other thread when it has ended.
+  // session: its folder's name; empty: of the case. on_news is called from the other thread when it has
+  // ended.
   ReportRun(const std::filesystem::path& case_folder, const std::string& session,
             std::function<void()> on_news, const std::filesystem::path& program = "/proc/self/exe");
   [[nodiscard]] bool has_ended() const { return worker_.has_ended(); }

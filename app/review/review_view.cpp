@@ -143,11 +143,12 @@ void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("review_page", shows_postop_ ? "achieved" : "session");
   if (shows_postop_) return postop_.draw(ui, rest);
   if (!has_frames()) {
-    const char* text = sessions_.folders().empty() ? "No session yet. Record one in Navigate."
-                       : opening_.is_busy()        ? "Opening the session"
-                       : !notice_.empty()          ? "This session cannot be read. The reason stands below."
-                       : open_                     ? no_frames_words(open_->review)
-                                                   : "Choose a session.";
+    const char* text = sessions_.folders().empty()
+                           ? "No session yet. Record one in Navigate, or compare a CT after the operation: P."
+                       : opening_.is_busy() ? "Opening the session"
+                       : !notice_.empty()   ? "This session cannot be read. The reason stands below."
+                       : open_              ? no_frames_words(open_->review)
+                                            : "Choose a session.";
     widgets::text_centered(ui, rest, ui.theme.title, widgets::kQuietText, text);
     return;
   }

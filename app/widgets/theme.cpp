@@ -94,7 +94,8 @@ void build_style(float scale) {
   colors[ImGuiCol_ButtonActive] = rgba(IM_COL32(66, 92, 116, 255));
   colors[ImGuiCol_FrameBg] = rgba(IM_COL32(32, 39, 47, 255));
   colors[ImGuiCol_FrameBgHovered] = colors[ImGuiCol_FrameBgActive] = rgba(IM_COL32(46, 57, 69, 255));
-  colors[ImGuiCol_SliderGrab] = colors[ImGuiCol_SliderGrabActive] = rgba(kAccent);
+  colors[ImGuiCol_SliderGrab] = colors[ImGuiCol_SliderGrabActive] = colors[ImGuiCol_PlotHistogram] =
+      rgba(kAccent);
   colors[ImGuiCol_Header] = rgba(IM_COL32(40, 66, 88, 255));
   colors[ImGuiCol_HeaderHovered] = colors[ImGuiCol_HeaderActive] = rgba(IM_COL32(50, 82, 108, 255));
   ImGui::GetStyle() = style;

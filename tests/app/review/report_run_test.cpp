@@ -27,10 +27,10 @@ class ReportRunTest : public ::testing::Test {
     return file;
   }
   // Of the run once it has ended.
-  std::string problem_of(const fs::path& program) const {
+  std::string problem_of(const fs::path& program, const std::string& session = "0001") const {
     std::promise<void> woken;
     ReportRun run(
-        folder_.path(), "0001",
+        folder_.path(), session,
         [&, once = false]() mutable {
           if (!std::exchange(once, true)) woken.set_value();
         },
@@ -50,6 +50,16 @@ TEST_F(ReportRunTest, AsksForTheSessionThatIsShown) {
   EXPECT_EQ(words, "report " + folder_.path().string() + " --session 0001 -o " +
                        (folder_ / "export" / "report_0001.pdf").string());
   EXPECT_FALSE(fs::exists(folder_ / "export" / "report_0001.pdf.log"));
+}
+
+// A CT after the operation is to be reported on, whether the operation was recorded or not.
+TEST_F(ReportRunTest, AsksForTheCaseWhereThereIsNoSession) {
+  EXPECT_EQ(problem_of(program("exit 0"), ""), "");
+  std::ifstream given(folder_ / "given");
+  std::string words;
+  std::getline(given, words);
+  EXPECT_EQ(words,
+            "report " + folder_.path().string() + " -o " + (folder_ / "export" / "report.pdf").string());
 }
 
 TEST_F(ReportRunTest, SaysWhyThereIsNone) {
