@@ -23,6 +23,8 @@ constexpr double kLeastDiameter_mm = 3.5, kMostDiameter_mm = 14;
 constexpr double kLeastSeen = 0.5;
 // Half of what is asked for: 0.3 mm and 0.5 deg, and where there is metal 0.6 mm and 1 deg.
 constexpr double kMostEntrySigma_mm = 0.15, kMostDirectionSigma_deg = 0.25, kMostDiameterSigma_mm = 0.15;
+// Through more blur than this (sigma, voxel included) bores come out too thin, by 0.3 mm and more.
+constexpr double kMostBlur_mm = 0.75;
 constexpr double kMostEntrySigmaByMetal_mm = 0.3, kMostDirectionSigmaByMetal_deg = 0.5;
 constexpr double kSomeMetal = 0.01;
 // Pieces of the bore lie off its axis by no more than this.
@@ -207,6 +209,11 @@ class Finder {
     if (c.fit.diameter_sigma_mm > kMostDiameterSigma_mm)
       doubts.push_back(files::format("its diameter is known to %.2f mm, %.2f mm are needed",
                                      c.fit.diameter_sigma_mm, kMostDiameterSigma_mm));
+    if (!c.is_by_screw && !c.fit.profile.has_rim() && c.fit.profile.plain_blur_mm > kMostBlur_mm)
+      doubts.push_back(
+          files::format("the images are blurred by %.2f mm (sigma), %.2f mm are borne: it may be "
+                        "wider than it looks",
+                        c.fit.profile.plain_blur_mm, kMostBlur_mm));
     if (c.bend_mm > kMostBend_mm)
       doubts.push_back(files::format("it is not straight: pieces of it lie %.1f mm off its axis", c.bend_mm));
     // Its edge is as round as the tunnel's wall, which may lie close beside it.

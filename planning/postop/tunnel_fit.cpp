@@ -76,8 +76,11 @@ class Fit {
       const bool had_rim = profile_.has_rim();
       const WallProfile seen = explain_wall(mean_profile(), noise_hu_, spread().shared_voxels);
       profile_.wall_sigma_mm = seen.wall_sigma_mm;
+      profile_.plain_blur_mm = seen.plain_blur_mm;
       if (!seen.has_rim() && !had_rim) break;
-      profile_ = seen.has_rim() ? seen : WallProfile{.wall_sigma_mm = seen.wall_sigma_mm};
+      profile_ = seen.has_rim()
+                     ? seen
+                     : WallProfile{.plain_blur_mm = seen.plain_blur_mm, .wall_sigma_mm = seen.wall_sigma_mm};
       for (double& radius : radius_) radius += seen.wall_mm + seems_nearer_mm(radius);
       if (!settle(profile_.blur_mm)) return {};
     }

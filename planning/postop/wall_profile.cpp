@@ -147,6 +147,7 @@ WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu, 
               : plain;
   WallProfile profile{.wall_mm = taken.shape.wall_mm,
                       .blur_mm = taken.shape.blur_mm,
+                      .plain_blur_mm = plain.shape.blur_mm,
                       .wall_sigma_mm = std::hypot(std::sqrt(variance), taken.shape.wall_mm - mean_mm)};
   if (has_rim) {
     profile.rim_mm = taken.shape.rim_mm;

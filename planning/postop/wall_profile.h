@@ -17,6 +17,7 @@ struct WallProfile {
   double wall_mm = 0;             // where the wall is
   double rim_mm = 0, rim_hu = 0;  // 0: no rim
   double blur_mm = 0.5;           // sigma of the scanner's, voxel included
+  double plain_blur_mm = 0;  // by which a wall without a rim would look most like this; 0: not looked for
   // One sigma of `wall_mm`, by that rims of other thicknesses, or none, explain the same as well or nearly.
   double wall_sigma_mm = 0;
 

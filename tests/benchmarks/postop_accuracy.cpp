@@ -57,6 +57,7 @@ const std::vector<Kind>& kinds() {
          ct.spacing_mm = {0.6, 0.6, 1.0};
          ct.blur_mm = 0.5;
        }},
+      {"soft kernel", [](auto&, auto& ct, auto& random) { ct.blur_mm = between(0.6, 1.0, random); }},
       {"graft 40 HU below marrow", [](auto& how, auto&, auto&) { how.content_hu = 110; }},
       {"dense rim, graft as marrow",
        [](auto& how, auto&, auto&) {
