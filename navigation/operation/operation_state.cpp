@@ -188,7 +188,10 @@ NextAction next_action_of(const OperationState& state) {
            : registration.touches.has_control_point() ? NextAction::CheckControlPoint
                                                       : NextAction::SetControlPoint;
   if (state.drilled.has_evidence) return NextAction::RecordDrilled;
-  return guides ? NextAction::FollowBullseye : NextAction::BringGuide;
+  // A bone that is lost guides nobody, however short.
+  const bool only_the_guide_is_away = state.frame.guidance.state == guidance::GuidanceState::GuideLost;
+  return state.frame.guidance.is_valid() || (guides && only_the_guide_is_away) ? NextAction::FollowBullseye
+                                                                                : NextAction::BringGuide;
 }
 
 Step step_of(NextAction action) {
