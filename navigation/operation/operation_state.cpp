@@ -191,7 +191,7 @@ NextAction next_action_of(const OperationState& state) {
   // A bone that is lost guides nobody, however short.
   const bool only_the_guide_is_away = state.frame.guidance.state == guidance::GuidanceState::GuideLost;
   return state.frame.guidance.is_valid() || (guides && only_the_guide_is_away) ? NextAction::FollowBullseye
-                                                                                : NextAction::BringGuide;
+                                                                               : NextAction::BringGuide;
 }
 
 Step step_of(NextAction action) {
