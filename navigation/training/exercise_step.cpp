@@ -14,6 +14,8 @@ std::string exercise_step(Goal goal, const operation::OperationState& state,
                                : "set the probe's tip on the bone";
     case Goal::Aim:
       if (holds_probe) return "take the guide: G";
+      if (state.frame.guidance.state == guidance::GuidanceState::WorldMarkerLost)
+        return "bring the bone's marker into view";
       return state.guided_lately ? "follow the bullseye; on the plan: Enter, done"
                                  : "bring the guide into view";
     case Goal::Register:

@@ -264,9 +264,8 @@ BoneBeneath bone_beneath(const geometry::TriangleMesh& surface, const images::Vo
       is_without[v] = std::abs(field.off(values[v], surface.vertices_mm[v])) > field.most_off();
     if (const double alike = share_alike(surface, vertices, grey, field); alike > kMostAlike)
       blind = files::format(
-          "%.0f %% of what surrounds the bone is as bright as its marrow, as fat is: a leak into it would "
-          "not "
-          "stand out",
+          "%.0f %% of what surrounds the bone is as bright as its marrow, as fat is: a leak "
+          "into it would not stand out",
           100 * alike);
   }
   BoneBeneath found = not_checked(blind);

@@ -25,6 +25,12 @@ TEST(ExerciseStep, OfAPartIsItsOwn) {
   EXPECT_EQ(step(Goal::Aim, Held::Guide, kNothing), "bring the guide into view");
   EXPECT_EQ(step(Goal::Aim, Held::Guide, [](auto& state, auto&) { state.guided_lately = true; }),
             "follow the bullseye; on the plan: Enter, done");
+  EXPECT_EQ(step(Goal::Aim, Held::Guide,
+                 [](auto& state, auto&) {
+                   state.guided_lately = true;
+                   state.frame.guidance.state = guidance::GuidanceState::WorldMarkerLost;
+                 }),
+            "bring the bone's marker into view");
   EXPECT_EQ(step(Goal::Aim, Held::Probe, kNothing), "take the guide: G");
 }
 
