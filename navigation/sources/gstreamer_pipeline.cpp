@@ -1,7 +1,6 @@
 #include "navigation/sources/gstreamer_pipeline.h"
 
 #include <gst/app/gstappsink.h>
-#include <gst/gst.h>
 #include <gst/video/video.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 
 #include "navigation/sources/capture_time.h"
 #include "navigation/sources/device_identity.h"
+#include "navigation/sources/gstreamer_owned.h"
 #include "navigation/sources/luma_planes.h"
 #include "navigation/sources/recovering_source.h"
 #include "navigation/worker/recycler.h"
@@ -19,27 +19,6 @@ namespace arthronaut::sources {
 namespace {
 
 constexpr GstClockTime kOpensWithin = 10 * GST_SECOND, kSilence = 2 * GST_SECOND;
-
-struct Unref {
-  void operator()(GstElement* p) const { gst_object_unref(p); }
-  void operator()(GstClock* p) const { gst_object_unref(p); }
-  void operator()(GstSample* p) const { gst_sample_unref(p); }
-  void operator()(GstMessage* p) const { gst_message_unref(p); }
-  void operator()(GstBus* p) const { gst_object_unref(p); }
-  void operator()(GstCaps* p) const { gst_caps_unref(p); }
-  void operator()(GstIterator* p) const { gst_iterator_free(p); }
-  void operator()(GError* p) const { g_error_free(p); }
-  void operator()(char* p) const { g_free(p); }
-};
-template <class T>
-using GstPtr = std::unique_ptr<T, Unref>;
-// A pipeline must not run any more when it is let go.
-struct StopAndUnref {
-  void operator()(GstElement* p) const {
-    gst_element_set_state(p, GST_STATE_NULL);
-    gst_object_unref(p);
-  }
-};
 
 // The formats whose way to BGR is OpenCV's, and of which all but BGR have a luma of their own.
 constexpr const char* kCaps = "video/x-raw,format=(string){ I420, NV12, GRAY8, YUY2, UYVY, P010_10LE, BGR }";
@@ -295,7 +274,7 @@ class GStreamerPipeline final : public FrameSource {
 
   LiveStamps& stamps_;
   SourceInfo info_;
-  std::unique_ptr<GstElement, StopAndUnref> pipeline_;
+  RunningPipeline pipeline_;
   GstPtr<GstElement> sink_;
   std::string complaint_;
   worker::Recycler<MappedPicture> memories_{[](MappedPicture& memory) { memory.let_go(); }};

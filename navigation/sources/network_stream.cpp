@@ -10,6 +10,7 @@
 #include "navigation/sources/encoded_packets.h"
 #include "navigation/sources/libav.h"
 #include "navigation/sources/recovering_source.h"
+#include "navigation/sources/rtsp_pictures.h"
 #include "planning/geometry/error.h"
 
 extern "C" {
@@ -58,52 +59,19 @@ std::size_t held_back(const AVFormatContext& container, AVCodecID codec) {
 class Connection {
  public:
   // How its packets are cut. AsTheyCome: each is taken for one picture, which saves the wait for the next
-  // one.
+  // one. ByParser: libavformat puts pictures together.
   enum class Cut { AsTheyCome, ByParser };
 
-  // Throws DeviceError.
-  Connection(const std::string& address, std::int64_t deadline_ns, bool is_again, Cut cut,
+  // Where it finds that they do not come so, cut says it. Throws DeviceError.
+  Connection(const std::string& address, std::int64_t deadline_ns, bool is_again, Cut& cut,
              EncodedPackets& packets)
       : packets_(packets), packet_(av_packet_alloc()), picture_(av_frame_alloc()), data_by_ns_(deadline_ns) {
-    AVFormatContext* opening = avformat_alloc_context();
-    opening->interrupt_callback = {[](void* self) { return static_cast<Connection*>(self)->is_late(); },
-                                   this};
-    FreeDictionary options;
-    // Nothing is held back for what may come late, and a loss is a lost picture, never a wait.
-    av_dict_set(&options.entries, "fflags", "nobuffer", 0);
-    av_dict_set(&options.entries, "rtsp_flags", "prefer_tcp", 0);
-    av_dict_set(&options.entries, "max_delay", "100000", 0);
-    av_dict_set(&options.entries, "analyzeduration", "500000", 0);
-    // How many pictures a second come is known from before.
-    if (is_again) av_dict_set(&options.entries, "fpsprobesize", "0", 0);
-    av_dict_set(&options.entries, "fifo_size", "200000", 0);
-    av_dict_set(&options.entries, "overrun_nonfatal", "1", 0);
-    av_dict_set(&options.entries, "buffer_size", "8388608", 0);
-    if (cut == Cut::AsTheyCome && address.starts_with("udp://"))
-      datagrams_ = std::make_unique<DatagramInput>(address, opening->interrupt_callback, &options.entries);
-    int error = datagrams_ != nullptr ? datagrams_->error() : 0;
-    if (error == 0) {
-      if (datagrams_ != nullptr) opening->pb = datagrams_->context();
-      error = avformat_open_input(&opening, address.c_str(), nullptr, &options.entries);
-    }
-    container_.reset(opening);
-    if (error < 0) fail(address, libav_message(is_late() ? AVERROR(ETIMEDOUT) : error));
-    if (datagrams_ != nullptr && is_transport(*container_))
-      container_->flags |= AVFMT_FLAG_NOPARSE | AVFMT_FLAG_NOFILLIN;
-    // A server that has said what it sends (RTSP) is believed: looking into it costs half a second.
-    stream_index_ = is_again ? video_in_container() : -1;
-    if (stream_index_ < 0) {
-      if (avformat_find_stream_info(container_.get(), nullptr) < 0)
-        fail(address, "no video was found in it in time");
-      stream_index_ = video_in_container();
-    }
-    if (stream_index_ < 0) fail(address, "holds no video");
+    if (cut == Cut::AsTheyCome && address.starts_with("rtsp://")) open_by_picture(address, cut);
+    if (container_ == nullptr) open_by_libavformat(address, is_again, cut);
     std::string problem;
     decoder_ = open_stream_decoder(*stream().codecpar, stream().time_base, problem);
     if (decoder_ == nullptr) fail(address, problem);
     packets_.begin(stream());
-    held_back_ = held_back(*container_, stream().codecpar->codec_id);
-    if ((container_->flags & AVFMT_FLAG_NOPARSE) != 0) datagrams_->ends().follow(stream().id);
   }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -145,6 +113,7 @@ class Connection {
   // The session's name as an RTSP server gives it, before any picture. (What MPEG-TS says of its programs
   // comes now and then, and may not have come yet.)
   [[nodiscard]] std::string identity() const {
+    if (pictures_ != nullptr) return pictures_->title();
     if (std::string_view(container_->iformat->name) != "rtsp") return "";
     const AVDictionaryEntry* const title = av_dict_get(container_->metadata, "title", nullptr, 0);
     return title != nullptr ? title->value : "";
@@ -152,6 +121,55 @@ class Connection {
   double frames_per_second() const { return frames_per_second_of(stream()); }
 
  private:
+  // Half of the time is left to libavformat. No container: it is to try.
+  void open_by_picture(const std::string& address, Cut& cut) {
+    const std::int64_t now_ns = steady_now_ns();
+    auto pictures = std::make_unique<RtspPictures>(address, now_ns + (data_by_ns_ - now_ns) / 2);
+    container_ = pictures->take_container();
+    if (pictures->is_other()) cut = Cut::ByParser;
+    if (container_ == nullptr) return;
+    stream_index_ = 0;
+    pictures_ = std::move(pictures);
+  }
+
+  void open_by_libavformat(const std::string& address, bool is_again, Cut cut) {
+    AVFormatContext* opening = avformat_alloc_context();
+    opening->interrupt_callback = {[](void* self) { return static_cast<Connection*>(self)->is_late(); },
+                                   this};
+    FreeDictionary options;
+    // Nothing is held back for what may come late, and a loss is a lost picture, never a wait.
+    av_dict_set(&options.entries, "fflags", "nobuffer", 0);
+    av_dict_set(&options.entries, "rtsp_flags", "prefer_tcp", 0);
+    av_dict_set(&options.entries, "max_delay", "100000", 0);
+    av_dict_set(&options.entries, "analyzeduration", "500000", 0);
+    // How many pictures a second come is known from before.
+    if (is_again) av_dict_set(&options.entries, "fpsprobesize", "0", 0);
+    av_dict_set(&options.entries, "fifo_size", "200000", 0);
+    av_dict_set(&options.entries, "overrun_nonfatal", "1", 0);
+    av_dict_set(&options.entries, "buffer_size", "8388608", 0);
+    if (cut == Cut::AsTheyCome && address.starts_with("udp://"))
+      datagrams_ = std::make_unique<DatagramInput>(address, opening->interrupt_callback, &options.entries);
+    int error = datagrams_ != nullptr ? datagrams_->error() : 0;
+    if (error == 0) {
+      if (datagrams_ != nullptr) opening->pb = datagrams_->context();
+      error = avformat_open_input(&opening, address.c_str(), nullptr, &options.entries);
+    }
+    container_.reset(opening);
+    if (error < 0) fail(address, libav_message(is_late() ? AVERROR(ETIMEDOUT) : error));
+    if (datagrams_ != nullptr && is_transport(*container_))
+      container_->flags |= AVFMT_FLAG_NOPARSE | AVFMT_FLAG_NOFILLIN;
+    // A server that has said what it sends (RTSP) is believed: looking into it costs half a second.
+    stream_index_ = is_again ? video_in_container() : -1;
+    if (stream_index_ < 0) {
+      if (avformat_find_stream_info(container_.get(), nullptr) < 0)
+        fail(address, "no video was found in it in time");
+      stream_index_ = video_in_container();
+    }
+    if (stream_index_ < 0) fail(address, "holds no video");
+    held_back_ = held_back(*container_, stream().codecpar->codec_id);
+    if (is_cut_by_packets()) datagrams_->ends().follow(stream().id);
+  }
+
   // Below 0: none that is known.
   [[nodiscard]] int video_in_container() const {
     const int index = av_find_best_stream(container_.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
@@ -167,17 +185,27 @@ class Connection {
     throw DeviceError(shown_address(address) + ": " + reason);
   }
 
+  // Of MPEG-TS, with the ends of pictures told.
+  [[nodiscard]] bool is_cut_by_packets() const { return (container_->flags & AVFMT_FLAG_NOPARSE) != 0; }
   // One that lost something on its way is no sign.
   void judge_cut(const AVPacket& packet) {
-    if ((container_->flags & AVFMT_FLAG_NOPARSE) == 0 || (packet.flags & AV_PKT_FLAG_CORRUPT) != 0) return;
+    if (!is_cut_by_packets() || (packet.flags & AV_PKT_FLAG_CORRUPT) != 0) return;
     odd_packets_ = is_one_picture(packet, stream().codecpar->codec_id) ? 0 : odd_packets_ + 1;
   }
 
   bool feed() {
-    if (needs_parser() || av_read_frame(container_.get(), packet_.get()) < 0) return false;
+    if (needs_parser() || !read()) return false;
     const bool is_video = packet_->stream_index == stream_index_;
     if (is_video) take(*packet_);
     av_packet_unref(packet_.get());
+    return true;
+  }
+
+  bool read() {
+    if (pictures_ == nullptr) return av_read_frame(container_.get(), packet_.get()) == 0;
+    if (!pictures_->read(stream(), *packet_, data_by_ns_)) return false;
+    if (av_packet_get_side_data(packet_.get(), AV_PKT_DATA_NEW_EXTRADATA, nullptr) != nullptr)
+      packets_.begin(stream());
     return true;
   }
 
@@ -213,6 +241,7 @@ class Connection {
 
   EncodedPackets& packets_;
   std::unique_ptr<DatagramInput> datagrams_;  // of a UDP port; else null
+  std::unique_ptr<RtspPictures> pictures_;    // of RTSP, where it gives them; else null
   LibavPtr<AVFormatContext> container_;
   LibavPtr<AVCodecContext> decoder_;
   LibavPtr<AVPacket> packet_;

@@ -22,7 +22,7 @@
 #include "navigation/sources/frame_source.h"
 #include "navigation/theatre/navigate_source.h"
 #include "planning/geometry/error.h"
-#include "tests/benchmarks/file_sender.h"
+#include "tests/child_process.h"
 #include "tests/live/fault_drill.h"
 #include "tests/temporary_folder.h"
 
@@ -58,8 +58,8 @@ constexpr std::int64_t kBuffersFull_s = 60;
 
 int stream(const StreamChoice& choice) {
   const bool records = choice.records;
-  const int port = 20000 + ::getpid() % 40000;
-  const FileSender sender(choice.clip, port);
+  const std::string port = std::to_string(20000 + ::getpid() % 40000);
+  const auto sender = test::send_by_rtsp(port, test::h264_clip_launch(choice.clip));
   const test::TemporaryFolder folder;
   theatre::NavigateOptions options;
   options.source.kind = sources::SourceKind::Live;
@@ -68,7 +68,7 @@ int stream(const StreamChoice& choice) {
   std::shared_ptr<sources::FrameSource> source;
   for (int i = 0; source == nullptr; ++i) {
     try {
-      source = sources::open_stream(sender.address());
+      source = sources::open_stream(test::rtsp_address(port));
     } catch (const DeviceError& error) {
       if (i == 20) throw;
       std::this_thread::sleep_for(std::chrono::milliseconds(200));

@@ -28,7 +28,7 @@
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/quantile.h"
 #include "tests/app/window/display.h"
-#include "tests/benchmarks/file_sender.h"
+#include "tests/child_process.h"
 #include "tests/recorded_data.h"
 #include "tests/temporary_folder.h"
 
@@ -257,12 +257,13 @@ int measure(const Choice& choice) {
   make_case(case_folder, clips);
   const fs::path stream = choice.stream.empty() ? folder / "stream.mkv" : fs::path(choice.stream);
   if (!fs::exists(stream)) fs::copy_file(make_stream(folder.path(), clips, choice.seconds + 60), stream);
-  const FileSender sender(stream, 20000 + ::getpid() % 40000);
+  const std::string port = std::to_string(20000 + ::getpid() % 40000);
+  const auto sender = test::send_by_rtsp(port, test::h264_clip_launch(stream));
   const test::VirtualDisplay display(1920, 1080);
   measure_start(display, folder.path());
 
   test::RunningWorkstation app(display, folder.path(), {case_folder.string()});
-  reach_guidance(app, sender.address());
+  reach_guidance(app, test::rtsp_address(port));
   if (choice.records) {
     app.press("ctrl+r");
     expect(app.wait_for_state("recording", "on"), "the record of the video");

@@ -13,6 +13,7 @@
 #include "navigation/recording/recorded_pictures.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_check.h"
+#include "tests/navigation/recording/given_picture.h"
 #include "tests/navigation/recording/recorded_frames.h"
 #include "tests/navigation/recording/streams.h"
 #include "tests/temporary_folder.h"
@@ -22,29 +23,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using test::GivenPicture;
+using test::luma_of_picture;
 using test::open_when_there;
+using test::record;
 using test::stream_port;
-
-struct GivenPicture {
-  std::int64_t frame = 0;
-  std::uint64_t luma = 0;
-};
-
-std::uint64_t luma_of_picture(const camera::Frame& frame) {
-  std::vector<std::uint8_t> gray;
-  return digest_of_luma(camera::luma_of(frame, gray));
-}
-
-// Live frames and their pictures into a session, until `stops` says so.
-template <typename Stops>
-void record(sources::FrameSource& source, SessionRecorder& recorder, const Stops& stops) {
-  recorder.keep_pictures(PicturesAs::AsTheyCame, source.info());
-  while (const camera::FramePtr frame = source.next()) {
-    recorder.append(test::frame_result(frame->index));
-    if (frame->index % 11 != 4) recorder.append_picture(frame);
-    if (stops(GivenPicture{frame->index, luma_of_picture(*frame)})) return;
-  }
-}
 
 // A sender of H.264 with key frames a second and a half apart.
 class StreamSession : public ::testing::Test {
@@ -172,9 +155,10 @@ class RecordingProcess {
  public:
   RecordingProcess(const fs::path& folder, const std::string& address, rlim_t largest_file = RLIM_INFINITY) {
     int ends[2];
-    if (::pipe2(ends, O_NONBLOCK) != 0) throw std::runtime_error("no pipe");
-    process_ = ::fork();
-    if (process_ == 0) run(folder, address, largest_file, ends[1]);
+    if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+    ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
+    process_ = test::run_program(
+        {ARTHRONAUT_RECORDING_PROGRAM, folder, address, std::to_string(largest_file)}, ends[1]);
     ::close(ends[1]);
     pipe_ = ends[0];
   }
@@ -225,25 +209,6 @@ class RecordingProcess {
   }
 
  private:
-  [[noreturn]] static void run(const fs::path& folder, const std::string& address, rlim_t largest_file,
-                               int pipe) {
-    try {
-      const auto source = open_when_there(address);
-      ::signal(SIGXFSZ, SIG_IGN);
-      const rlimit limit{largest_file, largest_file};
-      ::setrlimit(RLIMIT_FSIZE, &limit);
-      const DiskLimits nobody_watches{
-          .free_bytes = [](const fs::path&) { return std::uintmax_t{100} << 30; }};
-      SessionRecorder recorder(folder, test::session_header(), test::scripted_options(), nobody_watches);
-      record(*source, recorder, [&](const GivenPicture& picture) {
-        return ::write(pipe, &picture, sizeof picture) != static_cast<ssize_t>(sizeof picture);
-      });
-    } catch (const std::exception&) {
-      // What is there is looked at.
-    }
-    ::_exit(0);
-  }
-
   pid_t process_ = -1;
   int pipe_ = -1;
   std::vector<std::pair<Clock::time_point, GivenPicture>> given_;

@@ -1,8 +1,6 @@
 // Streams over the loopback, sent by processes of their own that can be killed.
 #pragma once
 
-#include <gst/rtsp-server/rtsp-server.h>
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,6 +14,7 @@
 
 #include "navigation/sources/frame_source.h"
 #include "planning/geometry/error.h"
+#include "tests/child_process.h"
 
 namespace arthronaut::test {
 
@@ -26,30 +25,10 @@ inline std::string stream_port(int offset) {
   return std::to_string(20000 + (::getpid() * 8 + offset) % 40000);
 }
 
-class ChildProcess {
- public:
-  explicit ChildProcess(pid_t process) : process_(process) {}
-  ~ChildProcess() {
-    ::kill(process_, SIGKILL);
-    ::waitpid(process_, nullptr, 0);
-  }
-  ChildProcess(const ChildProcess&) = delete;
-  ChildProcess& operator=(const ChildProcess&) = delete;
-
- private:
-  pid_t process_;
-};
-
 inline pid_t run_ffmpeg(const std::vector<std::string>& options) {
-  const pid_t process = ::fork();
-  if (process != 0) return process;
   std::vector<std::string> words = {"ffmpeg", "-loglevel", "quiet", "-nostdin", "-y"};
   words.insert(words.end(), options.begin(), options.end());
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  ::execvp("ffmpeg", arguments.data());
-  ::_exit(127);
+  return run_program(words);
 }
 
 // A moving test picture as MPEG-TS by UDP, at its own rate. `codec`: options of ffmpeg.
@@ -72,27 +51,6 @@ inline void make_clip(const std::filesystem::path& file, int pictures, const std
   options.insert(options.end(), codec.begin(), codec.end());
   options.push_back(file.string());
   ::waitpid(run_ffmpeg(options), nullptr, 0);
-}
-
-// What GStreamer's own server sends by RTSP, rtsp://127.0.0.1:PORT/scope: to everybody from its beginning.
-inline std::unique_ptr<ChildProcess> send_by_rtsp(const std::string& port, const std::string& launch) {
-  const pid_t process = ::fork();
-  if (process != 0) return std::make_unique<ChildProcess>(process);
-  gst_init(nullptr, nullptr);
-  GstRTSPServer* const server = gst_rtsp_server_new();
-  gst_rtsp_server_set_service(server, port.c_str());
-  GstRTSPMediaFactory* const factory = gst_rtsp_media_factory_new();
-  gst_rtsp_media_factory_set_launch(factory, launch.c_str());
-  GstRTSPMountPoints* const mounts = gst_rtsp_server_get_mount_points(server);
-  gst_rtsp_mount_points_add_factory(mounts, "/scope", factory);
-  gst_rtsp_server_attach(server, nullptr);
-  g_main_loop_run(g_main_loop_new(nullptr, FALSE));
-  std::_Exit(0);
-}
-inline std::string rtsp_address(const std::string& port) { return "rtsp://127.0.0.1:" + port + "/scope"; }
-inline std::string h264_clip_launch(const std::filesystem::path& clip) {
-  return "( filesrc location=" + clip.string() +
-         " ! matroskademux ! h264parse config-interval=-1 ! rtph264pay name=pay0 )";
 }
 
 // Waits until somebody sends.

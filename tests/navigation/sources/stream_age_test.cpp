@@ -1,12 +1,13 @@
 // How old a stream's pictures are said to be, against when they were sent.
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <functional>
+#include <memory>
 #include <mutex>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -15,37 +16,27 @@
 #include "navigation/sources/capture_time.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/geometry/quantile.h"
+#include "tests/child_process.h"
+#include "tests/navigation/recording/streams.h"
 
 namespace arthronaut::sources {
 namespace {
 
-// ffmpeg sending plain pictures in MPEG-TS, ten a second, as they are pushed into it: each of another grey.
-// No codec of these keeps one back for itself.
+// A program sending plain pictures, ten a second, as they are pushed into it: each of another grey.
 class PushedSender {
  public:
   static constexpr int kSide = 64, kGreys = 20;
 
-  PushedSender(const std::string& address, const std::string& codec) {
+  // Starts it with what it is to read.
+  using Start = std::function<std::unique_ptr<test::ChildProcess>(int input)>;
+  explicit PushedSender(const Start& start) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
-    process_ = ::fork();
-    if (process_ == 0) {
-      ::dup2(ends[0], STDIN_FILENO);
-      const std::string target = address + "?pkt_size=1316";
-      ::execlp("ffmpeg", "ffmpeg", "-loglevel", "quiet", "-f", "rawvideo", "-pix_fmt", "gray", "-s", "64x64",
-               "-r", "10", "-i", "-", "-c:v", codec.c_str(), "-tune", "zerolatency", "-flags", "low_delay",
-               "-g", "5", "-bf", "0", "-pix_fmt", "yuv420p", "-flush_packets", "1", "-f", "mpegts",
-               target.c_str(), static_cast<char*>(nullptr));
-      ::_exit(127);
-    }
+    process_ = start(ends[0]);
     ::close(ends[0]);
     to_ = ends[1];
   }
-  ~PushedSender() {
-    ::close(to_);
-    ::kill(process_, SIGKILL);
-    ::waitpid(process_, nullptr, 0);
-  }
+  ~PushedSender() { ::close(to_); }
   PushedSender(const PushedSender&) = delete;
   PushedSender& operator=(const PushedSender&) = delete;
 
@@ -61,7 +52,7 @@ class PushedSender {
   }
 
  private:
-  pid_t process_ = -1;
+  std::unique_ptr<test::ChildProcess> process_;
   int to_ = -1;
 };
 
@@ -71,9 +62,8 @@ struct Ages {
 };
 
 // Each picture is known by its grey; medians of what came once the quickest was known.
-Ages ages_of(const std::string& codec, int port) {
-  const std::string address = "udp://127.0.0.1:" + std::to_string(20000 + (::getpid() + port) % 40000);
-  const PushedSender sender(address, codec);
+Ages ages_of(const PushedSender::Start& start, const std::string& address) {
+  const PushedSender sender(start);
   std::mutex mutex;
   std::vector<std::int64_t> pushed_ns;
   std::jthread hand([&](const std::stop_token& stop) {
@@ -87,7 +77,7 @@ Ages ages_of(const std::string& codec, int port) {
       sender.push(i);
     }
   });
-  const auto source = open_source(address);
+  const auto source = test::open_when_there(address);
   std::vector<double> said_s, taken_s;
   for (int i = 0; i < 20; ++i) {
     const camera::FramePtr frame = source->next();
@@ -104,18 +94,46 @@ Ages ages_of(const std::string& codec, int port) {
   return {geometry::median(said_s, 0), geometry::median(taken_s, 0)};
 }
 
+// MPEG-TS by UDP. No codec of these keeps a picture back for itself.
+Ages ages_by_udp(const std::string& codec, const std::string& port) {
+  const std::string address = "udp://127.0.0.1:" + port;
+  std::vector<std::string> words = {"ffmpeg"};
+  std::istringstream options(
+      "-loglevel quiet -f rawvideo -pix_fmt gray -s 64x64 -r 10 -i - -c:v " + codec +
+      " -tune zerolatency -flags low_delay -g 5 -bf 0 -pix_fmt yuv420p -flush_packets 1 -f mpegts " +
+      address + "?pkt_size=1316");
+  for (std::string word; options >> word;) words.push_back(word);
+  return ages_of(
+      [&](int input) {
+        return std::make_unique<test::ChildProcess>(test::run_program(words, STDOUT_FILENO, input));
+      },
+      address);
+}
+
 // A picture in MPEG-TS is looked at once its last byte is there, and not when the one after the next begins,
 // 200 ms later here; and it is not said to be any younger than it is.
 TEST(Stream, Hazard3APictureWaitsForNoOtherOne) {
-  const Ages ages = ages_of("libx264", 0);
+  const Ages ages = ages_by_udp("libx264", test::stream_port(0));
   EXPECT_NEAR(ages.said_s, 0.03, 0.05);
   EXPECT_LT(ages.taken_s, 0.1);
+}
+
+// Nor by RTSP, where the mark of a picture's last packet tells it, and not the next picture 100 ms later.
+TEST(Stream, Hazard3APictureByRtspWaitsForNoOtherOne) {
+  const std::string port = test::stream_port(1);
+  const std::string launch =
+      "( fdsrc fd=0 blocksize=4096 do-timestamp=true ! rawvideoparse width=64 height=64 format=gray8 "
+      "framerate=10/1 ! videoconvert ! openh264enc gop-size=5 ! rtph264pay name=pay0 config-interval=-1 )";
+  const Ages ages =
+      ages_of([&](int input) { return test::send_by_rtsp(port, launch, input); }, test::rtsp_address(port));
+  EXPECT_NEAR(ages.said_s, 0.03, 0.05);
+  EXPECT_LT(ages.taken_s, 0.07);
 }
 
 // Where packets may be more or less than one picture libavformat puts pictures together, and gives one out
 // when it has seen the one after the next begin: the age says so.
 TEST(Stream, Hazard3AnAgeCountsThePicturesThatAreHeldBack) {
-  const Ages ages = ages_of("mpeg2video", 1);
+  const Ages ages = ages_by_udp("mpeg2video", test::stream_port(2));
   EXPECT_NEAR(ages.said_s, 0.03, 0.05);
   EXPECT_GT(ages.taken_s, 0.15);
 }
