@@ -21,6 +21,11 @@ using test::run_program;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+const phantom::PhantomKnee& built_in_knee() {
+  static const auto made = phantom::make_phantom_knee();
+  return made;
+}
+
 class PlanCommand : public ::testing::Test {
  protected:
   PlanCommand() { save(knee_); }
@@ -31,7 +36,7 @@ class PlanCommand : public ::testing::Test {
   }
 
   const test::TemporaryFolder folder_;
-  const phantom::PhantomKnee made_ = phantom::make_phantom_knee();
+  const phantom::PhantomKnee& made_ = built_in_knee();
   cases::Case knee_ = phantom::case_of(made_, "Phantom");
 };
 

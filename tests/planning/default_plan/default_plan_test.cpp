@@ -35,12 +35,17 @@ struct Knee {
   }
 };
 
+const Knee& knee_of(Side side) {
+  static const Knee right(Side::Right), left(Side::Left);
+  return side == Side::Right ? right : left;
+}
+
 // A drill comes to the femur from the front, below and medially and leaves on the lateral side; to the tibia
 // it goes down, forwards and medially. In the phantom's frame: lateral is -x on the right, anterior -y,
 // proximal z.
 TEST(DefaultPlan, AimsAsADrillCanFollow) {
   for (const Side side : {Side::Left, Side::Right}) {
-    const Knee knee(side);
+    const Knee& knee = knee_of(side);
     const double lateral = side == Side::Right ? -1 : 1;
     const auto plan = plan_knee(knee.inputs(true), side);
     const auto& femur = plan.at(BoneKind::Femur);
@@ -67,7 +72,7 @@ TEST(DefaultPlan, AimsAsADrillCanFollow) {
 
 // Without landmarks they are proposed, and that is a doubt which names them.
 TEST(DefaultPlan, SaysThatNobodyHasConfirmedItsLandmarks) {
-  const Knee knee(Side::Right);
+  const Knee& knee = knee_of(Side::Right);
   for (const auto& [kind, tunnel] : plan_knee(knee.inputs(false), Side::Right)) {
     ASSERT_TRUE(tunnel.is_usable()) << tunnel.message;
     ASSERT_FALSE(tunnel.doubts.empty());
@@ -78,7 +83,7 @@ TEST(DefaultPlan, SaysThatNobodyHasConfirmedItsLandmarks) {
 
 // The extents of the quadrant, where they are known, are what depth and height of the entry follow from.
 TEST(DefaultPlan, DoubtsProposedExtentsOfTheQuadrant) {
-  const Knee knee(Side::Right);
+  const Knee& knee = knee_of(Side::Right);
   BoneInput femur = knee.inputs(true)[0];
   femur.states.clear();
   for (const char* extent : {"lateral_condyle_deep", "lateral_condyle_shallow", "lateral_condyle_low"})
@@ -95,7 +100,7 @@ TEST(DefaultPlan, DoubtsProposedExtentsOfTheQuadrant) {
 
 // A native footprint that a person marked is better than any norm, for the whole ligament.
 TEST(DefaultPlan, EntersAtTheMarkedNativeFootprint) {
-  const Knee knee(Side::Right);
+  const Knee& knee = knee_of(Side::Right);
   auto inputs = knee.inputs(true);
   inputs[0].landmarks = knee.made.femur_landmarks;
   const auto single = plan_bone(inputs[0], Side::Right);
@@ -115,7 +120,7 @@ TEST(DefaultPlan, EntersAtTheMarkedNativeFootprint) {
 TEST(DefaultPlan, KeepsBoneBetweenTwoBundlesInEitherOrder) {
   using norms::Bundle;
   for (const Side side : {Side::Left, Side::Right}) {
-    const Knee knee(side);
+    const Knee& knee = knee_of(side);
     for (BoneInput input : knee.inputs(true)) {
       SCOPED_TRACE(bones::to_text(input.bone->kind));
       const auto planned = [&](Bundle bundle, const tunnels::Tunnel* beside) {
@@ -140,7 +145,7 @@ TEST(DefaultPlan, KeepsBoneBetweenTwoBundlesInEitherOrder) {
 // What is moved stays within one sigma of the norm, on the line through both, and says so.
 TEST(DefaultPlan, MovesBundlesApartWithinTheirSpreadAndSaysSo) {
   using norms::Bundle;
-  const Knee knee(Side::Right);
+  const Knee& knee = knee_of(Side::Right);
   for (const BoneInput& input : knee.inputs(true)) {
     for (const Bundle bundle : {Bundle::Anteromedial, Bundle::Posterolateral}) {
       SCOPED_TRACE(norms::to_text(bundle));
@@ -188,7 +193,7 @@ TEST(DefaultPlan, MovesBundlesApartWithinTheirSpreadAndSaysSo) {
 // nothing is there to make room for.
 TEST(DefaultPlan, MakesNoRoomForATunnelThatMissesTheBone) {
   using norms::Bundle;
-  const Knee knee(Side::Right);
+  const Knee& knee = knee_of(Side::Right);
   for (BoneInput input : knee.inputs(true)) {
     const auto kind = input.bone->kind;
     const auto expected =
@@ -223,7 +228,7 @@ TEST(DefaultPlan, IsBesideTheOtherBundleOfItsBoneAlone) {
 // Whoever waits no longer is not kept waiting: no direction is tried any more, and it is not said that none
 // is there.
 TEST(DefaultPlan, StopsWhenItIsAskedTo) {
-  const Knee knee(Side::Right);
+  const Knee& knee = knee_of(Side::Right);
   std::stop_source stop;
   for (const auto bundle : {norms::Bundle::Whole, norms::Bundle::Posterolateral}) {
     const Options options{.bundle = bundle, .stop = stop.get_token()};
@@ -237,7 +242,7 @@ TEST(DefaultPlan, StopsWhenItIsAskedTo) {
 }
 
 TEST(DefaultPlan, RefusesOptionsOutOfRange) {
-  const Knee knee(Side::Right);
+  const Knee& knee = knee_of(Side::Right);
   EXPECT_THROW((void)plan_bone(knee.inputs(true)[0], Side::Right, {.diameter_mm = 20}), InvalidInput);
   EXPECT_THROW((void)plan_bone(knee.inputs(true)[0], Side::Right, {.flexion_deg = 60}), InvalidInput);
 }

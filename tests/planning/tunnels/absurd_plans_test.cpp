@@ -48,11 +48,24 @@ BoneUnderTest bone_of(const bones::Bone& bone, const landmarks::Landmarks& marks
   return result;
 }
 
+struct KneeUnderTest {
+  explicit KneeUnderTest(Side side)
+      : made(phantom::make_phantom_knee({.side = side})),
+        femur(bone_of(made.femur, made.femur_landmarks, side)),
+        tibia(bone_of(made.tibia, made.tibia_landmarks, side)) {}
+  phantom::PhantomKnee made;
+  BoneUnderTest femur, tibia;
+};
+
+const KneeUnderTest& knee_of(Side side) {
+  static const KneeUnderTest right(Side::Right), left(Side::Left);
+  return side == Side::Right ? right : left;
+}
+
 class AbsurdPlans : public ::testing::TestWithParam<Side> {
  protected:
-  phantom::PhantomKnee knee_ = phantom::make_phantom_knee({.side = GetParam()});
-  BoneUnderTest femur_ = bone_of(knee_.femur, knee_.femur_landmarks, GetParam());
-  BoneUnderTest tibia_ = bone_of(knee_.tibia, knee_.tibia_landmarks, GetParam());
+  const phantom::PhantomKnee& knee_ = knee_of(GetParam()).made;
+  BoneUnderTest femur_ = knee_of(GetParam()).femur, tibia_ = knee_of(GetParam()).tibia;
   landmarks::AnatomicalAxes axes_ = *femur_.known.axes;
 };
 INSTANTIATE_TEST_SUITE_P(EitherSide, AbsurdPlans, ::testing::Values(Side::Right, Side::Left));
