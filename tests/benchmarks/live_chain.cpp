@@ -2,7 +2,8 @@
 // without the recording of its pictures. And faults, many of them.
 //   live_chain stream CLIP SECONDS [--record] [--camera FILE MEDIUM]
 //                                               CLIP: 1080p60 H.264 without B-frames, sent round and round
-//   live_chain faults COUNT [SEED]              prints a row a kind: how soon gone, told and back
+//   live_chain faults COUNT [SEED [CODEC]]      prints a row a kind: how soon gone, told and back; jpeg or
+//   h264
 // Prints what was sent, tracked and recorded, latency by stage, and how the memory grew.
 #include <unistd.h>
 
@@ -125,13 +126,13 @@ int stream(const StreamChoice& choice) {
   return 0;
 }
 
-int faults(int count, unsigned seed) {
+int faults(int count, unsigned seed, const std::string& codec) {
   std::mt19937 random(seed);
   std::vector<test::Fault> all;
   for (int i = 0; i < count; ++i) all.push_back(static_cast<test::Fault>(i % test::kFaultCount));
   std::shuffle(all.begin(), all.end(), random);
   std::map<test::Fault, std::vector<test::FaultOutcome>> outcomes;
-  test::FaultDrill drill;
+  test::FaultDrill drill(codec);
   for (const test::Fault fault : all) outcomes[fault].push_back(drill.run(fault, 0.8, 20));
   std::printf("%-22s %5s  %-16s %-16s %-16s never\n", "fault", "times", "gone, worst", "told, worst",
               "back, worst");
@@ -175,7 +176,8 @@ int main(int count, char** arguments) {
   }
   if (is(1, "faults") && count > 2)
     return arthronaut::faults(std::atoi(arguments[2]),
-                              count > 3 ? static_cast<unsigned>(std::atoi(arguments[3])) : 13);
-  std::puts("live_chain stream CLIP SECONDS [--record] [--camera FILE MEDIUM] | faults COUNT [SEED]");
+                              count > 3 ? static_cast<unsigned>(std::atoi(arguments[3])) : 13,
+                              count > 4 ? arguments[4] : "jpeg");
+  std::puts("live_chain stream CLIP SECONDS [--record] [--camera FILE MEDIUM] | faults COUNT [SEED [CODEC]]");
   return 2;
 }

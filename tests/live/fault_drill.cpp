@@ -80,8 +80,10 @@ std::string to_text(Fault fault) {
   return kNames[static_cast<int>(fault)];
 }
 
-FaultDrill::FaultDrill()
-    : port_(20000 + ::getpid() % 40000), sender_(std::make_unique<SenderProcess>(port_, "jpeg")) {
+FaultDrill::FaultDrill(const std::string& codec)
+    : port_(20000 + ::getpid() % 40000),
+      codec_(codec),
+      sender_(std::make_unique<SenderProcess>(port_, codec)) {
   theatre::LiveOptions options;
   options.operation.plan = plan();
   options.bone = []() -> operation::SurfaceIndexPtr { throw InvalidInput("no bone is needed here"); };
@@ -138,7 +140,7 @@ void FaultDrill::begin(Fault fault) {
 void FaultDrill::end(Fault fault) {
   switch (fault) {
     case Fault::Killed:
-      sender_ = std::make_unique<SenderProcess>(port_, "jpeg");
+      sender_ = std::make_unique<SenderProcess>(port_, codec_);
       return;
     case Fault::OtherCodec:
       sender_ = std::make_unique<SenderProcess>(port_, "vp8");

@@ -27,7 +27,8 @@ struct FaultOutcome {
 class FaultDrill {
  public:
   // Sends, connects, registers and waits until it guides. Throws std::runtime_error when that takes a minute.
-  FaultDrill();
+  // codec: of what is sent, see stream_sender.cpp.
+  explicit FaultDrill(const std::string& codec = "jpeg");
   ~FaultDrill();
   // Waits no longer than patience_s for each of the three.
   [[nodiscard]] FaultOutcome run(Fault fault, double lasts_s, double patience_s);
@@ -41,6 +42,7 @@ class FaultDrill {
   void end(Fault fault);
 
   int port_;
+  std::string codec_;
   std::unique_ptr<SenderProcess> sender_;
   std::unique_ptr<theatre::LiveOperation> live_;
 };

@@ -1,6 +1,6 @@
 // Sends the marker scene by RTSP, rtsp://127.0.0.1:PORT/scope, until it is killed, and spoils it as it is
 // told:
-//   stream_sender PORT [jpeg|vp8]      then lines on standard input:
+//   stream_sender PORT [jpeg|vp8|h264]      then lines on standard input:
 //   live | black | frozen | torn | repeated | stalled | small
 // Says "listening" when it can be connected to. A program of its own, to be killed and to be stopped.
 #include <gst/app/gstappsrc.h>
@@ -76,9 +76,12 @@ int main(int count, char** arguments) {
   if (count < 2) return 2;
   gst_init(nullptr, nullptr);
   const std::string codec = count > 2 ? arguments[2] : "jpeg";
-  const std::string encoder = codec == "vp8" ? "vp8enc deadline=1 cpu-used=8 target-bitrate=8000000 "
-                                               "keyframe-max-dist=15 ! rtpvp8pay name=pay0"
-                                             : "jpegenc quality=92 ! rtpjpegpay name=pay0";
+  const std::string encoder =
+      codec == "vp8"    ? "vp8enc deadline=1 cpu-used=8 target-bitrate=8000000 keyframe-max-dist=15 ! "
+                          "rtpvp8pay name=pay0"
+      : codec == "h264" ? "openh264enc bitrate=8000000 rate-control=bitrate gop-size=15 complexity=low ! "
+                          "rtph264pay name=pay0 config-interval=-1"
+                        : "jpegenc quality=92 ! rtpjpegpay name=pay0";
   GstRTSPServer* const server = gst_rtsp_server_new();
   gst_rtsp_server_set_service(server, arguments[1]);
   GstRTSPMediaFactory* const factory = gst_rtsp_media_factory_new();
