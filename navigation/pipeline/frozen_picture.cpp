@@ -171,7 +171,7 @@ bool FrozenPicture::observe(const camera::GrayView& picture, std::int64_t timest
       row_.count >= kRepeatsTooMany && timestamp_ns - row_.since_ns >= kRepeatingFor_ns &&
       row_.count >= repeats_on_end(steps_, step_count_, static_cast<std::size_t>(row_.count));
   signs_.is_torn = torn_.observe(step, seam, height_, timestamp_ns);
-  signs_.repeat_share = share_of_repeats(timestamp_ns - 1'000'000'000);
+  signs_.repeat_share = share_of_repeats(timestamp_ns - 500'000'000);
 
   const Tiles drift = difference(anchor_);
   if (*std::max_element(drift.begin(), drift.end()) > kMostDrift) {

@@ -43,7 +43,7 @@ class FrozenPicture {
     bool is_blank = false;      // one grey all over: no light, or no signal
     bool is_torn = false;       // see torn_picture.h
     bool is_repeating = false;  // repeats for 60 ms, twice more than its way is: perhaps about to freeze
-    double repeat_share = 0;    // of the frames of the last second
+    double repeat_share = 0;    // of the frames of the last half second
   };
   [[nodiscard]] const Signs& signs() const { return signs_; }
   // Whether what lies within these corners stands still while the picture as a whole goes on: it is not of

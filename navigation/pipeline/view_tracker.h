@@ -37,7 +37,7 @@ struct PictureObservation {
   bool is_repeating = false;                        // for a tenth of a second: no pose stands, whatever comes
   bool is_torn = false;                             // of two moments: intrinsics_are_known is false then
   bool is_blank = false;                            // no light or no signal
-  double repeat_share = 0;                          // of the pictures of the last second
+  double repeat_share = 0;                          // of the pictures of the last half second
   camera::CameraModel camera;                       // of this frame
   std::vector<markers::MarkerObservation> markers;  // one for each declared marker, in their order
   std::vector<markers::MarkerCandidate> candidates;  // of this frame's search for markers, when there was one
