@@ -24,7 +24,7 @@ constexpr double kShareOfSpecks = 0.001;
 // known of it or it repeats much: one that repeats three frames in four never does that.
 constexpr int kRepeatsTooMany = 2, kRepeatsOnEnd = 5;
 constexpr std::int64_t kRepeatingFor_ns = 60'000'000;
-constexpr std::size_t kKnownAfter = 30;  // frames
+constexpr std::size_t kKnownAfter = 15;  // frames
 constexpr int kSampledRowsPerTile = 8;
 // Half of the tiles show nothing but noise also while the scope moves: the mask, the dark, the out-of-focus.
 constexpr double kNoiseQuantile = 0.6;
