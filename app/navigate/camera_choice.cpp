@@ -34,6 +34,9 @@ void CameraChoice::open(const std::vector<sources::ConnectedCamera>& cameras,
   const auto same = std::find(offered_.begin(), offered_.end(), before);
   if (same != offered_.end()) chosen_ = static_cast<std::size_t>(same - offered_.begin());
   wants_focus_ = offered_.empty();
+  // What did not open is there to be put right; a password is not shown again.
+  if (same == offered_.end() && before && sources::shown_address(before->address) == before->address)
+    text_ = before->address;
   if (!look) return;
   std::vector<previews::Opener> openers;
   for (const LivePictures& one : offered_) openers.emplace_back([look, one] { return look(one); });

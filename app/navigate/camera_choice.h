@@ -34,8 +34,8 @@ class CameraChoice {
  public:
   // Opens one to be looked at, on a thread of its own; must refuse what is in use.
   using Look = std::function<std::unique_ptr<sources::FrameSource>(const LivePictures&)>;
-  // Offers them; the one that was used before is chosen, else the first. Where there is none at all the field
-  // waits for an address. Without `look` nothing is previewed.
+  // Offers them; the one that was used before is chosen, else the first, and its address stands in the field.
+  // Where there is none at all the field waits for an address. Without `look` nothing is previewed.
   void open(const std::vector<sources::ConnectedCamera>& cameras, const std::vector<std::string>& streams,
             const std::optional<LivePictures>& before = std::nullopt, const Look& look = {});
   // The same with the field chosen, whatever is on offer.
@@ -54,6 +54,8 @@ class CameraChoice {
   // Takes an address as it was typed: what it opens. Empty: a tracker's, which opens nothing, or none, and
   // then trouble() says what an address looks like.
   [[nodiscard]] std::optional<LivePictures> take_address(std::string typed);
+  // What stands in the field.
+  [[nodiscard]] const std::string& typed() const { return text_; }
   // Of what was typed last; empty: nothing is wrong.
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
   // Of the outside tracker that was typed, "igtl://HOST:PORT", for whatever live source is begun from now on.

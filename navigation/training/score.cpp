@@ -116,20 +116,20 @@ std::string what_was_found(Measure measure, double value, const ExerciseFacts& f
     case Measure::Uncovered:
       return said + " of the view had no corners, in the mean of the pictures";
     case Measure::Refused:
-      return format("%d pictures taken, %d refused", static_cast<int>(facts.coverage.size()),
+      return format("Pictures taken: %d, refused: %d", static_cast<int>(facts.coverage.size()),
                     facts.refused_pictures);
     case Measure::Verification:
       return facts.verification_was_skipped         ? std::string("The verification was skipped")
              : facts.verifying_touches_missing == 0 ? std::string("Touches have verified the registration")
                                                     : "Verifying touches missing: " + said;
     case Measure::WastedTouches:
-      return format("%d touches, %d of them told nothing", facts.touches, facts.wasted_touches);
+      return format("Touches: %d, of which told nothing: %d", facts.touches, facts.wasted_touches);
     case Measure::DrawnInAir:
       return said + " of what was drawn was off the bone";
     case Measure::OutOfView:
       return "The tool's pose was unknown for " + said + " of the time";
     case Measure::AlarmsIgnored:
-      return format("%d alarms, %d of them ignored", facts.alarms, facts.alarms_ignored);
+      return format("Alarms: %d, ignored: %d", facts.alarms, facts.alarms_ignored);
     case Measure::ActedOnBadData:
       if (value <= 0) return "Nothing was done while the numbers were gone or wrong";
       return said + " were done while the numbers were gone or wrong" +

@@ -44,6 +44,15 @@ TEST(CameraChoice, WhatWasUsedBeforeIsChosen) {
   EXPECT_EQ(choice.chosen()->name, "Webcam") << "it is gone";
 }
 
+// An address that was mistyped is put right, not typed anew; a password does not come up again.
+TEST(CameraChoice, WhatDidNotOpenStandsInTheField) {
+  CameraChoice choice;
+  choice.open({}, {}, LivePictures{"rtsp://towr/scope", std::nullopt, "rtsp://towr/scope"});
+  EXPECT_EQ(choice.typed(), "rtsp://towr/scope");
+  choice.open({}, {}, LivePictures{"rtsp://tower/scop", std::nullopt, "rtsp://nurse:secret@tower/scop"});
+  EXPECT_EQ(choice.typed(), "");
+}
+
 // Where nothing is connected and nothing known, an address is all there is to say.
 TEST(CameraChoice, WithoutAnyTheFieldWaits) {
   CameraChoice choice;
