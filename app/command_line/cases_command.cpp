@@ -1,4 +1,5 @@
 #include <iostream>
+#include <set>
 
 #include "app/command_line/command.h"
 #include "app/library/workstation_library.h"
@@ -29,7 +30,8 @@ void say_done(const Context& context, const Arguments& arguments, const std::str
   if (!arguments.as_json && !arguments.as_csv) context.say(line);
 }
 
-void add_folder(const Context& context, library::Library& known, const Arguments& arguments) {
+// What was found there.
+std::set<fs::path> add_folder(const Context& context, library::Library& known, const Arguments& arguments) {
   Progress progress("Looking through folders", 0);
   const auto found =
       library::find_case_folders(arguments.add, [&](long looked) { progress.advance_to(looked); });
@@ -38,6 +40,7 @@ void add_folder(const Context& context, library::Library& known, const Arguments
   say_done(context, arguments,
            std::to_string(found.size()) + (found.size() == 1 ? " case found, " : " cases found, ") +
                std::to_string(fresh) + " of them new.");
+  return {found.begin(), found.end()};
 }
 
 std::vector<CaseRecord> looked_at(library::Library& known) {
@@ -84,7 +87,8 @@ void list_cases(const Context& context, const Arguments& arguments) {
   const auto opened = workstation_library::open_library();
   library::Library& known = *opened;
   for (const std::string& notice : known.notices()) std::cerr << "arthronaut: " << notice << '\n';
-  if (!arguments.add.empty()) add_folder(context, known, arguments);
+  std::set<fs::path> added;
+  if (!arguments.add.empty()) added = add_folder(context, known, arguments);
   if (!arguments.forget.empty()) {
     known.forget(arguments.forget);
     say_done(context, arguments, "Forgot " + arguments.forget + "; the folder stays as it is.");
@@ -101,6 +105,9 @@ void list_cases(const Context& context, const Arguments& arguments) {
   const std::vector<CaseRecord> all = looked_at(known);
   std::vector<CaseRecord> records;
   for (const std::size_t i : library::find_cases(all, query)) records.push_back(all[i]);
+  // Whoever adds a folder wants to see what was in it; what other programs read is the whole list.
+  if (!added.empty() && !arguments.as_json && !arguments.as_csv)
+    std::erase_if(records, [&](const CaseRecord& record) { return !added.contains(record.folder); });
   library::Identities identities;
   if (arguments.with_identity) identities = library::read_identities(records);
   const library::Identities* named = arguments.with_identity ? &identities : nullptr;
@@ -121,7 +128,8 @@ void add_cases_command(CLI::App& app, Context& context) {
                                  "arthronaut cases --add /data/knees\n"
                                  "  arthronaut cases --search \"left 2026-01\" --state drilled\n"
                                  "  arthronaut cases --csv > cohort.csv");
-  sub->add_option("--add", arguments->add, "Look through this folder for cases (*.arthro), and know them");
+  sub->add_option("--add", arguments->add,
+                  "Look through this folder for cases (*.arthro), know them and list these");
   sub->add_option("--forget", arguments->forget, "Take this case off the list; its folder stays as it is");
   CLI::Option* note = sub->add_option("--note", arguments->note, "Case folder to note --text with");
   CLI::Option* text =

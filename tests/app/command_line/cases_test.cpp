@@ -48,6 +48,14 @@ TEST_F(CasesCommand, FindsListsAndFilters) {
   EXPECT_THAT(cases({"--search", "right 2026-01"}).output, AllOf(HasSubstr("Beta"), Not(HasSubstr("Alpha"))));
 }
 
+// Adding a folder lists what was found there; another program reads the whole list.
+TEST_F(CasesCommand, ListsWhatWasAdded) {
+  EXPECT_THAT(cases({"--add", a_}).output, HasSubstr("Alpha, left knee"));
+  EXPECT_THAT(cases({"--add", folder_ / "knees" / "deep"}).output,
+              AllOf(HasSubstr("1 case found, 1 of them new"), HasSubstr("Beta"), Not(HasSubstr("Alpha"))));
+  EXPECT_EQ(nlohmann::json::parse(cases({"--add", b_, "--json"}).output).at("cases").size(), 2U);
+}
+
 TEST_F(CasesCommand, KeepsNotesInTheCase) {
   know_both();
   EXPECT_EQ(cases({"--note", a_, "--text", "look again\n#study"}).exit_code, 0);
