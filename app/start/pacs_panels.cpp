@@ -190,6 +190,7 @@ void PacsPane::draw_work(const widgets::Ui& ui, const widgets::Rect& area) {
     if (progress.total > 0)
       words += files::format(": %d of %d, %.1f MB", progress.done, progress.total,
                              static_cast<double>(progress.bytes) / 1e6);
+    if (!news.words.empty()) widgets::text_in(ui.theme.body, widgets::kCaution, news.words);
     widgets::text_in(ui.theme.strong, widgets::kText,
                      words + (has_running_work() ? ".  Esc stops; what came whole is kept" : "\u2026"));
     const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(20);

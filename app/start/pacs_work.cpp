@@ -132,12 +132,18 @@ PacsWork::PacsWork(std::function<void()> wake, fs::path program)
       worker_(
           worker::Backlog::Lossless,
           [program = std::move(program)](auto& inbox) {
-            while (const auto job = inbox.next()) {
+            while (auto job = inbox.next()) {
               PacsNews running;
               running.kind = job->kind;
               running.state = State::Running;
+              job->peer.connection.on_retry = [&](const pacs::Retry& retry) {
+                running.words = files::format("%s; tried again, %d of %d", retry.reason.c_str(), retry.number,
+                                              job->peer.connection.retries);
+                inbox.publish(running);
+              };
               inbox.publish(do_pacs_job(*job, program, [&](const pacs::TransferProgress& progress) {
                 running.progress = progress;
+                running.words.clear();
                 inbox.publish(running);
               }));
             }

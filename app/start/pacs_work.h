@@ -34,7 +34,8 @@ struct PacsJob {
 struct PacsNews {
   enum class State { Idle, Running, Done, Unreliable, Failed, Stopped } state = State::Idle;
   PacsJob::Kind kind = PacsJob::Kind::Echo;
-  std::string words;  // what came of it, in a sentence or two
+  // What came of it, in a sentence or two; while it runs that it is tried again, and why.
+  std::string words;
   pacs::TransferProgress progress;
   pacs::FindSummary found;            // Find
   pacs::RetrieveSummary retrieved;    // Fetch

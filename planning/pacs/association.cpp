@@ -117,9 +117,11 @@ std::string status_text(unsigned status, const std::string& comment) {
   return files::format("status 0x%04X", status) + meaning + (comment.empty() ? "" : ": " + comment);
 }
 
-void pause_before_retry(const ConnectionOptions& options, int attempt, const std::stop_token& stop) {
+void pause_before_retry(const ConnectionOptions& options, int attempt, const std::string& reason,
+                        const std::stop_token& stop) {
   const std::chrono::duration<double> pause(
       std::min(options.first_pause_s * std::pow(2.0, std::min(attempt, 10)), kLongestPause_s));
+  if (options.on_retry) options.on_retry({.reason = reason, .number = attempt + 1, .pause_s = pause.count()});
   std::mutex mutex;
   std::condition_variable_any never;
   std::unique_lock lock(mutex);
@@ -159,7 +161,7 @@ std::unique_ptr<Association> Association::connect(const Peer& peer, const Connec
     if (refusal.is_for_good || attempt >= options.retries)
       throw DeviceError(to_text(peer) + ": " + refusal.reason +
                         (attempt == 0 ? "" : " (tried " + std::to_string(attempt + 1) + " times)"));
-    pause_before_retry(options, attempt, stop);
+    pause_before_retry(options, attempt, refusal.reason, stop);
   }
   return nullptr;
 }

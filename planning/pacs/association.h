@@ -81,8 +81,9 @@ class Association {
   std::optional<std::stop_callback<std::function<void()>>> cut_when_stopped_;
 };
 
-// Waits, or less when stopped: the pause before try number `attempt`, from 0.
-void pause_before_retry(const ConnectionOptions& options, int attempt, const std::stop_token& stop);
+// Tells of it and waits, or less when stopped: the pause before try number `attempt`, from 0.
+void pause_before_retry(const ConnectionOptions& options, int attempt, const std::string& reason,
+                        const std::stop_token& stop);
 
 // What the peer said of why, beside a status: its error comment; empty when it said nothing. Frees it.
 [[nodiscard]] std::string take_comment(DcmDataset*& status_detail);

@@ -35,6 +35,13 @@ struct TlsOptions {
   std::string name;                         // empty: the peer's host
 };
 
+// A connection that did not come about, or broke, before it is tried again.
+struct Retry {
+  std::string reason;
+  int number = 1;      // of the tries without progress, from 1
+  double pause_s = 0;  // until then
+};
+
 struct ConnectionOptions {
   std::string our_ae_title = "ARTHRONAUT";
   std::optional<TlsOptions> tls;  // nullopt: in the clear
@@ -47,6 +54,8 @@ struct ConnectionOptions {
   // Where we listen while a peer sends on a connection of its own (C-MOVE, reports of storage commitment); 0:
   // nowhere. The peer must know our AE title with this host and port.
   int listening_port = 0;
+  // Called before each of these pauses, on the thread that works; may be empty.
+  std::function<void(const Retry& retry)> on_retry = {};
 };
 
 // Throws InvalidInput naming the option and its limits, or the file that is missing.

@@ -172,7 +172,7 @@ HttpAnswer HttpClient::perform(const HttpRequest& request) {
     if (stop_.stop_requested()) return {.was_stopped = true};
     if (attempt >= options_.retries)
       fail(reason + (attempt == 0 ? "" : " (tried " + std::to_string(attempt + 1) + " times)"));
-    pause_before_retry(options_, attempt, stop_);
+    pause_before_retry(options_, attempt, reason, stop_);
     if (stop_.stop_requested()) return {.was_stopped = true};
   }
 }

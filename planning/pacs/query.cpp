@@ -66,7 +66,7 @@ class Asker {
       }
       if (!outcome.is_broken || attempt >= connection_.retries) fail(peer_, outcome);
       association_.reset();
-      pause_before_retry(connection_, attempt, stop_);
+      pause_before_retry(connection_, attempt, outcome.refusal, stop_);
     }
   }
   void end() {

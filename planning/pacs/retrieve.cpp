@@ -163,7 +163,7 @@ class Retrieval {
                           "; " + waiting_words() + (series_.count() == 0 ? refusal_hint(by_move) : "");
         return Outcome::Incomplete;
       }
-      if (attempt.end == End::Broken) pause_before_retry(connection_, fruitless, stop_);
+      if (attempt.end == End::Broken) pause_before_retry(connection_, fruitless, attempt.reason, stop_);
     }
     return Outcome::Whole;
   }

@@ -94,7 +94,7 @@ class Sending {
       if (fruitless > connection_.retries)
         throw DeviceError(to_text(peer_) + ": broke off at " +
                           summary_.files[pending_.front()].file.string() + ": " + reason);
-      pause_before_retry(connection_, fruitless, stop_);
+      pause_before_retry(connection_, fruitless, reason, stop_);
     }
     return true;
   }

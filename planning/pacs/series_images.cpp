@@ -13,6 +13,7 @@ using images::utf8_text_of;
 
 // A frame an image, of the longest that are made.
 constexpr int kMostImages = 100000;
+constexpr const char* kBroke = "broke off while it listed the series";
 
 // False when the connection broke; throws when the peer refuses.
 bool ask(Association& association, const Peer& peer, DcmDataset& query,
@@ -83,9 +84,8 @@ SeriesImages ask_series_images(const Peer& peer, const ConnectionOptions& connec
                           " images of the series without a valid UID, which cannot be asked for");
       return found;
     }
-    if (attempt >= connection.retries)
-      throw DeviceError(to_text(peer) + ": broke off while it listed the series");
-    pause_before_retry(connection, attempt, stop);
+    if (attempt >= connection.retries) throw DeviceError(to_text(peer) + ": " + kBroke);
+    pause_before_retry(connection, attempt, kBroke, stop);
   }
   found.was_stopped = true;
   return found;

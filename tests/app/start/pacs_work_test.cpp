@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "planning/cases/case.h"
 #include "planning/phantom/phantom_case.h"
 #include "tests/planning/pacs/sent_series.h"
@@ -68,6 +70,27 @@ TEST_F(PacsWorkTest, AsksFindsAndFetches) {
   ASSERT_EQ(news.state, State::Done) << news.words;
   EXPECT_GE(news.retrieved.kept_count, 5);
   EXPECT_EQ(test::pixels_of(got), test::pixels_of(folder_ / "made"));
+}
+
+// While nobody answers it says so, and which try it is; not that it goes on as before.
+TEST_F(PacsWorkTest, SaysThatItTriesAgain) {
+  PacsPeer nobody{.name = "Nobody",
+                  .peer = {.ae_title = "NOBODY", .host = "127.0.0.1", .port = 1},
+                  .connection = test::quick_connection()};
+  nobody.connection.first_pause_s = 0.2;
+  std::set<std::string> said;
+  PacsWork work([] {});
+  work.start({.kind = Kind::Find, .peer = nobody, .keys = {.patient_id = "4711"}});
+  while (work.is_busy()) {
+    said.insert(work.news().words);
+    (void)work.poll();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_THAT(said, ::testing::Contains(
+                        ::testing::AllOf(HasSubstr("cannot be reached"), HasSubstr("tried again, 1 of 2"))));
+  EXPECT_THAT(said, ::testing::Contains(HasSubstr("tried again, 2 of 2")));
+  EXPECT_EQ(work.news().state, State::Failed);
+  EXPECT_THAT(work.news().words, HasSubstr("tried 3 times"));
 }
 
 // The same over DICOMweb: asked, sent, found and fetched; what the server says it has stored is done.
