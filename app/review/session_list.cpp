@@ -7,6 +7,7 @@
 
 #include "navigation/recording/session_facts.h"
 #include "planning/cases/case.h"
+#include "planning/files/within_folder.h"
 
 namespace arthronaut::review {
 
@@ -50,8 +51,11 @@ void SessionList::read() {
   reading_.start(
       [folders = folders_] {
         Lines lines;  // read_session_facts() throws nothing for what it finds
-        for (const auto& folder : folders)
-          lines.emplace(folder, session_line(recording::read_session_facts(folder)));
+        for (const auto& folder : folders) {
+          SessionLine line = session_line(recording::read_session_facts(folder));
+          line.words = files::within_folder(folder, std::move(line.words));
+          lines.emplace(folder, std::move(line));
+        }
         return lines;
       },
       wake_);
@@ -71,6 +75,7 @@ std::optional<std::size_t> SessionList::draw(const widgets::Ui& ui, std::optiona
     return std::nullopt;
   }
   std::optional<std::size_t> pressed;
+  const bool is_chosen_anew = std::exchange(in_view_, chosen) != chosen;
   ImFont* const font = ui.theme.body;
   const float sign = ui.theme.px(26), gap = ui.theme.px(8);
   ImGui::BeginChild("review.list",
@@ -88,6 +93,7 @@ std::optional<std::size_t> SessionList::draw(const widgets::Ui& ui, std::optiona
     ImGui::PushID(static_cast<int>(i));
     if (ImGui::Selectable("##session", chosen == i, 0, {0, font->FontSize + below + gap})) pressed = i;
     ImGui::PopID();
+    if (is_chosen_anew && chosen == i) ImGui::SetScrollHereY(0.5F);
     ui.log.note("review.session." + name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
     ui.log.note_state("session_line." + name, line.words);
     ImDrawList& draw = *ImGui::GetWindowDrawList();

@@ -47,6 +47,7 @@ class SessionList {
   worker::Awaited<Lines> reading_;
   bool reads_again_ = false;  // what is being read is of before
   Lines lines_;
+  std::optional<std::size_t> in_view_;  // the chosen one that was last brought into view
 };
 
 }  // namespace arthronaut::review

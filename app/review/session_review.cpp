@@ -1,9 +1,11 @@
 #include "app/review/session_review.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "app/guidance_severity/guidance_severity.h"
 #include "navigation/registration/registration_file.h"
+#include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::review {
@@ -104,8 +106,10 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
     for (const std::filesystem::path& file : operation::achieved_files(session_folder))
       review.achieved.push_back(operation::read_achieved_file(file));
   } catch (const std::runtime_error& error) {
-    review.achieved_problem = error.what();
+    review.achieved_problem = files::within_folder(session_folder, error.what());
   }
+  for (std::string& problem : review.problems)
+    problem = files::within_folder(session_folder, std::move(problem));
   return review;
 }
 

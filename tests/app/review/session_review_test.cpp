@@ -68,7 +68,7 @@ TEST(SessionReview, SaysWhichRegistrationIsBroken) {
   const SessionReview review = read_review(folder.path());
   EXPECT_EQ(review.standing_at(0).registration, nullptr);
   ASSERT_FALSE(review.problems.empty());
-  EXPECT_NE(review.problems.front().find("registration_1.json"), std::string::npos);
+  EXPECT_TRUE(review.problems.front().starts_with("registration_1.json: ")) << review.problems.front();
 }
 
 // What a session was made of is told with the word that it is a recording: a simulated one is nobody's knee.

@@ -1,0 +1,14 @@
+#include "planning/files/within_folder.h"
+
+#include <gtest/gtest.h>
+
+namespace arthronaut::files {
+
+TEST(WithinFolder, LeavesOutTheFolderAlone) {
+  EXPECT_EQ(within_folder("/data/Knee.arthro", "/data/Knee.arthro/sessions/0001/a.json: is broken"),
+            "sessions/0001/a.json: is broken");
+  EXPECT_EQ(within_folder("./", "./a.json: line 3. Then ./b.json"), "a.json: line 3. Then b.json");
+  EXPECT_EQ(within_folder("Knee", "Knee.arthro/a.json: is broken"), "Knee.arthro/a.json: is broken");
+}
+
+}  // namespace arthronaut::files
