@@ -3,23 +3,17 @@
 #include <algorithm>
 #include <future>
 #include <map>
+#include <utility>
 
 #include "app/scene/lateral_plane.h"
 #include "app/scene/notch_cut.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/geometry/error.h"
-#include "planning/landmarks/grid_landmarks.h"
+#include "planning/plan_review/proposed_landmarks.h"
 
 namespace arthronaut::open_case {
 
 namespace {
-
-// Whether the landmarks say where on the bone a point lies, in the percentages of the norms.
-bool has_grid(const landmarks::Landmarks& marks, bones::BoneKind kind, const geometry::TriangleMesh& mesh,
-              bones::Side side) {
-  return kind == bones::BoneKind::Femur ? landmarks::femoral_quadrant(mesh, marks, side).has_value()
-                                        : landmarks::tibial_grid(marks).has_value();
-}
 
 geometry::Bounds joined(geometry::Bounds all, const geometry::Bounds& other) {
   all.min_mm = all.min_mm.cwiseMin(other.min_mm);
@@ -33,31 +27,25 @@ constexpr std::size_t kMovingTriangles = 6000;
 }  // namespace
 
 PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
-  // Side by side, since each takes two seconds. A default plan asks for it, too, as long as somebody has to
-  // look at the grid: not then, when a key is pressed.
-  std::map<bones::BoneKind, std::future<landmarks::Proposal>> proposals;
-  for (const auto& [kind, bone] : knee_.bones) {
-    const landmarks::Landmarks& marks = knee_.landmarks[kind];
-    if (bone.mesh.empty() || (has_grid(marks, kind, bone.mesh, knee_.side) &&
-                              landmarks::is_grid_confirmed(kind, marks, knee_.landmark_states[kind])))
-      continue;
-    proposals[kind] = std::async(std::launch::async, [&mesh = bone.mesh, kind = kind, side = knee_.side] {
-      return landmarks::propose(mesh, kind, {.side = side});
-    });
-  }
-  for (const auto& [kind, bone] : knee_.bones) {
-    if (bone.mesh.empty()) continue;
-    BoneModel& made = bones_[kind];
-    made.drawn = scene::simplified(bone.mesh);
-    made.review.surface = std::make_shared<const geometry::Surface>(bone.mesh);
-    made.bounds = geometry::bounds_of(bone.mesh);
-    made.mesh_sha256 = bones::mesh_sha256(bone.mesh);
-    if (const auto proposed = proposals.find(kind); proposed != proposals.end())
-      made.proposal = proposed->second.get();
-    if (!has_grid(knee_.landmarks[kind], kind, bone.mesh, knee_.side)) {
-      const landmarks::Landmarks before = knee_.landmarks[kind];
-      landmarks::take_proposal(*made.proposal, knee_.landmarks[kind], knee_.landmark_states[kind]);
-      made.was_proposed = knee_.landmarks[kind] != before;
+  // Beside the proposals, which take seconds.
+  auto made_ready = std::async(std::launch::async, [&] {
+    for (const auto& [kind, bone] : std::as_const(knee_.bones)) {
+      if (bone.mesh.empty()) continue;
+      BoneModel& made = bones_[kind];
+      made.drawn = scene::simplified(bone.mesh);
+      made.review.surface = std::make_shared<const geometry::Surface>(bone.mesh);
+      made.bounds = geometry::bounds_of(bone.mesh);
+      made.mesh_sha256 = bones::mesh_sha256(bone.mesh);
+    }
+  });
+  // A default plan asks for the proposal, too, as long as somebody has to look at the grid: not then, when a
+  // key is pressed.
+  auto proposed = plan_review::propose_landmarks(knee_, plan_review::Proposing::WithoutConfirmed);
+  made_ready.get();
+  for (auto& [kind, made] : bones_) {
+    if (const auto found = proposed.find(kind); found != proposed.end()) {
+      made.proposal = std::move(found->second.proposal);
+      made.was_proposed = found->second.was_taken;
     }
     use_landmarks(kind);
     for (const tunnels::TunnelKey& key : knee_.plan.of(kind))

@@ -3,6 +3,7 @@
 #include "planning/cases/identity.h"
 #include "planning/geometry/error.h"
 #include "planning/plan_review/plan_review.h"
+#include "planning/plan_review/proposed_landmarks.h"
 #include "planning/postop/postop_source.h"
 
 namespace arthronaut::open_case {
@@ -38,12 +39,14 @@ void doubt(postop::Comparison& comparison, const std::string& reason) {
   comparison.tunnel.reasons.push_back(reason);
 }
 
-void add_places(const cases::Case& knee, PostopAnswer& answer) {
+void add_places(cases::Case knee, PostopAnswer& answer) {
+  plan_review::propose_landmarks(knee, plan_review::Proposing::WithoutGrid);
   const plan_review::CaseReview review(knee);
   for (const auto& [key, comparison] : answer.comparisons)
     if (comparison.tunnel.is_found)
       answer.places.emplace(key, postop::place_of(comparison.tunnel, knee.plan.tunnels.at(key),
-                                                  review.bone(key.bone).surroundings));
+                                                  review.bone(key.bone).surroundings,
+                                                  plan_review::state_of_grid(knee, key.bone)));
 }
 
 void compare_all(const cases::Case& knee, const std::vector<tunnels::Tunnel>& plan,

@@ -31,7 +31,7 @@ struct PostopQuestion {
 struct PostopAnswer {
   std::map<tunnels::TunnelKey, postop::Comparison>
       comparisons;  // one for each planned tunnel that was asked for
-  // Of those that were found, by the landmarks that the case has.
+  // Of those that were found, by the case's landmarks, or where these give no grid by what is proposed.
   std::map<tunnels::TunnelKey, postop::AchievedPlace> places;
   images::Volume images;     // as they were read
   bool was_stopped = false;  // then there may be fewer comparisons

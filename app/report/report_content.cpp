@@ -7,7 +7,9 @@
 
 #include "navigation/recording/case_sessions.h"
 #include "navigation/recording/session_check.h"
+#include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
+#include "planning/plan_review/proposed_landmarks.h"
 #include "planning/postop/achieved_file.h"
 #include "planning/tunnels/tunnel.h"
 
@@ -15,15 +17,8 @@ namespace arthronaut::report {
 
 namespace {
 
-// Why a file of the case cannot be read, without where the case lies: a folder may bear the patient's name.
-std::string reason_in_case(const Content& content, std::string reason) {
-  const std::string folder = (content.folder / "").string();  // with the stroke: "." stands in any sentence
-  for (auto at = reason.find(folder); at != std::string::npos; at = reason.find(folder, at))
-    reason.erase(at, folder.size());
-  return reason;
-}
-
-// A broken session takes nothing else away: it is named, and another one is told of.
+// A broken session takes nothing else away: it is named, and another one is told of. Where the case lies is
+// told nowhere: a folder may bear the patient's name.
 template <typename Read>
 void unless_unreadable(const std::filesystem::path& session, Content& content, const Read& read) {
   const std::string name = session.filename().string();
@@ -32,9 +27,9 @@ void unless_unreadable(const std::filesystem::path& session, Content& content, c
   try {
     read();
   } catch (const InvalidInput& error) {
-    content.unreadable.emplace_back(name, reason_in_case(content, error.what()));
+    content.unreadable.emplace_back(name, files::within_folder(content.folder, error.what()));
   } catch (const IoError& error) {
-    content.unreadable.emplace_back(name, reason_in_case(content, error.what()));
+    content.unreadable.emplace_back(name, files::within_folder(content.folder, error.what()));
   }
 }
 
@@ -104,9 +99,9 @@ void add_looked_at(Content& content) {
   try {
     content.marks = recording::read_marks(folder);
   } catch (const InvalidInput& error) {
-    content.marks_problem = reason_in_case(content, error.what());
+    content.marks_problem = files::within_folder(content.folder, error.what());
   } catch (const IoError& error) {
-    content.marks_problem = reason_in_case(content, error.what());
+    content.marks_problem = files::within_folder(content.folder, error.what());
   }
 }
 
@@ -121,7 +116,8 @@ void add_places(Content& content) {
     const bool is_known = comparison.tunnel.is_found && content.review->has_bone(key.bone);
     if (is_known && is_of_the_plan(content, key, comparison.tunnel))
       content.places.emplace(key, postop::place_of(comparison.tunnel, content.knee.plan.tunnels.at(key),
-                                                   content.review->bone(key.bone).surroundings));
+                                                   content.review->bone(key.bone).surroundings,
+                                                   plan_review::state_of_grid(content.knee, key.bone)));
   }
 }
 
@@ -132,13 +128,20 @@ void add_postoperative(Content& content) {
   try {
     content.postoperative = postop::read_achieved_file(file);
   } catch (const InvalidInput& error) {
-    content.postoperative_problem = reason_in_case(content, error.what());
+    content.postoperative_problem = files::within_folder(content.folder, error.what());
   } catch (const IoError& error) {
-    content.postoperative_problem = reason_in_case(content, error.what());
+    content.postoperative_problem = files::within_folder(content.folder, error.what());
   }
 }
 
 }  // namespace
+
+bool has_proposed_grid(const Content& content, bones::BoneKind bone) {
+  if (!content.review->has_bone(bone)) return false;
+  const tunnels::PlanSurroundings& surroundings = content.review->bone(bone).surroundings;
+  return (surroundings.quadrant || surroundings.plateau) &&
+         plan_review::state_of_grid(content.knee, bone) == landmarks::LandmarkState::Proposed;
+}
 
 std::optional<postop::AchievedPlace> place_of(const Content& content,
                                               const operation::AchievedTunnel& achieved) {
@@ -146,7 +149,8 @@ std::optional<postop::AchievedPlace> place_of(const Content& content,
   if (!content.review->has_bone(bone)) return std::nullopt;
   const double depth_mm = achieved.depth_mm.value_or(std::numeric_limits<double>::infinity());
   return postop::place_of(achieved.measured, depth_mm, achieved.planned,
-                          content.review->bone(bone).surroundings);
+                          content.review->bone(bone).surroundings,
+                          plan_review::state_of_grid(content.knee, bone));
 }
 
 std::string verdict_of(const Content& content, const tunnels::TunnelKey& key) {
@@ -191,6 +195,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   if (options.session.empty())
     for (auto it = sessions.rbegin(); it != sessions.rend() && content.achieved.empty(); ++it)
       take_session(*it, content);
+  plan_review::propose_landmarks(content.knee, plan_review::Proposing::WithoutGrid);
   content.review = std::make_unique<const plan_review::CaseReview>(content.knee);
   add_earlier(sessions, content);
   add_postoperative(content);

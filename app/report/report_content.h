@@ -25,7 +25,7 @@ namespace arthronaut::report {
 // What the report tells of: the case and, where there is one, the session that matters.
 struct Content {
   std::filesystem::path folder;
-  cases::Case knee;
+  cases::Case knee;  // with proposed landmarks where its own give no grid
   std::unique_ptr<const plan_review::CaseReview> review = nullptr;  // of `knee`; never null once gathered
   cases::BoneDoubts bone_doubts = {};
   std::unique_ptr<recording::RecordedSession> session;
@@ -53,6 +53,8 @@ struct Content {
 // Throws IoError or InvalidInput (file, place, reason).
 [[nodiscard]] Content gather(const std::filesystem::path& folder, const ReportOptions& options);
 
+// Whether percentages and axes of this bone follow from landmarks of which nobody has looked at all.
+[[nodiscard]] bool has_proposed_grid(const Content& content, bones::BoneKind bone);
 // Where navigation says that it was drilled; nullopt where the case lacks the bone.
 [[nodiscard]] std::optional<postop::AchievedPlace> place_of(const Content& content,
                                                             const operation::AchievedTunnel& achieved);

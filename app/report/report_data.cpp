@@ -170,6 +170,9 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
   json["bone_doubts"] = ordered_json::object();
   for (const auto& [kind, doubts] : content.bone_doubts)
     json["bone_doubts"][std::string(bones::to_text(kind))] = doubts;
+  json["proposed_landmarks"] = ordered_json::array();  // bones whose grid and axes follow from such
+  for (const auto& [kind, bone] : content.knee.bones)
+    if (has_proposed_grid(content, kind)) json["proposed_landmarks"].push_back(bones::to_text(kind));
   json["tunnels"] = tunnels_of(content);
   json["session"] = session_of(content, options);
   json["unreadable_sessions"] = ordered_json::array();

@@ -9,6 +9,7 @@
 #include "app/widgets/list_rows.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
+#include "planning/plan_review/proposed_landmarks.h"
 #include "planning/postop/achieved_file.h"
 
 namespace arthronaut::review {
@@ -91,7 +92,8 @@ const Places& PostopPage::places() {
   places_.clear();
   for (const auto& [key, plan] : planned())
     if (const auto& found = comparisons_.at(key).tunnel; found.is_found && model_->has_bone(key.bone))
-      places_.emplace(key, postop::place_of(found, plan, model_->surroundings(key.bone)));
+      places_.emplace(key, postop::place_of(found, plan, model_->surroundings(key.bone),
+                                            plan_review::state_of_grid(model_->knee(), key.bone)));
   return places_;
 }
 

@@ -115,6 +115,9 @@ void put_place(ordered_json& node, const AchievedPlace& place) {
     node["grid"].push_back({{"name", share.name},
                             {"planned_percent", share.planned_percent},
                             {"achieved_percent", share.achieved_percent}});
+  const bool by_landmarks =
+      !place.grid.empty() || place.axes_from == landmarks::AnatomicalAxes::Origin::FromLandmarks;
+  node["landmarks"] = by_landmarks ? ordered_json(landmarks::to_text(place.landmarks_are)) : ordered_json();
   node["wall_mm"] = number(place.wall_mm.has_value(), place.wall_mm.value_or(0));
   node["planned_wall_mm"] = number(place.planned_wall_mm.has_value(), place.planned_wall_mm.value_or(0));
 }

@@ -31,11 +31,18 @@ std::vector<AchievedPlace::Share> shares(const Vector3d& planned, const Vector3d
   return {};
 }
 
+constexpr const char* kByProposed = " (by proposed landmarks)";
+bool is_by_proposed(const AchievedPlace& place) {
+  return place.landmarks_are == landmarks::LandmarkState::Proposed;
+}
+
 }  // namespace
 
 AchievedPlace place_of(const tunnels::Tunnel& drilled, double depth_mm, const tunnels::Tunnel& plan,
-                       const tunnels::PlanSurroundings& surroundings) {
+                       const tunnels::PlanSurroundings& surroundings,
+                       landmarks::LandmarkState landmarks_are) {
   AchievedPlace place;
+  place.landmarks_are = landmarks_are;
   if (surroundings.axes) {
     const Vector3d off = drilled.entry_mm - plan.entry_mm;
     const landmarks::AnatomicalAxes& axes = *surroundings.axes;
@@ -52,9 +59,11 @@ AchievedPlace place_of(const tunnels::Tunnel& drilled, double depth_mm, const tu
 }
 
 AchievedPlace place_of(const AchievedTunnel& achieved, const tunnels::Tunnel& plan,
-                       const tunnels::PlanSurroundings& surroundings) {
+                       const tunnels::PlanSurroundings& surroundings,
+                       landmarks::LandmarkState landmarks_are) {
   constexpr double kOut = std::numeric_limits<double>::infinity();
-  return place_of(achieved.tunnel, achieved.comes_out ? kOut : achieved.length_mm, plan, surroundings);
+  return place_of(achieved.tunnel, achieved.comes_out ? kOut : achieved.length_mm, plan, surroundings,
+                  landmarks_are);
 }
 
 std::string off_in_words(const AchievedPlace& place) {
@@ -72,9 +81,12 @@ std::string off_in_words(const AchievedPlace& place) {
              files::format("%.1f mm %s", std::abs(mm), std::string(to_text(direction, mm > 0)).c_str());
   }
   if (words.empty()) return "in place";
-  return place.axes_from == landmarks::AnatomicalAxes::Origin::FromScanner
-             ? words + " (by " + std::string(to_text(place.axes_from)) + ")"
-             : words;
+  using Origin = landmarks::AnatomicalAxes::Origin;
+  if (place.axes_from == Origin::FromScanner)
+    words += " (by " + std::string(to_text(place.axes_from)) + ")";
+  else if (place.axes_from == Origin::FromLandmarks && is_by_proposed(place))
+    words += kByProposed;
+  return words;
 }
 
 std::string grid_in_words(const AchievedPlace& place) {
@@ -85,7 +97,7 @@ std::string grid_in_words(const AchievedPlace& place) {
     words += (words.empty() ? "" : "; ") + files::format("%s %.1f %%, planned %.1f %%", name.c_str(),
                                                          share.achieved_percent, share.planned_percent);
   }
-  return words;
+  return words.empty() || !is_by_proposed(place) ? words : words + kByProposed;
 }
 
 std::string wall_in_words(const AchievedPlace& place) {

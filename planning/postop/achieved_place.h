@@ -17,6 +17,8 @@ struct AchievedPlace {
   // Of the drilled entry from the planned one: anterior, proximal and lateral, along the bone's own axes.
   Eigen::Vector3d off_mm = Eigen::Vector3d::Zero();
   landmarks::AnatomicalAxes::Origin axes_from = landmarks::AnatomicalAxes::Origin::FromScanner;
+  // What the landmarks are that axes and grid follow from.
+  landmarks::LandmarkState landmarks_are = landmarks::LandmarkState::Confirmed;
   struct Share {
     std::string_view name;  // "Deep to shallow", as the checks of a plan call it
     double planned_percent = 0, achieved_percent = 0;
@@ -28,18 +30,21 @@ struct AchievedPlace {
 };
 
 // depth_mm: how far it was drilled, from its entry; infinite: out of the bone, or nobody knows. surroundings:
-// of the bone of both, with its axes and its surface.
+// of the bone of both, with its axes and its surface. landmarks_are: those of the surroundings.
 [[nodiscard]] AchievedPlace place_of(const tunnels::Tunnel& drilled, double depth_mm,
                                      const tunnels::Tunnel& plan,
-                                     const tunnels::PlanSurroundings& surroundings);
+                                     const tunnels::PlanSurroundings& surroundings,
+                                     landmarks::LandmarkState landmarks_are);
 // Precondition: the tunnel was found.
 [[nodiscard]] AchievedPlace place_of(const AchievedTunnel& achieved, const tunnels::Tunnel& plan,
-                                     const tunnels::PlanSurroundings& surroundings);
+                                     const tunnels::PlanSurroundings& surroundings,
+                                     landmarks::LandmarkState landmarks_are);
 
 // "1.9 mm proximal, 0.6 mm posterior", the farthest first, what rounds to nothing left out; "in place" where
-// all does. Axes that are only the scanner's are named.
+// all does. Axes that are only the scanner's, or by landmarks that nobody has looked at, are named.
 [[nodiscard]] std::string off_in_words(const AchievedPlace& place);
-// "deep to shallow 31.2 %, planned 28.4 %; high to low ..."; empty without a grid.
+// "deep to shallow 31.2 %, planned 28.4 %; high to low ...", and that the landmarks are proposed ones where
+// they are; empty without a grid.
 [[nodiscard]] std::string grid_in_words(const AchievedPlace& place);
 // "1.8 mm; planned 2.6 mm"; empty where the drilled one's is not known.
 [[nodiscard]] std::string wall_in_words(const AchievedPlace& place);

@@ -138,8 +138,11 @@ TEST_F(CompareCommand, AnotherPatientIsNotReliable) {
   EXPECT_FALSE(achieved.at("bones").at(0).at("reliable").get<bool>());
 }
 
-// The drilled bone as a mesh, as the plan's own export makes it.
+// The drilled bone as a mesh, as the plan's own export makes it. The case has no landmarks: what its shape
+// proposes gives the percentages, and is said to be proposed.
 TEST_F(CompareCommand, TakesAMeshOfTheDrilledBone) {
+  knee_.landmarks.clear();
+  cases::save_case(folder_ / "knee.arthro", knee_);
   const auto drilled = plan_export::drill(made_.femur.mesh, made_.femoral_tunnel);
   ASSERT_TRUE(drilled.is_usable());
   bones::write_mesh_stl(folder_ / "drilled.stl", drilled.mesh);
@@ -148,6 +151,8 @@ TEST_F(CompareCommand, TakesAMeshOfTheDrilledBone) {
   const json found = json::parse(result.output).at("tunnels").at(0);
   EXPECT_LT(found.at("offset_mm").get<double>(), 0.2);
   EXPECT_LT(found.at("angle_deg").get<double>(), 0.3);
+  EXPECT_EQ(found.at("landmarks"), "proposed");
+  EXPECT_EQ(found.at("grid").size(), 2U);
   EXPECT_NEAR(found.at("diameter_mm").get<double>(), 9, 0.2);
 }
 

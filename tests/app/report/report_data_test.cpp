@@ -10,6 +10,7 @@
 #include "navigation/recording/session_marks.h"
 #include "planning/cases/identity.h"
 #include "planning/plan_review/plan_review.h"
+#include "planning/plan_review/proposed_landmarks.h"
 #include "planning/postop/achieved_file.h"
 #include "tests/app/report/reported_case.h"
 
@@ -124,6 +125,29 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
   const auto csv_file = pdf().parent_path() / "report.csv";
   write_report(knee_folder(), csv_file);
   expect_contains(files::read_text(csv_file), "postoperative/1/achieved/diameter_mm,8.4\n");
+  // Without landmarks the same percentages as everywhere, by what the shape proposes, and that is said.
+  const auto placed = knee_.landmarks;
+  knee_.landmarks.clear();
+  cases::save_case(knee_folder(), knee_);
+  write_report(knee_folder(), json_file);
+  const auto bare = nlohmann::json::parse(files::read_text(json_file));
+  EXPECT_EQ(bare.at("proposed_landmarks"), nlohmann::json({"femur", "tibia"}));
+  const auto& by_shape = bare.at("postoperative").at(0);
+  EXPECT_EQ(by_shape.at("landmarks"), "proposed");
+  plan_review::propose_landmarks(knee_, plan_review::Proposing::WithoutGrid);
+  const tunnels::TunnelKey femur = bones::BoneKind::Femur;
+  const auto place = postop::place_of(comparisons.at(femur).tunnel, knee_.plan.tunnels.at(femur),
+                                      plan_review::CaseReview(knee_).bone(femur.bone).surroundings,
+                                      plan_review::state_of_grid(knee_, femur.bone));
+  EXPECT_NEAR(by_shape.at("off_plan").at("anterior_mm").get<double>(), place.off_mm.x(), 1e-9);
+  EXPECT_NEAR(by_shape.at("grid").at(0).at("achieved_percent").get<double>(),
+              place.grid.at(0).achieved_percent, 1e-9);
+  write_report(knee_folder(), pdf());
+  text = pdf_text();
+  expect_contains(text, "proposed landmarks)");
+  expect_contains(text, "Landmarks: proposed by the program");
+  knee_.landmarks = placed;
+  knee_.landmark_states.clear();
   // The plan goes elsewhere: the differences are not those to it.
   tunnels::Tunnel moved = knee_.plan.tunnels.at(bones::BoneKind::Femur);
   moved.entry_mm += 3 * moved.direction.unitOrthogonal();

@@ -8,6 +8,9 @@
 namespace arthronaut::postop {
 namespace {
 
+using landmarks::LandmarkState;
+constexpr LandmarkState kConfirmed = LandmarkState::Confirmed;
+
 class AchievedPlaceTest : public ::testing::Test {
  protected:
   [[nodiscard]] static tunnels::PlanSurroundings around(const bones::Bone& bone,
@@ -29,12 +32,25 @@ TEST_F(AchievedPlaceTest, SaysWhichWayTheEntryIsOff) {
   AchievedTunnel achieved = drilled(knee_.femoral_tunnel);
   const landmarks::AnatomicalAxes& axes = femur_.axes.value();
   achieved.tunnel.entry_mm += -1.5 * axes.anterior + 2.5 * axes.proximal + 0.02 * axes.lateral;
-  AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, femur_);
+  AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, femur_, kConfirmed);
   EXPECT_LT((place.off_mm - Eigen::Vector3d(-1.5, 2.5, 0.02)).norm(), 1e-9);
   EXPECT_EQ(off_in_words(place), "2.5 mm proximal, 1.5 mm posterior");
   place.axes_from = landmarks::AnatomicalAxes::Origin::FromScanner;
   EXPECT_EQ(off_in_words(place), "2.5 mm proximal, 1.5 mm posterior (by the scanner's axes)");
   EXPECT_EQ(off_in_words({}), "in place");
+}
+
+// What follows from landmarks that nobody has looked at says so; the bone's shaft is no landmark.
+TEST_F(AchievedPlaceTest, SaysThatTheLandmarksAreProposed) {
+  AchievedTunnel achieved = drilled(knee_.femoral_tunnel);
+  achieved.tunnel.entry_mm += 1.5 * femur_.axes.value().anterior;
+  const AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, femur_, LandmarkState::Proposed);
+  EXPECT_EQ(off_in_words(place), "1.5 mm anterior (by proposed landmarks)");
+  EXPECT_TRUE(grid_in_words(place).ends_with(" % (by proposed landmarks)")) << grid_in_words(place);
+  const auto by_shape =
+      place_of(achieved, knee_.femoral_tunnel, around(knee_.femur, {}), LandmarkState::Proposed);
+  EXPECT_EQ(off_in_words(by_shape).find("landmarks"), std::string::npos);
+  EXPECT_EQ(grid_in_words(by_shape), "");
 }
 
 // A tenth of the grid's depth shallower and a twentieth of its height lower; on the tibia a tenth posterior.
@@ -43,7 +59,7 @@ TEST_F(AchievedPlaceTest, SaysWhereBothAreInTheGrid) {
   AchievedTunnel achieved = drilled(knee_.femoral_tunnel);
   achieved.tunnel.entry_mm +=
       0.1 * quadrant.depth_mm * quadrant.shallow + 0.05 * quadrant.height_mm * quadrant.low;
-  AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, femur_);
+  AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, femur_, kConfirmed);
   ASSERT_EQ(place.grid.size(), 2U);
   const auto planned = quadrant.percent_of(knee_.femoral_tunnel.entry_mm);
   EXPECT_NEAR(place.grid[0].planned_percent, planned.deep_shallow, 1e-9);
@@ -55,7 +71,7 @@ TEST_F(AchievedPlaceTest, SaysWhereBothAreInTheGrid) {
   const tunnels::PlanSurroundings tibia = around(knee_.tibia, knee_.tibia_landmarks);
   achieved = drilled(knee_.tibial_tunnel);
   achieved.tunnel.entry_mm += 0.1 * tibia.plateau.value().depth_mm * tibia.plateau->posterior;
-  place = place_of(achieved, knee_.tibial_tunnel, tibia);
+  place = place_of(achieved, knee_.tibial_tunnel, tibia, kConfirmed);
   ASSERT_EQ(place.grid.size(), 2U);
   EXPECT_EQ(place.grid[0].name, "Anterior to posterior");
   EXPECT_NEAR(place.grid[0].achieved_percent - place.grid[0].planned_percent, 10, 1e-9);
@@ -69,14 +85,14 @@ TEST_F(AchievedPlaceTest, SaysHowMuchBoneIsLeftBesideIt) {
   achieved.tunnel.diameter_mm += 1;
   const auto planned = tunnels::measure(knee_.femoral_tunnel, *femur_.surface),
              wider = tunnels::measure(achieved.tunnel, *femur_.surface);
-  const AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, femur_);
+  const AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, femur_, kConfirmed);
   EXPECT_EQ(place.planned_wall_mm, planned.wall_mm);
   EXPECT_EQ(place.wall_mm, wider.wall_mm);
   achieved.comes_out = false;
   achieved.length_mm = wider.thinnest_station_mm + 0.1;
-  EXPECT_TRUE(place_of(achieved, knee_.femoral_tunnel, femur_).wall_mm);
+  EXPECT_TRUE(place_of(achieved, knee_.femoral_tunnel, femur_, kConfirmed).wall_mm);
   achieved.length_mm = wider.thinnest_station_mm - 0.1;
-  const AchievedPlace socket = place_of(achieved, knee_.femoral_tunnel, femur_);
+  const AchievedPlace socket = place_of(achieved, knee_.femoral_tunnel, femur_, kConfirmed);
   EXPECT_FALSE(socket.wall_mm);
   EXPECT_EQ(wall_in_words(socket), "");
   EXPECT_EQ(wall_in_words({.planned_wall_mm = 2.61, .wall_mm = 1.84}), "1.8 mm; planned 2.6 mm");
@@ -87,7 +103,7 @@ TEST_F(AchievedPlaceTest, SaysNothingOfAGridThatIsNotThere) {
   const auto shape_alone = around(knee_.femur, {});
   AchievedTunnel achieved = drilled(knee_.femoral_tunnel);
   achieved.tunnel.entry_mm += Eigen::Vector3d(0, 0, 1);
-  const AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, shape_alone);
+  const AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, shape_alone, kConfirmed);
   EXPECT_TRUE(place.grid.empty());
   EXPECT_EQ(grid_in_words(place), "");
   EXPECT_NEAR(place.off_mm.norm(), 1, 1e-9);

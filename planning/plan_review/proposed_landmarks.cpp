@@ -1,0 +1,57 @@
+#include "planning/plan_review/proposed_landmarks.h"
+
+#include <future>
+
+#include "planning/landmarks/grid_landmarks.h"
+#include "planning/landmarks/insertion_grids.h"
+
+namespace arthronaut::plan_review {
+
+namespace {
+
+bool has_grid(const cases::Case& knee, bones::BoneKind kind) {
+  const landmarks::Landmarks& marks = knee.landmarks.at(kind);
+  return kind == bones::BoneKind::Femur
+             ? landmarks::femoral_quadrant(knee.bones.at(kind).mesh, marks, knee.side).has_value()
+             : landmarks::tibial_grid(marks).has_value();
+}
+
+}  // namespace
+
+std::map<bones::BoneKind, ProposedBone> propose_landmarks(cases::Case& knee, Proposing proposing) {
+  std::map<bones::BoneKind, std::future<landmarks::Proposal>> coming;
+  for (const auto& [kind, bone] : knee.bones) {
+    knee.landmarks[kind];  // there for every bone, if empty
+    knee.landmark_states[kind];
+    if (bone.mesh.empty()) continue;
+    if (has_grid(knee, kind) && (proposing == Proposing::WithoutGrid ||
+                                 state_of_grid(knee, kind) == landmarks::LandmarkState::Confirmed))
+      continue;
+    coming[kind] = std::async(std::launch::async, [&mesh = bone.mesh, kind = kind, side = knee.side] {
+      return landmarks::propose(mesh, kind, {.side = side});
+    });
+  }
+  std::map<bones::BoneKind, ProposedBone> proposed;
+  for (auto& [kind, proposal] : coming) {
+    ProposedBone& bone = proposed[kind];
+    bone.proposal = proposal.get();
+    if (has_grid(knee, kind)) continue;
+    const landmarks::Landmarks before = knee.landmarks[kind];
+    landmarks::take_proposal(bone.proposal, knee.landmarks[kind], knee.landmark_states[kind]);
+    bone.was_taken = knee.landmarks[kind] != before;
+  }
+  return proposed;
+}
+
+landmarks::LandmarkState state_of_grid(const cases::Case& knee, bones::BoneKind kind) {
+  const auto marks = knee.landmarks.find(kind);
+  const auto states = knee.landmark_states.find(kind);
+  const bool is_confirmed =
+      marks != knee.landmarks.end() &&
+      landmarks::is_grid_confirmed(
+          kind, marks->second,
+          states == knee.landmark_states.end() ? landmarks::LandmarkStates{} : states->second);
+  return is_confirmed ? landmarks::LandmarkState::Confirmed : landmarks::LandmarkState::Proposed;
+}
+
+}  // namespace arthronaut::plan_review

@@ -1,0 +1,29 @@
+// Landmarks of a case whose own say nothing of where on the bone a point lies: the same proposed ones
+// wherever the case is looked at.
+#pragma once
+
+#include <map>
+
+#include "planning/cases/case.h"
+#include "planning/landmarks/propose.h"
+
+namespace arthronaut::plan_review {
+
+// Which bones proposals are made for: two seconds each, side by side.
+enum class Proposing {
+  WithoutGrid,       // whose landmarks give no grid
+  WithoutConfirmed,  // these, and those of whose grid somebody has still to look at a landmark
+};
+struct ProposedBone {
+  landmarks::Proposal proposal;
+  bool was_taken = false;
+};
+
+// Bones without a grid take what is proposed, as proposed; landmarks that somebody confirmed stay. What was
+// proposed, by bone. Afterwards every bone has landmarks and states, if empty ones. Nothing is saved.
+std::map<bones::BoneKind, ProposedBone> propose_landmarks(cases::Case& knee, Proposing proposing);
+
+// Of the landmarks that the bone's grid follows from, and mostly its axes, the one least looked at.
+[[nodiscard]] landmarks::LandmarkState state_of_grid(const cases::Case& knee, bones::BoneKind kind);
+
+}  // namespace arthronaut::plan_review
