@@ -103,7 +103,8 @@ void TrainingView::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {
   for (const std::string_view step : chosen().steps)
     widgets::text_in(ui.theme.body, widgets::kText, format("%d  ", ++number) + std::string(step));
   ImGui::Spacing();
-  widgets::text_in(ui.theme.strong, widgets::kCaution,
+  const bool is_easy = level_ == training::Level::Easy;
+  widgets::text_in(ui.theme.strong, is_easy ? widgets::kQuietText : widgets::kCaution,
                    "At this level: " + training::words_of_faults(chosen(), level_));
   ImGui::Spacing();
   const bool is_board = chosen().goal == training::Goal::Calibrate;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "navigation/simulator/frame_pace.h"
 #include "navigation/simulator/holding.h"
@@ -19,9 +20,10 @@ namespace {
 using Eigen::Vector3d;
 using geometry::RigidTransform;
 
-constexpr double kLifted_mm = 5;     // of the probe's tip off the bone at the beginning
-constexpr double kAtDimple_mm = 1;   // where it is to pivot: further off, its marker may leave the view
-constexpr double kGuideBack_mm = 7;  // of the guide's point from the planned entry, at the beginning
+constexpr double kLifted_mm = 1.5;         // of the probe's tip off the bone at the beginning
+constexpr double kAtDimple_mm = 1;         // where it is to pivot: further off, its marker may leave the view
+constexpr double kClearOfBones_rad = 0.5;  // of the bone's marker, as the lens sees it
+constexpr double kGuideBack_mm = 7;        // of the guide's point from the planned entry, at the beginning
 constexpr double kGuideAside_mm = 3, kGuideAslant_deg = 11;
 constexpr double kBumpDegPerMm = 1.5;
 
@@ -33,14 +35,28 @@ Vector3d handle_of(const ProbePose& pose) {
   return (pose.bone_from_marker.translation_mm - pose.tip_mm).normalized();
 }
 
-// Of the swing, in which both markers are seen at every stop: where the probe's is nearest to the middle of
-// the view. Held in the middle of the swing it may hide the bone's.
-Vector3d handle_in_view(const Staging& staging) {
-  const RigidTransform& view = staging.bone_from_camera_pivot;
-  return handle_of(*std::ranges::min_element(staging.pivot, {}, [&](const ProbePose& pose) {
-    return geometry::angle_between_rad(pose.bone_from_marker.translation_mm - view.translation_mm,
-                                       view.rotate(Vector3d::UnitZ()));
-  }));
+// Where the hand begins: of all stops the one at which, lifted towards the lens, its marker is nearest to
+// the middle of the view, and clear of the bone's.
+ProbePose begin_in_view(const std::vector<std::vector<ProbePose>>& stops, const RigidTransform& view,
+                        const Vector3d& world_marker_mm, double lift_mm) {
+  const Vector3d eye = view.translation_mm, ahead = view.rotate(Vector3d::UnitZ());
+  ProbePose best;
+  double best_rad = std::numeric_limits<double>::infinity();
+  for (const auto& row : stops) {
+    for (ProbePose pose : row) {
+      const Vector3d lift = lift_mm * (eye - pose.tip_mm).normalized();
+      pose.tip_mm += lift;
+      pose.bone_from_marker.translation_mm += lift;
+      const Vector3d marker = pose.bone_from_marker.translation_mm - eye;
+      const double apart_rad = geometry::angle_between_rad(marker, world_marker_mm - eye);
+      const double rad =
+          geometry::angle_between_rad(marker, ahead) + 2 * std::max(0.0, kClearOfBones_rad - apart_rad);
+      if (rad >= best_rad) continue;
+      best_rad = rad;
+      best = pose;
+    }
+  }
+  return best;
 }
 
 HandScene scene_of(const SimulationOptions& options, const Staging& staging, const geometry::Surface& bone,
@@ -71,10 +87,12 @@ HandScene scene_of(const SimulationOptions& options, const Staging& staging, con
       hand.starts_at_dimple ? staging.bone_from_camera_pivot : staging.bone_from_camera_scratch;
   start.bone_from_camera_guide = staging.bone_from_camera_drill;
   start.mark_angle_deg = options.camera.reference_mark_angle_deg;
-  const Vector3d place = hand.starts_at_dimple ? scene.dimple_mm : scene.strokes.front().front();
-  const Vector3d to_lens = (start.bone_from_camera_probe.translation_mm - place).normalized();
-  start.probe_tip_mm = place + (hand.starts_at_dimple ? kAtDimple_mm : kLifted_mm) * to_lens;
-  start.probe_handle = hand.starts_at_dimple ? handle_in_view(staging) : scene.handles.front().front();
+  const ProbePose begin = begin_in_view(
+      hand.starts_at_dimple ? std::vector<std::vector<ProbePose>>{staging.pivot} : staging.strokes,
+      start.bone_from_camera_probe, staging.bone_from_world_marker.translation_mm,
+      hand.starts_at_dimple ? kAtDimple_mm : kLifted_mm);
+  start.probe_tip_mm = begin.tip_mm;
+  start.probe_handle = handle_of(begin);
   Random random(options.seed + 53);
   const Vector3d axis = scene.plan.direction;
   const Vector3d side = Eigen::AngleAxisd(random.between(0, 2 * geometry::kPi), axis) * axis.unitOrthogonal();

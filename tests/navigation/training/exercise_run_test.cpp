@@ -47,15 +47,17 @@ TEST(ExerciseRun, Hazard40TheRecordSaysThatItIsAnExercise) {
   EXPECT_TRUE(recording::is_exercise(record.folder));
 }
 
-// Whoever begins to find the tip sees both markers, before he has moved anything.
-TEST(ExerciseRun, ThePivotBeginsWithBothMarkersInView) {
-  for (const std::uint64_t seed : {1, 2, 4}) {
+// Whoever takes the probe sees its marker and the bone's, before he has moved anything.
+TEST(ExerciseRun, TheProbesExercisesBeginWithBothMarkersInView) {
+  const std::vector<std::pair<const char*, std::uint64_t>> exercises = {
+      {"pivot", 1}, {"pivot", 2}, {"register", 3}, {"drill-tibia", 2}};
+  for (const auto& [name, seed] : exercises) {
     int frames = 0;
     const simulator::Hand still = [&frames](const simulator::HandScene&, const simulator::HandState&) {
       return frames++ < 5 ? std::optional<simulator::HandInput>(simulator::HandInput()) : std::nullopt;
     };
-    const ExerciseSetup setup = standard_setup(*find_exercise("pivot"), Level::Easy, seed);
-    EXPECT_EQ(run_exercise(setup, still).facts.unseen_s, 0) << seed;
+    const ExerciseSetup setup = standard_setup(*find_exercise(name), Level::Easy, seed);
+    EXPECT_EQ(run_exercise(setup, still).facts.unseen_s, 0) << name << ", seed " << seed;
   }
 }
 
