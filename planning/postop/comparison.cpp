@@ -12,6 +12,8 @@ namespace {
 
 // A stretch says how wide the bore is where so much of its wall is seen, free of metal.
 constexpr double kSeenOfStretch = 0.5, kMetalOfStretch = 0.3, kMostWidthSigma_mm = 0.5;
+// Thin cortex about empty marrow is no brighter than this in the mean, and soft tissue is darker.
+constexpr double kFaintBone_hu = 110;
 
 AchievedBone told(const FoundBone& found) {
   AchievedBone bone;
@@ -65,12 +67,14 @@ bool is_against(const AchievedTunnel& achieved, const tunnels::Tunnel& plan) {
 struct PostopImages::Prepared {
   const images::Volume& volume;
   images::VolumeSampler sampler;
+  double threshold_hu;
   BoneField field;
 };
 
 PostopImages::PostopImages(const images::Volume& postop, const ComparisonOptions& options)
-    : prepared_(std::make_unique<Prepared>(
-          Prepared{postop, images::VolumeSampler(postop), bone_field(postop, options.threshold_hu)})) {}
+    : prepared_(
+          std::make_unique<Prepared>(Prepared{postop, images::VolumeSampler(postop), options.threshold_hu,
+                                              bone_field(postop, options.threshold_hu)})) {}
 PostopImages::~PostopImages() = default;
 PostopImages::PostopImages(PostopImages&&) noexcept = default;
 PostopImages& PostopImages::operator=(PostopImages&&) noexcept = default;
@@ -78,7 +82,9 @@ PostopImages& PostopImages::operator=(PostopImages&&) noexcept = default;
 Comparison PostopImages::compare(const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan,
                                  std::span<const tunnels::Tunnel> others) const {
   Comparison comparison;
-  const FoundBone found = find_bone(prepared_->sampler, prepared_->field, bone, plan.entry_mm);
+  FoundBone found = find_bone(prepared_->sampler, prepared_->field, bone, plan.entry_mm);
+  if (!found.is_found && prepared_->threshold_hu > kFaintBone_hu)
+    found = find_bone(prepared_->sampler, bone_field(prepared_->volume, kFaintBone_hu), bone, plan.entry_mm);
   comparison.bone = told(found);
   if (!found.is_found) {
     comparison.tunnel.reasons = {"the " + std::string(bones::to_text(plan.bone)) +

@@ -73,7 +73,8 @@ struct Comparison {
 };
 
 struct ComparisonOptions {
-  // What is as bright is taken for bone where the bone's place is sought from nothing; nothing else.
+  // What is as bright is taken for bone where the bone's place is sought from nothing; nothing else. A bone
+  // that is not found so is sought among all that is brighter than soft tissue.
   double threshold_hu = 200;
 };
 

@@ -153,6 +153,20 @@ TEST_F(Achieved, PoorImagesTellAsWell) {
               tunnel, 0.3, 0.6, 0.3);
 }
 
+// Thin cortex about empty marrow: hardly any of it is as bright as bone usually is.
+TEST_F(Achieved, AFaintBoneIsFound) {
+  const Tunnel truth = moved(BoneKind::Tibia, {2, -1}, {4, 3});
+  test::KnownCtOptions options;
+  options.spacing_mm = {0.6, 0.6, 0.8};
+  options.cortex_mm = 0.6;
+  options.cortex_hu = 600;
+  options.marrow_hu = 115;
+  const auto volume = ct(BoneKind::Tibia, {{.tunnel = truth, .content_hu = 20}}, options);
+  const Comparison comparison = compared(BoneKind::Tibia, volume);
+  EXPECT_TRUE(comparison.bone.is_found) << testing::PrintToString(comparison.bone.reasons);
+  expect_near(comparison.tunnel, truth);
+}
+
 TEST_F(Achieved, AWholeBoneHasNone) {
   for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) {
     const Comparison found = compared(bone, ct(bone, {}));
