@@ -20,6 +20,8 @@ constexpr double kCell_mm = 2, kRoom_mm = 30;
 // Less is a splinter, or noise.
 constexpr double kLeastPiece_mm3 = 2000, kLeastAnchored_mm3 = 6000;
 constexpr std::size_t kMostAnchored = 5;
+// Of a shaft, a few times less.
+constexpr double kLeastCut_mm2 = 150;
 // The gaps of a thin cortex in cells.
 constexpr double kClosing_mm = 2;
 // Of a piece, what belongs to the joint at its end. Bones that touch are one piece, and an image may end
@@ -240,12 +242,18 @@ BoneField bone_field(const images::Volume& volume, double threshold_hu) {
              plane = nx * static_cast<std::size_t>(cells.size.y());
   const auto& inside = cells.is_bone.inside;
   std::vector<std::size_t> surface;
+  double cut_mm2 = 0;
   const Vector3i last = cells.size - cells.room - Vector3i::Ones();
   for (int k = cells.room.z(); k <= last.z(); ++k) {
     for (int j = cells.room.y(); j <= last.y(); ++j) {
       for (int i = cells.room.x(); i <= last.x(); ++i) {
         const std::size_t v = cells.is_bone.index(i, j, k);
         if (!inside[v]) continue;
+        for (int axis = 0; axis < 3; ++axis) {
+          const int at = Vector3i(i, j, k)[axis];
+          if (at == cells.room[axis] || at == last[axis])
+            cut_mm2 += cells.spacing_mm.prod() / cells.spacing_mm[axis];
+        }
         const bool is_surface =
             (i > cells.room.x() && !inside[v - 1]) || (i < last.x() && !inside[v + 1]) ||
             (j > cells.room.y() && !inside[v - nx]) || (j < last.y() && !inside[v + nx]) ||
@@ -254,6 +262,7 @@ BoneField bone_field(const images::Volume& volume, double threshold_hu) {
       }
     }
   }
+  field.is_cut = cut_mm2 > kLeastCut_mm2;
   field.distance_mm = images::distances_mm(cells.size, surface, cells.spacing_mm);
   for (float& d : field.distance_mm) d = std::min(d, 60.0F);
   return field;

@@ -17,6 +17,7 @@ struct BoneField {
   Eigen::Affine3d cell_from_lps = Eigen::Affine3d::Identity();
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
   Eigen::Vector3d first_in_view, last_in_view;  // cells between which the volume lies
+  bool is_cut = false;                          // whether bone goes on where the volume ends
   std::vector<float> distance_mm;               // i runs fastest
   // Where the middle of a joint's end may lie, LPS: places along large pieces.
   std::vector<Eigen::Vector3d> anchors_mm;

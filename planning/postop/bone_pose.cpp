@@ -1,6 +1,10 @@
 #include "planning/postop/bone_pose.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
+#include <span>
 
 #include "planning/files/format.h"
 
@@ -10,6 +14,8 @@ namespace {
 
 constexpr double kRadius_mm = 90;
 constexpr std::size_t kSamples = 3000;
+// Images that cut the bones off may hold no more of it than this about the planned entry.
+constexpr std::array kNear_mm{38.0, 30.0};
 // Less of the surface on an edge, edges more uneven, or a bone that would have to be longer or shorter to fit
 // is another bone. That all edges lie outside, or inside, by as much is another scanner or another threshold.
 constexpr double kLeastOnEdge = 0.85, kMostSpread_mm = 0.25, kMostBias_mm = 0.6, kMostStretch = 0.005;
@@ -19,9 +25,14 @@ constexpr double kMostSigma_mm = 0.3;
 // So little on an edge: the bone is not in these images at all.
 constexpr double kNothingOnEdge = 0.4;
 
+constexpr const char* kTooLittle =
+    ": it is another bone, or they show too little of it; 60 mm from the joint on are enough";
+
+bool lies_on_edges(const EdgePose& pose) {
+  return pose.on_edge_share >= kLeastOnEdge && pose.spread_mm <= kMostSpread_mm;
+}
 bool is_settled(const EdgePose& pose) {
-  return pose.on_edge_share >= kLeastOnEdge && pose.spread_mm <= kMostSpread_mm &&
-         pose.stretch <= kMostStretch && pose.in_view_share >= kLeastInView;
+  return lies_on_edges(pose) && pose.stretch <= kMostStretch && pose.in_view_share >= kLeastInView;
 }
 
 // What is out of view counts half: else a corner of the bone that happens to fit would win.
@@ -40,25 +51,39 @@ FoundBone find_bone(const images::VolumeSampler& postop, const BoneField& field,
     return found;
   }
   double best = -1;
-  for (const Turns turns : {Turns::Small, Turns::Large}) {
-    for (const CoarsePose& coarse : coarse_poses(field, samples, turns)) {
-      const EdgePose pose = edge_pose(postop, samples, coarse.postop_from_plan);
-      if (!(pose.in_view_share > 0) || merit(pose) <= best) continue;
-      best = merit(pose);
-      found.pose = pose;
+  const auto seek = [&](std::span<const SurfaceSample> sought) {
+    for (const Turns turns : {Turns::Small, Turns::Large}) {
+      for (const CoarsePose& coarse : coarse_poses(field, sought, turns)) {
+        const EdgePose pose = edge_pose(postop, samples, coarse.postop_from_plan);
+        if (!(pose.in_view_share > 0) || merit(pose) <= best) continue;
+        best = merit(pose);
+        found.pose = pose;
+      }
+      const bool is_whole = sought.size() == samples.size();
+      if (best >= 0 && (is_whole ? is_settled(found.pose) : lies_on_edges(found.pose))) return;
     }
-    if (best >= 0 && is_settled(found.pose)) break;
+  };
+  seek(samples);
+  for (const double radius_mm : kNear_mm) {
+    if (!field.is_cut || (best >= 0 && lies_on_edges(found.pose))) break;
+    std::vector<SurfaceSample> near;
+    std::ranges::copy_if(samples, std::back_inserter(near), [&](const SurfaceSample& sample) {
+      return (sample.point_mm - near_mm).norm() < radius_mm;
+    });
+    if (!near.empty()) seek(near);
   }
   found.reasons.clear();
   const EdgePose& pose = found.pose;
   if (best < 0 || pose.on_edge_share < kNothingOnEdge) {
-    found.reasons.emplace_back("nothing in the images looks like it");
+    found.reasons.push_back("nothing in the images looks like it" +
+                            std::string(field.is_cut ? kTooLittle : ""));
     return found;
   }
   found.is_found = true;
   if (pose.in_view_share < kLeastInView)
     found.reasons.push_back(
-        files::format("only %.0f %% of it about the joint are in the images, %.0f %% are needed",
+        files::format("only %.0f %% of it about the joint are in the images, %.0f %% are needed; 60 mm of it "
+                      "from the joint on are enough",
                       100 * pose.in_view_share, 100 * kLeastInView));
   if (pose.on_edge_share < kLeastOnEdge)
     found.reasons.push_back(files::format(

@@ -5,7 +5,9 @@
 //      as bone (bone_field.h); turns near to none are tried first.
 //   2. The best few are brought onto the edges of the images (edge_pose.h); the one with the most of its
 //      surface on an edge is taken.
-//   3. A verdict: a bone of another patient, of the other side or half out of view has too little on edges.
+//   3. Where the images cut the bones off and nothing of it lies well on edges, the same once more with what
+//      is nearer to the entry alone.
+//   4. A verdict: a bone of another patient, of the other side or half out of view has too little on edges.
 #pragma once
 
 #include <string>

@@ -41,7 +41,7 @@ struct Candidate {
   Passage passage{};
   SeenMouth mouth;
   double length_mm = 0, seen_share = 0, metal_share = 0, clear_mm = 0, bend_mm = 0;
-  bool comes_out = false, has_end = false, goes_on = false, is_by_screw = false;
+  bool comes_out = false, has_end = false, leaves_images = false, goes_on = false, is_by_screw = false;
   std::vector<std::string> doubts;
 
   [[nodiscard]] double merit() const {
@@ -131,6 +131,7 @@ class Finder {
                                    -candidate.fit.direction, candidate.fit.radius_mm)
                               .is_open();
     candidate.has_end = candidate.comes_out;
+    candidate.leaves_images = !std::isfinite(sampler_.at(postop_from_plan_ * candidate.passage.exit_mm));
     if (candidate.comes_out) return;
     std::vector<double> contrasts;
     for (const Stretch& stretch : candidate.fit.stretches)
@@ -230,7 +231,9 @@ class Finder {
     if (diameter < kLeastDiameter_mm || diameter > kMostDiameter_mm)
       doubts.push_back(files::format("its diameter of %.1f mm is none of a tunnel", diameter));
     if (c.goes_on) doubts.emplace_back("its wall goes on beyond where it seems to end");
-    if (!c.has_end) doubts.emplace_back("where it ends is not seen");
+    if (!c.has_end)
+      doubts.emplace_back(c.leaves_images ? "the images end before it does: how long it is is not known"
+                                          : "where it ends is not seen");
   }
 
   const images::Volume& volume_;

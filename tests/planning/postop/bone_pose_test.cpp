@@ -123,6 +123,26 @@ TEST(BonePose, ABoneThatIsCutOffIsNotReliable) {
   EXPECT_FALSE(found_in(volume, knee(), bones::BoneKind::Femur).reliable);
 }
 
+// Images no higher than the joint: each bone is found where it is, too little of it to rely on, and what
+// would be enough is said.
+TEST(BonePose, LowImagesShowWhereTheBonesLie) {
+  const RigidTransform truth = test::lying(15, {1, 2, 3}, {30, -20, 60});
+  const Eigen::Vector3d joint =
+      truth * Eigen::Vector3d(0, 0,
+                              0.5 * (geometry::bounds_of(knee().femur.mesh).min_mm.z() +
+                                     geometry::bounds_of(knee().tibia.mesh).max_mm.z()));
+  test::KnownCtOptions options = half_fine();
+  options.lowest_mm = joint.z() - 31;
+  options.highest_mm = joint.z() + 31;
+  const auto volume = test::postop_ct({knee().femur.mesh, knee().tibia.mesh}, {}, truth, options);
+  for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+    const FoundBone found = found_in(volume, knee(), kind);
+    ASSERT_TRUE(found.is_found) << to_text(kind);
+    EXPECT_LT(off_mm(found, truth, knee().femoral_tunnel.entry_mm), 0.2) << to_text(kind);
+    EXPECT_THAT(found.reasons, testing::Contains(HasSubstr("60 mm of it"))) << to_text(kind);
+  }
+}
+
 TEST(BonePose, NoBoneAtAllIsRefused) {
   images::Volume empty;
   empty.size = {40, 40, 40};
