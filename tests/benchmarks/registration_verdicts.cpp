@@ -1,12 +1,13 @@
 // Whether the verdict on a registration can be relied on, over femora of several people:
 //
-//   registration_verdicts NOISE TRIALS even|odd ROWS.csv FEMUR...
+//   registration_verdicts NOISE TRIALS even|odd ROWS.csv [--only ROW] FEMUR...
 //
 // NOISE is dry, ex-vivo or hard. Of each FEMUR (a mesh of a right one, LPS, mm) the strokes of so many trials
 // are registered to it with and without the world marker's prior, to each of the other femora, and, mirrored,
 // to itself. On its own bone a result is right within 2 mm at the target; on the others none is. Thresholds
 // are set on trials with even seeds, and those with odd ones are only reported. ROWS.csv gets what each
-// verdict rested on. Times are processor time of one thread, the bones made ready.
+// verdict rested on. --only leaves out all rows of the table but the one of that name. Times are processor
+// time of one thread, the bones made ready.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -75,11 +76,13 @@ void add(Row& row, const registration::RegistrationSummary& found, const experim
 }
 
 void run(const std::vector<std::unique_ptr<Femur>>& femora, experiments::TrialNoise noise, int trial_count,
-         std::uint64_t parity, std::FILE* rows) {
+         std::uint64_t parity, const std::string& only, std::FILE* rows) {
   std::vector<Row> table{{"own", Onto::Own},
                          {"own without prior", Onto::OwnWithoutPrior},
                          {"another person's", Onto::Another},
                          {"mirrored", Onto::Mirrored}};
+  if (!only.empty()) std::erase_if(table, [&](const Row& row) { return row.name != only; });
+  if (table.empty()) throw std::runtime_error("\"" + only + "\" is no row of the table");
   for (std::size_t from = 0; from < femora.size(); ++from) {
     const Femur& femur = *femora[from];
     for (int k = 0; k < trial_count; ++k) {
@@ -117,19 +120,21 @@ void run(const std::vector<std::unique_ptr<Femur>>& femora, experiments::TrialNo
 
 int main(int argc, char** argv) {
   if (argc < 6 || (std::string(argv[3]) != "even" && std::string(argv[3]) != "odd")) {
-    std::fprintf(stderr, "usage: registration_verdicts NOISE TRIALS even|odd ROWS.csv FEMUR...\n");
+    std::fprintf(stderr,
+                 "usage: registration_verdicts NOISE TRIALS even|odd ROWS.csv [--only ROW] FEMUR...\n");
     return 2;
   }
   try {
+    const bool is_one_row = std::string(argv[5]) == "--only" && argc > 7;
     std::vector<std::unique_ptr<Femur>> femora;
-    for (int i = 5; i < argc; ++i) femora.push_back(std::make_unique<Femur>(argv[i]));
+    for (int i = is_one_row ? 7 : 5; i < argc; ++i) femora.push_back(std::make_unique<Femur>(argv[i]));
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> rows(std::fopen(argv[4], "w"), &std::fclose);
     if (!rows) throw std::runtime_error(std::string(argv[4]) + ": cannot be written");
     std::fprintf(rows.get(),
                  "bone,right,reliable,error_mm,predicted_mm,length_mm,white_noise_mm,excess_misfit_mm,lead,"
                  "lead_needed,side_lead\n");
     run(femora, experiments::trial_noise_from_text(argv[1]), std::atoi(argv[2]),
-        std::string(argv[3]) == "odd" ? 1 : 0, rows.get());
+        std::string(argv[3]) == "odd" ? 1 : 0, is_one_row ? argv[6] : "", rows.get());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 3;
