@@ -28,12 +28,18 @@ double lead_of_best(const PosePool& pool, const WeightedPoints& points) {
 }
 
 // Found beyond doubt: no need to search on. Either nothing else comes near, or the searches, each with other
-// pairs, come to the same pose again and again: a better one would have been found as easily.
-bool is_found(const PosePool& pool, const WeightedPoints& points, int round) {
+// pairs, come to the same pose again and again: a better one would have been found as easily. Without the
+// marker there are so many poses that a wrong one may be found twice before the right one is, and lead until
+// then.
+bool is_found(const PosePool& pool, const WeightedPoints& points, int round, bool has_marker) {
   constexpr double kClearLead = 17, kClearLeadLater = 8, kClearLeadOfTwice = 4, kLeadOfOften = 1;
-  constexpr int kOften = 3;
+  constexpr double kClearLeadWithoutMarker = 30;
+  constexpr int kOften = 3, kOftenWithoutMarker = 5;
   const double lead = lead_of_best(pool, points);
   const int count = pool.best_find_count();
+  if (!has_marker)
+    return lead > (round == 0 ? kClearLeadWithoutMarker : kClearLeadLater) ||
+           (count >= kOftenWithoutMarker && lead > kLeadOfOften);
   return lead > (round == 0 ? kClearLead : kClearLeadLater) || (count > 1 && lead > kClearLeadOfTwice) ||
          (count >= kOften && lead > kLeadOfOften);
 }
@@ -105,9 +111,9 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
   const RegistrationOptions& options = setting.options;
   constexpr std::size_t kPointCount = 800;
   constexpr int kPairsEachRound = 8, kIterationsEachRound = 5, kFinalIterations = 12;
-  // Without the marker many more poses are possible, and the right one's rough score may be far from the
-  // best.
-  const std::size_t hypotheses_each_round = options.use_marker_prior ? 72 : 120;
+  // Without the marker many more poses are possible, and the right one's rough score is often not among the
+  // hundred best.
+  const std::size_t hypotheses_each_round = options.use_marker_prior ? 72 : 320;
   const std::vector<strokes::OrientedPoint> oriented = strokes::oriented_points(curves);
   // The search goes by smoothed points, which hold less noise, so that the right pose stands out sooner. What
   // is found is fitted to the samples: those lifted for a moment are smoothed into soft tissue otherwise.
@@ -126,7 +132,7 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
                               .reachable = is_near_plan ? &setting.reachable : nullptr}),
              smooth, seed);
     pool.refine_all(smooth, kIterationsEachRound);
-    if (is_found(pool, smooth, round)) break;
+    if (is_found(pool, smooth, round, options.use_marker_prior)) break;
   }
   WeightedPoints points = choose_points(curves, kPointCount);
   if (!pool.empty()) {

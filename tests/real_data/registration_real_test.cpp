@@ -114,6 +114,12 @@ TEST(RealRegistration, HardStrokesAreFoundAndMostlyReliedOn) {
   }
   EXPECT_GE(found_count, 15);
   EXPECT_GE(relied_on_count, 10);
+  // Here two searches without the marker come to a wrong pose, which leads clearly, before one finds the
+  // right one.
+  constexpr std::uint64_t kFoundLate = 1000159;
+  const auto trial = experiments::make_trial(mesh, surface, *wall, hard, kFoundLate);
+  const auto found = registration::register_curves(bone, trial.curves, {kFoundLate, false, *wall});
+  EXPECT_LT((found.marker_from_bone * *wall - trial.marker_from_bone * *wall).norm(), 2.0);
 }
 
 // Everything that cannot hold a real femur is refused, each with its own reason.

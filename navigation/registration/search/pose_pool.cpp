@@ -57,13 +57,14 @@ void PosePool::add(const std::vector<Hypothesis>& hypotheses, const WeightedPoin
 }
 
 // A hypothesis is off by some degrees, so that its score says little: a few steps on few points say more, and
-// let many compete.
+// let many compete. Of very many more are let through: the right one hardly ever is the first of them.
 std::vector<RigidTransform> PosePool::most_promising(const std::vector<Hypothesis>& hypotheses,
                                                      const WeightedPoints& few_points) const {
-  constexpr std::size_t kCount = 24;
+  constexpr std::size_t kLeastCount = 24, kOneOf = 8;
+  const std::size_t count = std::max(kLeastCount, hypotheses.size() / kOneOf);
   std::vector<ApproachedPose> approached;
   for (const Hypothesis& hypothesis : hypotheses) {
-    if (hypotheses.size() <= kCount) {
+    if (hypotheses.size() <= count) {
       approached.push_back({hypothesis.bone_from_marker});
     } else {
       approached.push_back(approach(bone_.field, few_points, hypothesis.bone_from_marker, {2.0, 1.4, 5}));
@@ -72,7 +73,7 @@ std::vector<RigidTransform> PosePool::most_promising(const std::vector<Hypothesi
   std::stable_sort(approached.begin(), approached.end(),
                    [](const ApproachedPose& l, const ApproachedPose& r) { return l.cost < r.cost; });
   std::vector<RigidTransform> promising;
-  for (std::size_t i = 0; i < std::min(kCount, approached.size()); ++i)
+  for (std::size_t i = 0; i < std::min(count, approached.size()); ++i)
     promising.push_back(approached[i].bone_from_marker);
   return promising;
 }
