@@ -321,8 +321,10 @@ void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit
       options_.corner_sigma_px, std::sqrt((poses->best.information * observation.covariance).trace() / 8));
   observation.ambiguity_ratio = std::min(kNoOtherPose, poses->other->rms_px / corner_px);
   if (observation.ambiguity_ratio >= options_.clear_ratio) return;
-  const DirectPose other =
-      fit_directly(frame, poses->other->camera_from_marker, fit.pose.velocity, options_.direct);
+  // Where nothing was known before, the motion is this fit's, and the other pose has its own.
+  const bool goes_on = goes_on_from_published(frame, fit.pose.camera_from_marker);
+  const DirectPose other = fit_directly(frame, poses->other->camera_from_marker, fit.pose.velocity,
+                                        goes_on ? options_.direct : unsure(options_.direct));
   if (!other.is_usable() || other.noise_grey > options_.other_noise * fit.noise_grey) return;
   if (are_unlike(fit.pose.camera_from_marker, other.pose.camera_from_marker))
     observation.state = MarkerState::Ambiguous;
@@ -343,8 +345,14 @@ RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fi
   observation.ambiguity_ratio = kNoOtherPose;
   if (const auto poses = solve_square(frame.camera, corners.corners_px, marker_.size_mm)) {
     other = poses->other;
-    // The edges settled on one tilt, the corners that they make speak for the other one.
-    is_contradicted = are_unlike(fit.camera_from_marker, poses->best.camera_from_marker);
+    // The edges settled on one tilt, the corners that they make speak for another one, and from there the
+    // edges do not come back: corners that glow or dirt moved are unlike the edges, too, where tilt is seen
+    // badly.
+    if (are_unlike(fit.camera_from_marker, poses->best.camera_from_marker)) {
+      const EdgePose there = fit_edge_pose(frame.camera, marker_.size_mm, samples_, measurements_,
+                                           poses->best.camera_from_marker, frame.smear.bloom, is_inlier_);
+      is_contradicted = !there.converged || are_unlike(fit.camera_from_marker, there.camera_from_marker);
+    }
     if (other) {
       observation.ambiguity_ratio =
           std::min(kNoOtherPose, other->rms_px / std::max(observation.rms_px, options_.corner_sigma_px));
