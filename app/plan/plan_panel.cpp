@@ -6,6 +6,7 @@
 #include "app/plan/plan_view.h"
 #include "app/plan/roof_line.h"
 #include "app/widgets/tooltip.h"
+#include "app/widgets/wrapped_text.h"
 #include "planning/files/utc_clock.h"
 
 namespace arthronaut::plan {
@@ -74,7 +75,8 @@ void draw_next(const widgets::Ui& ui, const NextStep& next) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, edge = ui.theme.px(12);
   ImFont* font = ui.theme.strong;
-  const float words = font->CalcTextSizeA(font->FontSize, 1e9F, width - 2 * edge, next.text.c_str()).y;
+  const std::string lines = widgets::wrapped(font, next.text, width - 2 * edge);
+  const float words = font->CalcTextSizeA(font->FontSize, 1e9F, 0, lines.c_str()).y;
   const float height = ui.theme.body->FontSize + words + 2 * edge;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(at, {at.x + width, at.y + height}, IM_COL32(24, 44, 58, 255), ui.theme.px(6));
@@ -82,7 +84,7 @@ void draw_next(const widgets::Ui& ui, const NextStep& next) {
   draw.AddText(ui.theme.body, ui.theme.body->FontSize, {at.x + edge, at.y + edge * 0.7F}, widgets::kAccent,
                "Next");
   draw.AddText(font, font->FontSize, {at.x + edge, at.y + edge * 0.7F + ui.theme.body->FontSize},
-               widgets::kText, next.text.c_str(), nullptr, width - 2 * edge);
+               widgets::kText, lines.c_str());
   ImGui::PushID("next");
   if (ImGui::InvisibleButton("do", {width, height})) ui.actions.run(next.action);
   ImGui::PopID();

@@ -6,17 +6,23 @@
 #include <cstdio>
 
 #include "app/widgets/tooltip.h"
+#include "app/widgets/wrapped_text.h"
 
 namespace arthronaut::widgets {
 
 namespace {
 
+// With `wrap`, as draw_text() breaks it; words that are wider alone are left to ImGui.
 ImVec2 text_size(ImFont* font, std::string_view text, float wrap = 0) {
+  const std::string lines = wrap > 0 ? wrapped(font, text, wrap) : std::string();
+  if (wrap > 0) text = lines;
   return font->CalcTextSizeA(font->FontSize, 1e9F, wrap, text.data(), text.data() + text.size());
 }
 
 void draw_text(ImDrawList& draw, ImFont* font, const ImVec2& at, ImU32 color, std::string_view text,
                float wrap = 0) {
+  const std::string lines = wrap > 0 ? wrapped(font, text, wrap) : std::string();
+  if (wrap > 0) text = lines;
   draw.AddText(font, font->FontSize, at, color, text.data(), text.data() + text.size(), wrap);
 }
 
@@ -203,7 +209,8 @@ void text_in(ImFont* font, ImU32 color, std::string_view text) {
   ImGui::PushFont(font);
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  const std::string lines = wrapped(font, text, ImGui::GetContentRegionAvail().x);
+  ImGui::TextUnformatted(lines.data(), lines.data() + lines.size());
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
   ImGui::PopFont();
@@ -213,6 +220,8 @@ void text_centered(const Ui& ui, const Rect& rect, ImFont* font, ImU32 color, st
   // Lines are centred one by one: ImGui's wrapping alone would set them flush left.
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float wrap = std::max(rect.width - ui.theme.px(24), 1.F);
+  const std::string broken = wrapped(font, text, wrap);
+  text = broken;
   std::array<std::string_view, 12> lines;
   std::size_t count = 0;
   while (!text.empty() && count < lines.size()) {

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include "app/widgets/wrapped_text.h"
+
 namespace arthronaut::widgets {
 
 void draw_text(ImDrawList& draw, ImFont* font, float x, float y, ImU32 color, const std::string& words,
                float wrap) {
-  draw.AddText(font, font->FontSize, {x, y}, color, words.c_str(), nullptr, wrap);
+  draw.AddText(font, font->FontSize, {x, y}, color,
+               wrap > 0 ? wrapped(font, words, wrap).c_str() : words.c_str(), nullptr, wrap);
 }
 
 std::string fitting(ImFont* font, const std::string& words, float width) {

@@ -1,0 +1,36 @@
+#include "app/widgets/wrapped_text.h"
+
+#include <gtest/gtest.h>
+
+namespace arthronaut::widgets {
+namespace {
+
+class WrappedText : public ::testing::Test {
+ protected:
+  // Every letter of ImGui's own font is as wide as the next.
+  WrappedText() : font_(fonts_.AddFontDefault()) { fonts_.Build(); }
+  [[nodiscard]] std::string in_letters(std::string_view text, int count) const {
+    const float letter = font_->CalcTextSizeA(font_->FontSize, 1e9F, 0, "0").x;
+    return wrapped(font_, text, (static_cast<float>(count) + 0.5F) * letter);
+  }
+  ImFontAtlas fonts_;
+  ImFont* font_;
+};
+
+// A number that is broken at its point reads as two: 75 and 0 degrees.
+TEST_F(WrappedText, BreaksNoNumber) {
+  EXPECT_EQ(in_letters("longest at 75.0 deg", 14), "longest at\n75.0 deg");
+  EXPECT_EQ(in_letters("20.5,7.3 mm", 6), "20.5,7.3\nmm") << "though one word is too wide";
+}
+
+TEST_F(WrappedText, KeepsWhatFitsAndItsLineEnds) {
+  EXPECT_EQ(in_letters("one two", 7), "one two");
+  EXPECT_EQ(in_letters("one two", 6), "one\ntwo");
+  EXPECT_EQ(in_letters("one\ntwo three", 9), "one\ntwo three");
+  EXPECT_EQ(in_letters("one\n\ntwo", 9), "one\n\ntwo");
+  EXPECT_EQ(in_letters("one  two\n", 9), "one  two\n");
+  EXPECT_EQ(in_letters("", 9), "");
+}
+
+}  // namespace
+}  // namespace arthronaut::widgets
