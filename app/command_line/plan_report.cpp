@@ -4,6 +4,7 @@
 
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
+#include "planning/tunnels/breach.h"
 
 namespace arthronaut::command_line {
 
@@ -65,6 +66,9 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review
     node["exit_mm"] = files::to_json(measured.exit_mm);
     node["length_mm"] = measured.length_mm;
     node["wall_mm"] = measured.wall_mm;
+    node["breaches"] = nlohmann::ordered_json::array();
+    for (const auto& breach : tunnels::breaches_of(tunnel, measured, *review.bone(key.bone).surface))
+      node["breaches"].push_back({{"from_mm", breach.from_mm}, {"to_mm", breach.to_mm}});
   }
   auto checks = nlohmann::ordered_json::array();
   for (const auto& check : review.checks(key)) {

@@ -95,7 +95,15 @@ Iterator HalfPlane::beyond_lip(Iterator from, Iterator to, LipOf lip_of) {
   return to;
 }
 
+void HalfPlane::add_outside(const Stretch& stretch) {
+  if (outside_.empty() || stretch.from_mm > outside_.back().to_mm + kHair_mm)
+    outside_.push_back({stretch.from_mm, stretch.to_mm});
+  else
+    outside_.back().to_mm = stretch.to_mm;
+}
+
 Thinnest HalfPlane::thinnest() {
+  outside_.clear();
   find_stations();
   find_stretches();
   keep_from_mouth_to_mouth();
@@ -108,6 +116,7 @@ Thinnest HalfPlane::thinnest() {
   if (from < to) {
     for (auto at = from; at != to; ++at) {
       if (!at->end) continue;
+      if (!at->in_bone) add_outside(*at);
       for (const double station : {at->from_mm, at->to_mm})
         found.take(at->end->radius_at(station), station, at->end->of);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "planning/tunnels/axis_view.h"
+#include "planning/tunnels/breach.h"
 
 namespace arthronaut::tunnels {
 
@@ -61,12 +62,15 @@ class HalfPlane {
   void clear() { cuts_.clear(); }
   void add(const Cut& cut) { cuts_.push_back(cut); }
   [[nodiscard]] Thinnest thinnest();
+  // Of what thinnest() looked at last: where the tunnel's side lies outside the bone, lips left out.
+  [[nodiscard]] const std::vector<DepthRange>& outside() const { return outside_; }
 
  private:
   void find_stations();
   void find_stretches();
   [[nodiscard]] Stretch stretch_at(double from, double to) const;
   void keep_from_mouth_to_mouth();
+  void add_outside(const Stretch& stretch);
   template <typename Iterator, typename LipOf>
   [[nodiscard]] static Iterator beyond_lip(Iterator from, Iterator to, LipOf lip_of);
 
@@ -75,6 +79,7 @@ class HalfPlane {
   std::vector<const Cut*> open_;
   std::vector<double> stations_;
   std::vector<Stretch> stretches_;
+  std::vector<DepthRange> outside_;
 };
 
 }  // namespace arthronaut::tunnels

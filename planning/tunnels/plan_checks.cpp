@@ -1,8 +1,11 @@
 #include "planning/tunnels/plan_checks.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "planning/files/format.h"
 #include "planning/geometry/rigid_transform.h"
+#include "planning/tunnels/breach.h"
 #include "planning/tunnels/place_checks.h"
 
 namespace arthronaut::tunnels {
@@ -58,8 +61,31 @@ std::string depth_text(const TunnelGeometry& geometry) {
   return "at " + number_text(geometry.thinnest_station_mm, "mm") + " of depth";
 }
 
+// "breaks out of the bone over 4.0 mm, from the mouth to 4.0 mm of depth".
+std::string breach_text(const Tunnel& tunnel, const TunnelGeometry& geometry,
+                        const geometry::Surface* surface) {
+  constexpr double kAtMouth_mm = 0.05;
+  std::string text;
+  const auto breaches =
+      surface != nullptr ? breaches_of(tunnel, geometry, *surface) : std::vector<DepthRange>{};
+  for (const DepthRange& breach : breaches) {
+    const double from = std::max(breach.from_mm, 0.0), to = std::min(breach.to_mm, geometry.length_mm);
+    const bool from_mouth = from<kAtMouth_mm, to_exit = to> geometry.length_mm - kAtMouth_mm;
+    text += text.empty() ? " " : " and ";
+    if (to - from < kAtMouth_mm) {  // in a slanting rim, or too short for a number
+      text += from_mouth ? "at the mouth" : to_exit ? "at the exit" : "at " + number_text(from, "mm");
+      continue;
+    }
+    text += "over " + number_text(to - from, "mm") + ", from ";
+    text += from_mouth ? "the mouth" : files::format(to_exit ? "%.1f mm of depth" : "%.1f", from);
+    text += to_exit ? " to the exit" : " to " + number_text(to, "mm") + " of depth";
+  }
+  return "breaks out of the bone" + text;
+}
+
 // The limits of the back wall are the femur's; of the tibia nobody has published one.
-PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const PlanNorms& norms) {
+PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const geometry::Surface* surface,
+                     const PlanNorms& norms) {
   // A wall of nothing is 0.0 mm on either side of it, not -0.0.
   const double shown_mm = std::round(10 * geometry.wall_mm) / 10 + 0.0;
   PlanCheck check{
@@ -74,15 +100,15 @@ PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const
     check.source = "no published limit for the tibia";
     if (geometry.wall_mm < norms.breaking_wall_mm) {
       check.verdict = geometry.wall_mm <= 0 ? Verdict::Wrong : Verdict::Look;
-      check.text += geometry.wall_mm <= 0 ? std::string(": breaks out of the bone")
-                                          : ": less than " + limit_text(norms.breaking_wall_mm, "mm");
+      check.text += ": " + (geometry.wall_mm <= 0 ? breach_text(tunnel, geometry, surface)
+                                                  : "less than " + limit_text(norms.breaking_wall_mm, "mm"));
     }
     return check;
   }
   check.source = "a rim of 2.5 mm (Piefer 2012, PubMed 22301358); 1 to 2 mm as a limit is customary";
   if (geometry.wall_mm <= 0) {
     check.verdict = Verdict::Wrong;
-    check.text += ": breaks out of the bone";
+    check.text += ": " + breach_text(tunnel, geometry, surface);
   } else if (geometry.wall_mm < norms.breaking_wall_mm) {
     check.verdict = Verdict::Wrong;
     check.text += ": may break out, less than " + limit_text(norms.breaking_wall_mm, "mm");
@@ -274,10 +300,10 @@ std::vector<PlanCheck> check_plan(const Tunnel& tunnel, const TunnelGeometry& ge
              .name = "Axis",
              .text = "misses the bone: place the entry on it and aim inwards"}};
   }
-  std::vector<PlanCheck> checks{check_length(tunnel, geometry, norms), check_wall(tunnel, geometry, norms),
-                                check_diameter(tunnel, norms),
-                                check_entry_place(tunnel, geometry, surroundings),
-                                check_exit_place(tunnel, geometry, surroundings)};
+  std::vector<PlanCheck> checks{
+      check_length(tunnel, geometry, norms), check_wall(tunnel, geometry, surroundings.surface.get(), norms),
+      check_diameter(tunnel, norms), check_entry_place(tunnel, geometry, surroundings),
+      check_exit_place(tunnel, geometry, surroundings)};
   add_grid_checks(tunnel, geometry.entry_on_surface_mm, surroundings, norms, checks);
   if (tunnel.bone == bones::BoneKind::Tibia) {
     checks.push_back(surroundings.axes ? check_coronal_angle(tunnel, *surroundings.axes, norms)

@@ -20,6 +20,7 @@ constexpr double kLeastTurnCosine = 0.70710678118654752;  // 45 deg: of the mout
 constexpr double kLeastFacing = 0.25881904510252074;      // sin 15 deg: of a face that a drill goes through
 constexpr int kHalfPlanes = 120, kHalvings = 5, kHalvingsOfThick = 2, kMostHalfPlanes = 600;
 constexpr double kThick_mm = 8;
+constexpr double kOneBreach_mm = 1;  // pieces nearer to each other are one
 
 class WallSearch {
  public:
@@ -31,6 +32,7 @@ class WallSearch {
     sort_by_angle();
   }
   [[nodiscard]] TunnelWall run();
+  [[nodiscard]] std::vector<DepthRange> breaches();  // after run()
 
  private:
   struct Facet {
@@ -40,6 +42,7 @@ class WallSearch {
   struct Trial {
     double angle_rad;
     Thinnest thinnest;
+    std::vector<DepthRange> outside;
   };
   void sort_by_angle();
   [[nodiscard]] Trial try_at(double angle_rad);
@@ -49,6 +52,7 @@ class WallSearch {
   const WallQuery& query_;
   HalfPlane half_plane_;
   std::vector<Facet> facets_;
+  std::vector<Trial> trials_;
   std::vector<std::vector<std::int32_t>> by_angle_{static_cast<std::size_t>(kHalfPlanes)};
 };
 
@@ -153,12 +157,53 @@ WallSearch::Trial WallSearch::try_at(double angle_rad) {
   for (const std::int32_t index :
        by_angle_[static_cast<std::size_t>((bucket % kHalfPlanes + kHalfPlanes) % kHalfPlanes)])
     cut(facets_[static_cast<std::size_t>(index)], along, across);
-  return {angle_rad, half_plane_.thinnest()};
+  const Thinnest thinnest = half_plane_.thinnest();
+  return {angle_rad, thinnest, half_plane_.outside()};
+}
+
+std::vector<DepthRange> WallSearch::breaches() {
+  struct Breach {
+    DepthRange range;
+    double from_at_rad, to_at_rad;  // the half planes that its ends are of
+  };
+  std::vector<Breach> found;
+  for (const Trial& trial : trials_)
+    for (const DepthRange& range : trial.outside) found.push_back({range, trial.angle_rad, trial.angle_rad});
+  std::sort(found.begin(), found.end(),
+            [](const Breach& a, const Breach& b) { return a.range.from_mm < b.range.from_mm; });
+  std::vector<Breach> merged;
+  for (const Breach& breach : found) {
+    if (merged.empty() || breach.range.from_mm > merged.back().range.to_mm + kOneBreach_mm) {
+      merged.push_back(breach);
+    } else if (breach.range.to_mm > merged.back().range.to_mm) {
+      merged.back().range.to_mm = breach.range.to_mm;
+      merged.back().to_at_rad = breach.to_at_rad;
+    }
+  }
+  // A breach may begin a little earlier, or end later, between two half planes.
+  std::vector<DepthRange> ranges;
+  for (Breach& breach : merged) {
+    double step = 2 * geometry::kPi / kHalfPlanes;
+    for (int halving = 0; halving < kHalvings; ++halving) {
+      step /= 2;
+      for (const double angle : {breach.from_at_rad - step, breach.from_at_rad + step,
+                                 breach.to_at_rad - step, breach.to_at_rad + step}) {
+        for (const DepthRange& range : try_at(angle).outside) {
+          if (range.from_mm > breach.range.to_mm || range.to_mm < breach.range.from_mm) continue;
+          if (range.from_mm < breach.range.from_mm)
+            breach.range.from_mm = range.from_mm, breach.from_at_rad = angle;
+          if (range.to_mm > breach.range.to_mm) breach.range.to_mm = range.to_mm, breach.to_at_rad = angle;
+        }
+      }
+    }
+    ranges.push_back(breach.range);
+  }
+  return ranges;
 }
 
 TunnelWall WallSearch::run() {
   double step = 2 * geometry::kPi / kHalfPlanes;
-  std::vector<Trial> trials;
+  auto& trials = trials_;
   for (int k = 0; k < kHalfPlanes; ++k) trials.push_back(try_at((k + 0.5) * step));
   const auto less = [](const Trial& a, const Trial& b) {
     return a.thinnest.radius_mm < b.thinnest.radius_mm;
@@ -207,6 +252,12 @@ TunnelWall WallSearch::run() {
 }
 
 }  // namespace
+
+std::vector<DepthRange> breaches(const AxisView& view, const WallQuery& query) {
+  WallSearch search(view, query);
+  (void)search.run();
+  return search.breaches();
+}
 
 double rim_reach_mm(double diameter_mm) {
   return 0.5 * diameter_mm * std::sqrt(1 - kLeastFacing * kLeastFacing) / kLeastFacing;

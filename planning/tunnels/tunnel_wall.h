@@ -21,8 +21,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "planning/tunnels/axis_view.h"
+#include "planning/tunnels/breach.h"
 #include "planning/tunnels/tunnel_mouth.h"
 
 namespace arthronaut::tunnels {
@@ -43,6 +45,10 @@ struct WallQuery {
 };
 // The view must reach from rim_reach_mm(diameter) before the entry to as far beyond the exit.
 [[nodiscard]] TunnelWall thinnest_wall(const AxisView& view, const WallQuery& query);
+
+// Where the side lies outside, lips left out: see breach.h. The ends are found as the thinnest place is. Of
+// what lies beyond the tunnel's side the view needs to show nothing.
+[[nodiscard]] std::vector<DepthRange> breaches(const AxisView& view, const WallQuery& query);
 
 // How far before its mouth a tunnel's side may begin: that of a face at 15 deg to the axis.
 [[nodiscard]] double rim_reach_mm(double diameter_mm);

@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "tests/planning/geometry/shapes.h"
+
 namespace arthronaut::tunnels {
 namespace {
 
@@ -64,6 +66,25 @@ TEST(PlanChecks, NamesTheMouthsWhereTheWallIsThinnestThere) {
   EXPECT_EQ(named(check_plan(tunnel, geometry, {}), "Wall").text, "3.0 mm at the mouth");
   geometry.thinnest_station_mm = 37;
   EXPECT_EQ(named(check_plan(tunnel, geometry, {}), "Wall").text, "3.0 mm at the exit");
+}
+
+// How far down it goes decides what is done about it.
+TEST(PlanChecks, SaysOverHowMuchOfTheTunnelABreachGoes) {
+  const auto text_of = [](const std::vector<Eigen::Vector2d>& profile_mm) {
+    PlanSurroundings known;
+    known.surface = std::make_shared<const geometry::Surface>(test::prism(profile_mm, 40, {-10, 10}));
+    const Tunnel tunnel{
+        .bone = BoneKind::Femur, .entry_mm = {0, 0, 0}, .direction = {0, 0, 1}, .diameter_mm = 9};
+    return named(check_plan(tunnel, measure(tunnel, *known.surface), known), "Wall").text;
+  };
+  EXPECT_EQ(text_of({{5.5, 0}, {2.75, 3}, {25, 30}, {-40, 30}, {-40, 0}}),
+            "-1.8 mm at 3.0 mm of depth: breaks out of the bone over 4.0 mm, from 1.1 to 5.1 mm of depth");
+  EXPECT_THAT(text_of({{3, 0}, {3, 30}, {-40, 30}, {-40, 0}}),
+              ::testing::EndsWith("over 30.0 mm, from the mouth to the exit"));
+  EXPECT_THAT(
+      text_of({{3.5, 0}, {3.5, 5}, {5.5, 10}, {5.5, 25}, {3.5, 30}, {-40, 30}, {-40, 0}}),
+      ::testing::EndsWith("over 7.5 mm, from the mouth to 7.5 mm of depth and over 2.5 mm, from 27.5 mm of "
+                          "depth to the exit"));
 }
 
 // The limits of the back wall are the femur's: a tibial tunnel thins out at its slanting exit.
