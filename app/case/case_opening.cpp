@@ -22,12 +22,12 @@ std::filesystem::path built_in_case_folder() {
 
 namespace {
 
-void load(OpenedCase& opened) {
+void load(OpenedCase& opened, const std::stop_token& stop) {
   cases::Case knee = cases::load_case(opened.folder);
   if (knee.bones.empty() && !knee.images.empty()) {
     opened.unpainted = std::move(knee);
   } else {
-    opened.model = std::make_unique<PlanModel>(std::move(knee));
+    opened.model = std::make_unique<PlanModel>(std::move(knee), stop);
     opened.model->set_measurements(cases::load_measurements(opened.folder));
   }
   opened.identity = cases::load_identity(opened.folder);
@@ -35,7 +35,7 @@ void load(OpenedCase& opened) {
 
 }  // namespace
 
-OpenedCase open_folder(const std::filesystem::path& folder) {
+OpenedCase open_folder(const std::filesystem::path& folder, const std::stop_token& stop) {
   OpenedCase opened;
   opened.folder = folder.empty() ? built_in_case_folder() : folder;
   if (folder.empty()) files::create_private_folder(opened.folder);
@@ -43,23 +43,23 @@ OpenedCase open_folder(const std::filesystem::path& folder) {
     opened.lock = cases::CaseLock(opened.folder);
   if (folder.empty() && opened.lock.is_held() && !std::filesystem::exists(opened.folder / "case.json"))
     cases::save_case(opened.folder, phantom::case_of(phantom::make_phantom_knee(), "Phantom knee"));
-  load(opened);
+  load(opened, stop);
   return opened;
 }
 
 CaseOpening::CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end) {
-  opening_.start([folder] { return open_folder(folder); }, std::move(on_end));
+  opening_.start([folder, stop = stop_.get_token()] { return open_folder(folder, stop); }, std::move(on_end));
 }
 
 CaseOpening::CaseOpening(CaseOpening& before, std::function<void()> on_end) {
   open_.lock = std::move(before.open_.lock);
   const bool is_ours = open_.lock.is_held();
   opening_.start(
-      [folder = before.folder(), is_ours] {
+      [folder = before.folder(), is_ours, stop = stop_.get_token()] {
         OpenedCase opened;
         opened.folder = folder;
         if (!is_ours) opened.lock = cases::CaseLock(folder);  // read-only, unless it has become free
-        load(opened);
+        load(opened, stop);
         return opened;
       },
       std::move(on_end));

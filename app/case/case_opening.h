@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "app/case/plan_model.h"
@@ -30,8 +31,9 @@ struct OpenedCase {
 
 // Takes the case (cases::CaseLock), loads it and makes its bones ready, which takes seconds: for a job. A
 // case that another program has open, or that cannot be written, is loaded all the same. An empty path is the
-// built-in case, made anew when it is not there. Throws IoError or InvalidInput.
-[[nodiscard]] OpenedCase open_folder(const std::filesystem::path& folder);
+// built-in case, made anew when it is not there. Throws IoError or InvalidInput, also once `stop` asks for
+// it.
+[[nodiscard]] OpenedCase open_folder(const std::filesystem::path& folder, const std::stop_token& stop = {});
 
 // The one case of a window: being opened on a thread of its own, then open for good, or refused with a
 // reason. While it is open it is this program's to write, or read-only, and stays so.
@@ -39,12 +41,18 @@ class CaseOpening {
  public:
   using Clock = std::chrono::steady_clock;
   // Opens the folder, see open_folder(). on_end is called from the other thread when that is done, well or
-  // not; its end is waited for.
+  // not; it is asked to end early when this goes, and waited for.
   CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end);
   // The same case once more, since its bones are others now, or another was looked at meanwhile: the lock
   // that `before` has goes over, and back again by keep_lock() when it cannot be opened.
   CaseOpening(CaseOpening& before, std::function<void()> on_end);
   void keep_lock(CaseOpening& from) { open_.lock = std::move(from.open_.lock); }
+  ~CaseOpening() { stop_.request_stop(); }
+  CaseOpening(const CaseOpening&) = delete;
+  CaseOpening& operator=(const CaseOpening&) = delete;
+
+  // Nothing is written any more: whoever opens the case next has it, though this one takes a while to go.
+  void release_lock() { open_.lock = {}; }
 
   // Takes over what the thread has made, without waiting; true once, when the case has become open just now.
   bool take();
@@ -72,7 +80,8 @@ class CaseOpening {
   OpenedCase open_;
   Clock::time_point locked_at_;
   std::string failure_;
-  worker::Awaited<OpenedCase> opening_;
+  std::stop_source stop_;
+  worker::Awaited<OpenedCase> opening_;  // last: ends first
 };
 
 }  // namespace arthronaut::open_case

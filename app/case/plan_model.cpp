@@ -26,7 +26,7 @@ constexpr std::size_t kMovingTriangles = 6000;
 
 }  // namespace
 
-PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
+PlanModel::PlanModel(cases::Case knee, const std::stop_token& stop) : knee_(std::move(knee)) {
   // Beside the proposals, which take seconds.
   auto made_ready = std::async(std::launch::async, [&] {
     for (const auto& [kind, bone] : std::as_const(knee_.bones)) {
@@ -40,8 +40,9 @@ PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
   });
   // A default plan asks for the proposal, too, as long as somebody has to look at the grid: not then, when a
   // key is pressed.
-  auto proposed = plan_review::propose_landmarks(knee_, plan_review::Proposing::WithoutConfirmed);
+  auto proposed = plan_review::propose_landmarks(knee_, plan_review::Proposing::WithoutConfirmed, stop);
   made_ready.get();
+  if (stop.stop_requested()) throw InvalidInput("the case \"" + knee_.name + "\" is no longer wanted");
   for (auto& [kind, made] : bones_) {
     if (const auto found = proposed.find(kind); found != proposed.end()) {
       made.proposal = std::move(found->second.proposal);
@@ -85,9 +86,10 @@ const std::optional<landmarks::Proposal>& PlanModel::proposal(bones::BoneKind ki
   const BoneModel& bone = bones_.at(kind);
   if (bone.proposal) return bone.proposal;
   // The surface keeps the mesh, whatever becomes of this model.
-  return late_proposals_[kind].ask([surface = bone.review.surface, kind, side = knee_.side] {
-    return landmarks::propose(surface->mesh(), kind, {.side = side});
-  });
+  return late_proposals_[kind].ask(
+      [surface = bone.review.surface, kind, side = knee_.side, stop = ending_->stop.get_token()] {
+        return landmarks::propose(surface->mesh(), kind, {.side = side, .stop = stop});
+      });
 }
 
 const std::shared_ptr<const geometry::TriangleMesh>& PlanModel::moving_mesh(bones::BoneKind kind) const {

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,8 @@ namespace arthronaut::open_case {
 class PlanModel {
  public:
   // Proposes landmarks of a bone that the case has no grid for, or one that nobody confirmed: two seconds
-  // each, for a job. Throws InvalidInput when the case has no bone.
-  explicit PlanModel(cases::Case knee);
+  // each, for a job. Throws InvalidInput when the case has no bone, and once `stop` asks for it.
+  explicit PlanModel(cases::Case knee, const std::stop_token& stop = {});
 
   [[nodiscard]] const cases::Case& knee() const { return knee_; }
   [[nodiscard]] bool has_bone(bones::BoneKind kind) const { return bones_.contains(kind); }
@@ -137,6 +138,11 @@ class PlanModel {
     std::shared_future<Thing> coming;
     std::optional<Thing> there;
   };
+  // What is still in the making when the last copy of the model goes is asked to end.
+  struct Ending {
+    ~Ending() { stop.request_stop(); }
+    std::stop_source stop;
+  };
   struct Checked {
     std::uint64_t revision = 0;
     std::vector<tunnels::PlanCheck> checks;
@@ -155,6 +161,7 @@ class PlanModel {
   mutable std::map<tunnels::TunnelKey, Checked> checked_;
   mutable std::map<bones::BoneKind, Late<landmarks::Proposal>> late_proposals_;
   mutable std::map<bones::BoneKind, Late<std::shared_ptr<const geometry::TriangleMesh>>> late_moving_;
+  std::shared_ptr<Ending> ending_ = std::make_shared<Ending>();  // last: before those are waited for
 };
 
 }  // namespace arthronaut::open_case

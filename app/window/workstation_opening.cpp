@@ -25,7 +25,6 @@ void WorkstationWindow::open(const std::filesystem::path& folder) {
   }
   failure_.clear();
   lender_ = nullptr;
-  letting_go_.wait();  // one of them may have the lock of the case that is wanted
   const auto wake = [] { GraphicsWindow::wake(); };
   // One that the modes still know is this program's already.
   if (known_to_modes_ != nullptr && std::filesystem::equivalent(wanted, known_to_modes_->folder(), error))
@@ -54,10 +53,10 @@ void WorkstationWindow::take_opened_case() {
     for (const auto& mode : modes_)
       all_know &= guarded([&] { mode->case_opened({model(), case_->folder(), case_->read_only_reason()}); });
   if (all_know)
-    letting_go_.take(std::move(known_to_modes_));
+    let_go(std::move(known_to_modes_));
   else if (before != nullptr && before->model() != nullptr)
     known_to_modes_ = std::move(before);
-  letting_go_.take(std::move(before));
+  let_go(std::move(before));
   if (!is_same_folder) paint_.close();
   const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
   if (is_unpainted()) paint_.open(knee, case_->folder(), case_->is_read_only());
@@ -69,6 +68,11 @@ void WorkstationWindow::take_opened_case() {
   shows_start_ = shows_paint_ = false;
   if (case_->is_read_only() && !shown().works_read_only()) shown_ = 0;
   if (!is_unpainted()) shown().enter();
+}
+
+void WorkstationWindow::let_go(std::unique_ptr<open_case::CaseOpening> closed) {
+  if (closed != nullptr) closed->release_lock();
+  letting_go_.take(std::move(closed));
 }
 
 void WorkstationWindow::reopen() {

@@ -50,6 +50,7 @@ class WorkstationWindow {
   // Empty: the built-in case. The one that is open stays open until the other one is.
   void open(const std::filesystem::path& folder);
   void take_opened_case();
+  void let_go(std::unique_ptr<open_case::CaseOpening> closed);
   void take_dropped();
   void close_start();
   void leave_shown();  // whatever is in front

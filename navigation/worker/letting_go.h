@@ -4,8 +4,9 @@
 // Threads: every member is for the thread that made it.
 #pragma once
 
+#include <chrono>
+#include <future>
 #include <memory>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -16,18 +17,20 @@ class LettingGo {
   // Nobody else may use the thing any more. No effect for null.
   template <typename Thing>
   void take(std::unique_ptr<Thing> thing) {
-    if (thing != nullptr) threads_.emplace_back([gone = std::move(thing)]() mutable { gone.reset(); });
+    std::erase_if(going_, [](const std::future<void>& one) {
+      return one.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    });
+    if (thing != nullptr)
+      going_.push_back(std::async(std::launch::async, [gone = std::move(thing)]() mutable { gone.reset(); }));
   }
-  // Until all that was taken is gone: before what it holds is asked for anew.
-  void wait() { threads_.clear(); }
-  // As wait().
+  // Waits until all that was taken is gone.
   ~LettingGo() = default;
   LettingGo() = default;
   LettingGo(const LettingGo&) = delete;
   LettingGo& operator=(const LettingGo&) = delete;
 
  private:
-  std::vector<std::jthread> threads_;
+  std::vector<std::future<void>> going_;  // each waits for its own
 };
 
 }  // namespace arthronaut::worker

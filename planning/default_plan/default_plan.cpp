@@ -195,6 +195,13 @@ std::optional<Tunnel> bundle_tunnel(const Site& site, Places& places, DefaultTun
   return best->tunnel;
 }
 
+DefaultTunnel stopped() {
+  DefaultTunnel result;
+  result.outcome = Outcome::Stopped;
+  result.message = "it was stopped";
+  return result;
+}
+
 }  // namespace
 
 double usual_diameter_mm(norms::Bundle bundle) {
@@ -228,7 +235,7 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
   Landmarks marks = input.landmarks;
   if (!landmarks::is_grid_confirmed(kind, input.landmarks, input.states)) {
     if (proposal == nullptr) {
-      made = landmarks::propose(input.bone->mesh, kind, {.side = side});
+      made = landmarks::propose(input.bone->mesh, kind, {.side = side, .stop = options.stop});
       proposal = &made;
     }
     // What is there was proposed as its owner wished (Blumensaat's line has two ways), and is what is shown.
@@ -241,6 +248,7 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
                             "'s landmarks are proposed and nobody has confirmed them: " + names);
     result.doubts.insert(result.doubts.end(), proposal->doubts.begin(), proposal->doubts.end());
   }
+  if (options.stop.stop_requested()) return stopped();
   const auto joint = joint_of(input, marks, side);
   if (!joint) {
     result.outcome = Outcome::NoLandmarks;
@@ -269,11 +277,7 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
     result.message = "no bone is where the norm places the insertion";
     return result;
   }
-  if (options.stop.stop_requested()) {
-    result.outcome = Outcome::Stopped;
-    result.message = "it was stopped";
-    return result;
-  }
+  if (options.stop.stop_requested()) return stopped();
   if (!aimed) {
     result.outcome = Outcome::NoAim;
     result.message = "no direction that a drill can follow from there leaves the " +

@@ -39,6 +39,7 @@ struct Shape {
   Notch notch;
   std::optional<LongAxis> shaft;
   Matrix3d axes = Matrix3d::Identity();  // anatomical, with the shaft: x right, y anterior, z proximal
+  std::stop_token stop;
 };
 
 double lowest(const Shape& shape, const Vector3d& z) {
@@ -80,6 +81,7 @@ bool refine(Shape& shape, const geometry::Surface& surface, Matrix3d axes, Vecto
   constexpr int kRounds = 5;
   constexpr double kSettled = 0.001;  // of the axes' directions
   for (int round = 0; round < kRounds; ++round) {
+    if (shape.stop.stop_requested()) return false;
     const auto condyles = find_condyles(shape.samples, shape.each_mm2, axes, origin);
     if (!condyles) {
       reason = "it has no two condyles at its joint's end";
@@ -115,9 +117,10 @@ void take_samples(Shape& shape, const geometry::TriangleMesh& mesh, double each_
 }
 
 std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
-                                const RoughFrame& rough, std::string& reason) {
+                                const RoughFrame& rough, const std::stop_token& stop, std::string& reason) {
   Shape shape;
   shape.rough = rough;
+  shape.stop = stop;
   take_samples(shape, mesh, kCoarse_mm2);
   // A slanting cut misleads about the long axis: the joint's end is looked at from in front and from behind,
   // too, and of what is found there the roof is taken that the outline shows best.
@@ -224,8 +227,8 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
   const geometry::Surface surface(mesh);
   std::optional<Shape> shape;
   proposal.reason = "the surface has no joint's end that comes near to its own mirror image";
-  for (const RoughFrame& rough : rough_frames(mesh, surface, bones::BoneKind::Femur)) {
-    shape = find_shape(mesh, surface, rough, proposal.reason);
+  for (const RoughFrame& rough : rough_frames(mesh, surface, bones::BoneKind::Femur, options.stop)) {
+    shape = find_shape(mesh, surface, rough, options.stop, proposal.reason);
     if (shape) break;
   }
   if (!shape) return proposal;

@@ -43,6 +43,12 @@ Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone, const
   }
   Proposal proposal =
       bone == bones::BoneKind::Femur ? propose_femur(mesh, options) : propose_tibia(mesh, options);
+  if (options.stop.stop_requested()) {  // what the steps have by then is worth nothing
+    proposal = {};
+    proposal.outcome = Proposal::Outcome::Stopped;
+    proposal.reason = "it was stopped";
+    return proposal;
+  }
   if (proposal.is_usable() && !gives_axes(mesh, bone, proposal.landmarks)) {
     proposal = {};
     proposal.outcome = Proposal::Outcome::NotThisBone;

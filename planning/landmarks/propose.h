@@ -17,6 +17,7 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,8 @@ struct ProposalOptions {
   // followed and a doubt is raised.
   std::optional<bones::Side> side;
   RoofConvention roof = RoofConvention::Ends;
+  // Asked every few hundredths of a second; then the outcome is Stopped.
+  std::stop_token stop = {};
 };
 
 struct Proposal {
@@ -49,6 +52,7 @@ struct Proposal {
     NotRun,
     Proposed,
     NotThisBone,  // no condyles and no notch, or no plateau: nothing is proposed
+    Stopped,      // by ProposalOptions::stop
   } outcome = Outcome::NotRun;
   std::string reason = "propose was not called";  // why nothing is proposed; empty when something is
   Landmarks landmarks;                       // by the names of known_landmarks(), all but native_footprint

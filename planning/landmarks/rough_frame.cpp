@@ -57,10 +57,10 @@ std::vector<SurfaceSample> smoothed(const std::vector<SurfaceSample>& samples) {
 // The largest plane face that supports the whole surface and that the bone goes on under with about its
 // width.
 std::optional<Cut> find_cut(const geometry::TriangleMesh& mesh, const std::vector<SurfaceSample>& given,
-                            double area_each_mm2) {
+                            double area_each_mm2, const std::stop_token& stop) {
   const auto samples = smoothed(given);
   Cut best;
-  for (std::size_t i = 0; i < samples.size(); i += 8) {
+  for (std::size_t i = 0; i < samples.size() && !stop.stop_requested(); i += 8) {
     Vector3d normal = samples[i].normal;
     double offset = samples[i].point_mm.dot(normal);
     std::size_t held = 0;
@@ -116,12 +116,14 @@ class MirrorSearch {
 
   // The best plane among those whose normal lies across `joint`, the direction of the joint's end, to at most
   // this sine; nullopt where what the search comes to leans further than that.
-  [[nodiscard]] std::optional<Mirror> find(const Vector3d& joint, double greatest_sine) const {
+  [[nodiscard]] std::optional<Mirror> find(const Vector3d& joint, double greatest_sine,
+                                           const std::stop_token& stop) const {
     std::vector<Mirror> starts;
     const Vector3d u = joint.unitOrthogonal(), v = joint.cross(u);
     constexpr int kTurns = 18;
     for (const double lean : {-0.5, -0.25, 0.0, 0.25, 0.5}) {
       for (int i = 0; i < kTurns; ++i) {
+        if (stop.stop_requested()) return std::nullopt;
         const double angle = geometry::kPi * i / kTurns;
         const Vector3d across = std::cos(angle) * u + std::sin(angle) * v;
         Mirror start{(std::cos(lean) * across + std::sin(lean) * joint).normalized()};
@@ -134,7 +136,7 @@ class MirrorSearch {
     std::optional<Mirror> best;
     for (std::size_t i = 0; i < 4 && i < starts.size(); ++i) {
       Mirror refined = starts[i];
-      for (int k = 0; k < 15; ++k) refined = step(refined, 1);
+      for (int k = 0; k < 15 && !stop.stop_requested(); ++k) refined = step(refined, 1);
       if (std::abs(refined.normal.dot(joint)) < greatest_sine && (!best || refined.cost < best->cost))
         best = refined;
     }
@@ -249,11 +251,11 @@ std::vector<JointEnd> joint_ends(const std::vector<SurfaceSample>& samples, cons
 }  // namespace
 
 std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
-                                     bones::BoneKind bone) {
+                                     bones::BoneKind bone, const std::stop_token& stop) {
   const auto samples = sample_surface(mesh, geometry::surface_area_mm2(mesh) / kSamples);
   if (samples.empty()) return {};
   const double area_each = geometry::surface_area_mm2(mesh) / static_cast<double>(samples.size());
-  const auto cut = find_cut(mesh, samples, area_each);
+  const auto cut = find_cut(mesh, samples, area_each, stop);
   std::vector<std::pair<double, RoughFrame>> found;
   for (const JointEnd& end : joint_ends(samples, cut)) {
     double tip = -1e9;
@@ -270,7 +272,7 @@ std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, const g
       points = std::move(fewer);
     }
     const MirrorSearch search(points, surface);
-    const auto mirror = search.find(end.direction, end.greatest_sine);
+    const auto mirror = search.find(end.direction, end.greatest_sine, stop);
     if (!mirror) continue;
     RoughFrame frame;
     const double up = bone == bones::BoneKind::Femur ? -1 : 1;

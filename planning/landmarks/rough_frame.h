@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "planning/bones/bone.h"
@@ -26,8 +27,9 @@ struct RoughFrame {
 // its own mirror image. Where the cut was found there is one. Empty: nothing here looks like the joint's end
 // of a bone (no area, no mirror plane). The right one lies within 25 degrees of the anatomical axes for bones
 // of which 55 mm or more are there.
-// `surface` is the mesh's.
+// `surface` is the mesh's. Once `stop` asks for it the rest is not looked for.
 [[nodiscard]] std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh,
-                                                   const geometry::Surface& surface, bones::BoneKind bone);
+                                                   const geometry::Surface& surface, bones::BoneKind bone,
+                                                   const std::stop_token& stop = {});
 
 }  // namespace arthronaut::landmarks

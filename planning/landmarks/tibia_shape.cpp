@@ -205,7 +205,8 @@ Proposal propose_tibia(const geometry::TriangleMesh& mesh, const ProposalOptions
   const geometry::Surface surface(mesh);
   std::optional<Shape> shape;
   proposal.reason = "the surface has no joint's end that comes near to its own mirror image";
-  for (const RoughFrame& rough : rough_frames(mesh, surface, bones::BoneKind::Tibia)) {
+  for (const RoughFrame& rough : rough_frames(mesh, surface, bones::BoneKind::Tibia, options.stop)) {
+    if (options.stop.stop_requested()) break;
     shape = find_shape(mesh, surface, rough, proposal.reason);
     if (shape && (eminence(*shape, 1) || eminence(*shape, -1))) break;
     if (shape) proposal.reason = "between the halves of its joint's end stand no eminences";

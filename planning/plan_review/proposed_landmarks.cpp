@@ -18,7 +18,8 @@ bool has_grid(const cases::Case& knee, bones::BoneKind kind) {
 
 }  // namespace
 
-std::map<bones::BoneKind, ProposedBone> propose_landmarks(cases::Case& knee, Proposing proposing) {
+std::map<bones::BoneKind, ProposedBone> propose_landmarks(cases::Case& knee, Proposing proposing,
+                                                          const std::stop_token& stop) {
   std::map<bones::BoneKind, std::future<landmarks::Proposal>> coming;
   for (const auto& [kind, bone] : knee.bones) {
     knee.landmarks[kind];  // there for every bone, if empty
@@ -27,8 +28,8 @@ std::map<bones::BoneKind, ProposedBone> propose_landmarks(cases::Case& knee, Pro
     if (has_grid(knee, kind) && (proposing == Proposing::WithoutGrid ||
                                  state_of_grid(knee, kind) == landmarks::LandmarkState::Confirmed))
       continue;
-    coming[kind] = std::async(std::launch::async, [&mesh = bone.mesh, kind = kind, side = knee.side] {
-      return landmarks::propose(mesh, kind, {.side = side});
+    coming[kind] = std::async(std::launch::async, [&mesh = bone.mesh, kind = kind, side = knee.side, stop] {
+      return landmarks::propose(mesh, kind, {.side = side, .stop = stop});
     });
   }
   std::map<bones::BoneKind, ProposedBone> proposed;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <stop_token>
 
 #include "planning/cases/case.h"
 #include "planning/landmarks/propose.h"
@@ -21,7 +22,9 @@ struct ProposedBone {
 
 // Bones without a grid take what is proposed, as proposed; landmarks that somebody confirmed stay. What was
 // proposed, by bone. Afterwards every bone has landmarks and states, if empty ones. Nothing is saved.
-std::map<bones::BoneKind, ProposedBone> propose_landmarks(cases::Case& knee, Proposing proposing);
+// Once it is to stop nothing more is taken.
+std::map<bones::BoneKind, ProposedBone> propose_landmarks(cases::Case& knee, Proposing proposing,
+                                                          const std::stop_token& stop = {});
 
 // Of the landmarks that the bone's grid follows from, and mostly its axes, the one least looked at.
 [[nodiscard]] landmarks::LandmarkState state_of_grid(const cases::Case& knee, bones::BoneKind kind);

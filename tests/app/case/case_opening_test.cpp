@@ -117,6 +117,20 @@ TEST(CaseOpening, Hazard15TheSecondOpensReadOnlyAndSaysWhoHolds) {
   EXPECT_FALSE(third.is_read_only());
 }
 
+// A case that is closed may take a second to go, while its landmarks are still in the making; whoever opens
+// it anew meanwhile may write.
+TEST(CaseOpening, ACaseThatIsBeingLetGoIsFreeToBeOpened) {
+  const test::TemporaryFolder folder;
+  cases::save_case(folder.path(),
+                   phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "test"));
+  CaseOpening closed(folder.path(), [] {});
+  ASSERT_EQ(take_until_done(closed), 1);
+  closed.release_lock();
+  CaseOpening next(folder.path(), [] {});
+  ASSERT_EQ(take_until_done(next), 1);
+  EXPECT_FALSE(next.is_read_only()) << next.read_only_reason();
+}
+
 // Hazard 20: whose knee it is comes with the case.
 TEST(CaseOpening, Hazard20GivesWhoseKneeItIs) {
   const test::TemporaryFolder folder;

@@ -72,6 +72,13 @@ TEST(PlanModel, KnowsWhatTheShapeProposesUntilTheGridIsConfirmed) {
 }
 
 // A case without a bone is refused with its name.
+// The window closed while it was opened.
+TEST(PlanModel, IsNotMadeByHalves) {
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW(PlanModel(phantom(), stop.get_token()), InvalidInput);
+}
+
 TEST(PlanModel, RefusesACaseWithoutBones) {
   cases::Case empty;
   empty.name = "nothing";

@@ -17,18 +17,19 @@ struct Slow {
   std::atomic<int>& gone;
 };
 
-// The caller goes on while the destructor still waits; wait() does not.
+// The caller goes on while a destructor still waits; the end does not.
 TEST(LettingGo, HoldsNobodyUp) {
   std::promise<void> may_go;
   const std::shared_future<void> until = may_go.get_future().share();
   std::atomic<int> gone = 0;
-  LettingGo letting_go;
-  letting_go.take(std::unique_ptr<Slow>());
-  letting_go.take(std::make_unique<Slow>(until, gone));
-  letting_go.take(std::make_unique<Slow>(until, gone));
-  EXPECT_EQ(gone, 0);
-  may_go.set_value();
-  letting_go.wait();
+  {
+    LettingGo letting_go;
+    letting_go.take(std::unique_ptr<Slow>());
+    letting_go.take(std::make_unique<Slow>(until, gone));
+    letting_go.take(std::make_unique<Slow>(until, gone));
+    EXPECT_EQ(gone, 0);
+    may_go.set_value();
+  }
   EXPECT_EQ(gone, 2);
 }
 

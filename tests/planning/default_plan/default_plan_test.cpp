@@ -238,6 +238,8 @@ TEST(DefaultPlan, StopsWhenItIsAskedTo) {
   for (const auto bundle : {norms::Bundle::Whole, norms::Bundle::Posterolateral}) {
     const Options options{.bundle = bundle, .stop = stop.get_token()};
     EXPECT_EQ(plan_bone(knee.inputs(true)[0], Side::Right, options).outcome, DefaultTunnel::Outcome::Stopped);
+    EXPECT_EQ(plan_bone(knee.inputs(false)[0], Side::Right, options).outcome, DefaultTunnel::Outcome::Stopped)
+        << "nor are landmarks looked for";
   }
 }
 

@@ -1,6 +1,7 @@
 #include "planning/landmarks/propose.h"
 
 #include <gtest/gtest.h>
+#include <time.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -95,6 +96,26 @@ TEST_P(EitherBone, RefusesWhatIsNoBone) {
     EXPECT_FALSE(proposal.reason.empty());
     EXPECT_TRUE(proposal.landmarks.empty());
   }
+}
+
+// A window that closes does not wait for it. In processor time, whatever else runs; what is left is the index
+// of the surface.
+TEST_P(EitherBone, StopsWhenItIsAskedTo) {
+  const auto spent_s = [] {
+    timespec spent{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent);
+    return static_cast<double>(spent.tv_sec) + 1e-9 * static_cast<double>(spent.tv_nsec);
+  };
+  const TriangleMesh mesh = mesh_of(GetParam());
+  const double begun_s = spent_s();
+  ASSERT_TRUE(propose(mesh, GetParam()).is_usable());
+  const double whole_s = spent_s() - begun_s;
+  std::stop_source stop;
+  stop.request_stop();
+  const Proposal proposal = propose(mesh, GetParam(), {.side = {}, .stop = stop.get_token()});
+  EXPECT_LT(spent_s() - begun_s - whole_s, whole_s / 3);
+  EXPECT_EQ(proposal.outcome, Proposal::Outcome::Stopped);
+  EXPECT_TRUE(proposal.landmarks.empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, EitherBone, ::testing::Values(BoneKind::Femur, BoneKind::Tibia),
