@@ -14,11 +14,17 @@ std::string ExportOutcome::in_words(std::uint64_t revision_now) const {
 }
 
 void ExportWork::start(cases::Case knee, std::uint64_t revision, std::filesystem::path case_folder) {
+  stop_ = {};
   running_.start(
-      [knee = std::move(knee), revision, folder = std::move(case_folder)] {
+      [knee = std::move(knee), revision, folder = std::move(case_folder), stop = stop_.get_token()] {
         ExportOutcome outcome{.revision = revision};
         try {  // a full disk is a state of the screen
-          const plan_export::ExportSummary summary = plan_export::export_plan(knee, folder / "export");
+          const plan_export::ExportSummary summary = plan_export::export_plan(knee, folder / "export", stop);
+          if (summary.was_stopped) {
+            outcome.was_stopped = true;
+            outcome.text = "The export was stopped: nothing was written.";
+            return outcome;
+          }
           outcome.text = "Exported into " + (folder / "export").string() + ":";
           for (const auto& file : summary.files) outcome.text += " " + file.filename().string();
           outcome.doubts = summary.doubts;

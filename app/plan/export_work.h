@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace arthronaut::plan {
 
 struct ExportOutcome {
   std::uint64_t revision = 0;  // PlanModel::revision() of what was exported
-  bool is_written = false;
+  bool is_written = false, was_stopped = false;
   std::string text = {};                 // where what was written, or why nothing was
   std::vector<std::string> doubts = {};  // what to look at in what was written
 
@@ -27,16 +28,22 @@ class ExportWork {
  public:
   // wake: called from another thread when it is done.
   explicit ExportWork(std::function<void()> wake) : wake_(std::move(wake)) {}
+  ~ExportWork() { stop(); }  // and waits
+  ExportWork(const ExportWork&) = delete;
+  ExportWork& operator=(const ExportWork&) = delete;
 
   // Into the folder "export" of the case, which is its owner's alone to read, as `arthronaut plan --export`
   // writes them (plan_export::export_plan). Precondition: not is_running().
   void start(cases::Case knee, std::uint64_t revision, std::filesystem::path case_folder);
+  // Nothing will have been written, unless all was drilled by then: the outcome says it.
+  void stop() { stop_.request_stop(); }
   [[nodiscard]] bool is_running() const { return running_.is_busy(); }
   // For every frame: once what came of it; nullopt while there is no news.
   [[nodiscard]] std::optional<ExportOutcome> take_outcome();
 
  private:
   std::function<void()> wake_;
+  std::stop_source stop_;
   worker::Awaited<ExportOutcome> running_;  // last: ends first
 };
 

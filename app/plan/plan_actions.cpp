@@ -155,7 +155,9 @@ void PlanView::add_history_actions(widgets::Actions& actions) {
 }
 
 bool PlanView::can_stop_placing() const {
-  return defaults_.is_running() || state_.placing != Placing::Nothing || !state_.hint.text.empty();
+  const bool can_stop_export = export_.is_running() && slices_.tool() == MeasuringTool::None;
+  return can_stop_export || defaults_.is_running() || state_.placing != Placing::Nothing ||
+         !state_.hint.text.empty();
 }
 
 // Where the eye sees the bone that is planned; anything else is said and changes nothing.
@@ -197,13 +199,17 @@ void PlanView::add_placing_actions(widgets::Actions& actions) {
                }});
   actions.add({"plan.stop_placing",
                "Cancel",
-               "Leaves the placing, or a default plan that is being made, without a change",
+               "Leaves the placing, or a default plan or an export that is being made, without a change",
                GLFW_KEY_ESCAPE,
                0,
                false,
                [this] { return can_stop_placing(); },
                {},
                [this] {
+                 // What is in front first: the export goes on beside it.
+                 if (state_.placing == Placing::Nothing && !defaults_.is_running() &&
+                     state_.hint.text.empty())
+                   export_.stop();
                  state_.placing = Placing::Nothing;
                  state_.hint = {};
                  leave_defaults("it was left");

@@ -85,7 +85,8 @@ void PlanView::tick(double now_s) {
   follow_plan();
   follow_defaults();
   if (const auto exported = export_.take_outcome())
-    state_.hint = {exported->in_words(model_->revision()), exported->is_written && exported->doubts.empty()};
+    state_.hint = {exported->in_words(model_->revision()),
+                   exported->was_stopped || (exported->is_written && exported->doubts.empty())};
   if (volume_.is_on()) slices_.want();
   slices_.tick();
   volume_.follow(slices_.shared_volume());

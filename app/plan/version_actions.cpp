@@ -48,7 +48,7 @@ void PlanView::take_version(std::size_t place) {
 // Into the case, which is its owner's alone to read; from there it goes wherever it is to go.
 void PlanView::export_plan() {
   history_.settle_now();
-  state_.hint = {"Exporting: the bones are drilled, which takes a while ...", true};
+  state_.hint = {};
   export_.start(model_->knee(), model_->revision(), case_folder_);
 }
 

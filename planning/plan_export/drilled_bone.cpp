@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "planning/geometry/rigid_transform.h"
 #include "planning/geometry/surface.h"
@@ -78,13 +79,29 @@ double room(const geometry::Surface& surface, const Vector3d& from, const Vector
   return next ? std::min(kFurthestOut_mm, 0.5 * next->distance_mm) : kFurthestOut_mm;
 }
 
+struct Stopped {};
+
+// The one way out of CGAL's boolean before its end.
+struct StopBetweenSteps : pmp::Corefinement::Default_visitor<Mesh> {
+  explicit StopBetweenSteps(std::stop_token asked) : stop(std::move(asked)) {}
+  void look() const {
+    if (stop.stop_requested()) throw Stopped();
+  }
+  void progress_filtering_intersections(double) const { look(); }
+  void edge_face_intersections_step() const { look(); }
+  void triangulating_faces_step() const { look(); }
+  void start_building_output() const { look(); }
+  std::stop_token stop;
+};
+
 }  // namespace
 
 DrilledBone drill(const geometry::TriangleMesh& bone, const tunnels::Tunnel& tunnel) {
   return drill(bone, std::span(&tunnel, 1));
 }
 
-DrilledBone drill(const geometry::TriangleMesh& bone, std::span<const tunnels::Tunnel> tunnels) {
+DrilledBone drill(const geometry::TriangleMesh& bone, std::span<const tunnels::Tunnel> tunnels,
+                  const std::stop_token& stop) {
   DrilledBone result;
   const geometry::Surface surface(bone);
   std::vector<Mesh> drills;
@@ -111,12 +128,17 @@ DrilledBone drill(const geometry::TriangleMesh& bone, std::span<const tunnels::T
   try {
     for (Mesh& drill : drills) {
       Mesh less;
-      if (!pmp::corefine_and_compute_difference(drilled, drill, less,
-                                                CGAL::parameters::throw_on_self_intersection(true)))
+      if (!pmp::corefine_and_compute_difference(
+              drilled, drill, less,
+              CGAL::parameters::visitor(StopBetweenSteps(stop)).throw_on_self_intersection(true)))
         return result;
       drilled = std::move(less);
     }
   } catch (const std::exception&) {  // CGAL's way to say that the surface crosses itself
+    return result;
+  } catch (const Stopped&) {
+    result.outcome = DrilledBone::Outcome::Stopped;
+    result.reason = "it was stopped";
     return result;
   }
   result.mesh = mesh_from(drilled);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <stop_token>
 #include <string>
 
 #include "planning/geometry/triangle_mesh.h"
@@ -16,6 +17,7 @@ struct DrilledBone {
     Drilled,
     MissesTheBone,  // a tunnel's axis does not enter it
     BrokenSurface,  // not closed, or it crosses itself: no inside to take away from
+    Stopped,        // by `stop`
   } outcome = Outcome::NotRun;
   std::string reason = "drill was not called";  // empty when drilled
   geometry::TriangleMesh mesh;                  // closed, outward, bone frame, mm
@@ -27,7 +29,8 @@ struct DrilledBone {
 // whatever comes next.
 [[nodiscard]] DrilledBone drill(const geometry::TriangleMesh& bone, const tunnels::Tunnel& tunnel);
 // All of them, which may run into each other: each as it is planned in the bone before any was drilled.
-// Precondition: at least one.
-[[nodiscard]] DrilledBone drill(const geometry::TriangleMesh& bone, std::span<const tunnels::Tunnel> tunnels);
+// `stop` is asked at every step of the boolean. Precondition: at least one.
+[[nodiscard]] DrilledBone drill(const geometry::TriangleMesh& bone, std::span<const tunnels::Tunnel> tunnels,
+                                const std::stop_token& stop = {});
 
 }  // namespace arthronaut::plan_export

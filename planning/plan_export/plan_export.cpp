@@ -84,7 +84,7 @@ void refuse_foreign(const fs::path& folder) {
                        "was changed by another program since it was exported: read it back, or move it away");
 }
 
-ExportSummary export_plan(const cases::Case& knee, const fs::path& folder) {
+ExportSummary export_plan(const cases::Case& knee, const fs::path& folder, const std::stop_token& stop) {
   if (knee.plan.tunnels.empty())
     throw InvalidInput("plan: nothing is planned, so there is nothing to export");
   files::refuse_unwritable(folder);  // drilling takes half a minute
@@ -105,7 +105,7 @@ ExportSummary export_plan(const cases::Case& knee, const fs::path& folder) {
       tunnels.push_back(knee.plan.tunnels.at(key));
       if (const auto fit = cases::plan_fit(knee, key); !fit.is_valid()) summary.doubts.push_back(fit.reason);
     }
-    auto result = drill(bone->second.mesh, tunnels);
+    auto result = drill(bone->second.mesh, tunnels, stop);
     if (result.is_usable()) {
       drilled[kind] = std::move(result.mesh);
     } else {
@@ -113,6 +113,7 @@ ExportSummary export_plan(const cases::Case& knee, const fs::path& folder) {
     }
   }
   const std::string csv = plan_csv(knee), markups = markups_of(knee);
+  if (stop.stop_requested()) return {.files = {}, .doubts = {}, .was_stopped = true};
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder)) throw IoError(folder, "cannot make the folder: " + error.message());

@@ -103,6 +103,18 @@ TEST_F(DefaultActions, AnotherCaseKnowsNothingOfIt) {
   view_.reset();
 }
 
+// Esc stops an export, which takes half a minute of a fine bone; what is in front is left first.
+TEST_F(DefaultActions, EscStopsAnExport) {
+  action("plan.export").run();
+  ASSERT_TRUE(view_->has_running_work());
+  action("plan.place").run();
+  action("plan.stop_placing").run();
+  EXPECT_FALSE(action("plan.place").is_on());
+  action("plan.stop_placing").run();
+  while (view_->has_running_work()) view_->tick(1000);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "export"));
+}
+
 // Markups as 3D Slicer gives them back: what was moved there becomes the plan, as one step; what is of
 // another knee changes nothing.
 TEST_F(DefaultActions, MarkupsThatWereMovedBecomeThePlan) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <future>
 
 #include "planning/phantom/phantom_case.h"
@@ -37,6 +38,23 @@ TEST(ExportWork, WritesThePlanAndSaysWhere) {
                                               ": plan.json plan.csv plan.mrk.json femur_drilled.stl "
                                               "femur_drilled.ply tibia_drilled.stl tibia_drilled.ply"));
   EXPECT_TRUE(std::filesystem::exists(folder / "Knee.arthro/export/plan.mrk.json"));
+}
+
+// Nothing of it is there afterwards, and the next one is written.
+TEST(ExportWork, IsStoppedWithoutATrace) {
+  const test::TemporaryFolder folder;
+  const cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "export");
+  std::atomic<int> woken = 0;
+  ExportWork work([&] { ++woken; });
+  work.start(knee, 7, folder / "Knee.arthro");
+  work.stop();
+  std::optional<ExportOutcome> outcome;
+  while (!outcome) outcome = work.take_outcome();
+  EXPECT_TRUE(outcome->was_stopped);
+  EXPECT_FALSE(outcome->is_written);
+  EXPECT_EQ(outcome->in_words(7), "The export was stopped: nothing was written.");
+  EXPECT_FALSE(std::filesystem::exists(folder / "Knee.arthro/export"));
+  EXPECT_TRUE(outcome_of(knee, folder / "Knee.arthro").is_written);
 }
 
 TEST(ExportWork, SaysWhyNothingWasWritten) {
