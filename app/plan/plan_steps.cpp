@@ -85,6 +85,14 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
       return {"Plan the " + adjective(*missing) + " tunnel too: press Tab", "plan.bone"};
     if (is_wrong(model, key)) return {"Mend the " + adjective(key) + " tunnel: press Tab", "plan.bone"};
   }
+  const bool is_single = !beside, other_is_single = !other_bundle(others.front());
+  if (is_single != other_is_single) {
+    const std::string other_bone(bones::to_text(other));
+    return {"The " + (is_single ? bone : other_bone) + " has one tunnel and the " +
+                (is_single ? other_bone : bone) + " two, which is seldom meant: press " +
+                (is_single ? "B" : "Tab, then B") + " for two in both",
+            is_single ? "plan.bundles" : "plan.bone"};
+  }
   return {"The plan can be taken to theatre: set up the arthroscope", "mode.setup"};
 }
 

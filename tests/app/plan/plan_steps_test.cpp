@@ -83,5 +83,21 @@ TEST(NextStep, OfTwoBundlesBothAreWanted) {
   EXPECT_EQ(next_step(model, {.key = am}).text, "Mend the femoral AM tunnel: Between the tunnels");
 }
 
+// Two bundles in one bone and a single tunnel in the other is more often forgotten than meant.
+TEST(NextStep, OneTunnelBesideTwoOfTheOtherBoneIsAskedAbout) {
+  open_case::PlanModel model(knee());
+  const tunnels::TunnelKey am{BoneKind::Tibia, norms::Bundle::Anteromedial},
+      pl{BoneKind::Tibia, norms::Bundle::Posterolateral};
+  const auto made_am = model.default_tunnel(am), made_pl = model.default_tunnel(pl);
+  ASSERT_TRUE(made_am.is_usable() && made_pl.is_usable());
+  model.set_tunnel(am, made_am.tunnel);
+  model.set_tunnel(pl, made_pl.tunnel);
+  const NextStep here = next_step(model, {.key = BoneKind::Femur}), there = next_step(model, {.key = am});
+  EXPECT_EQ(here.action, "plan.bundles");
+  EXPECT_TRUE(here.text.starts_with("The femur has one tunnel and the tibia two")) << here.text;
+  EXPECT_EQ(there.action, "plan.bone");
+  EXPECT_TRUE(there.text.starts_with("The femur has one tunnel and the tibia two")) << there.text;
+}
+
 }  // namespace
 }  // namespace arthronaut::plan
