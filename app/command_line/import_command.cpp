@@ -93,6 +93,9 @@ void import(Context& context, const ImportArguments& arguments) {
     const std::string bone(bones::to_text(imported.bone.kind));
     for (const auto& line : imported.lines) context.say(bone + ": " + line);
     for (const auto& doubt : imported.doubts) doubts.push_back(bone + ": " + doubt);
+    if (const auto space = imported.likelier_in())
+      doubts.push_back(bone + ": --space " + std::string(bones::to_text(*space)) +
+                       " reads it the other way round");
   }
   workstation_library::note_case(folder);
   context.say("Wrote " + folder.string() + ": a " + std::string(bones::to_text(target.side)) + " knee" +

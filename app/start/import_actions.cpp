@@ -28,6 +28,10 @@ void StartView::save_import() {
 
 void StartView::add_import_actions(widgets::Actions& actions) {
   const auto chooses = [this] { return state_.page == Page::Import && work_.state() == State::Choosing; };
+  const auto can_take = [this] {
+    return state_.selected < work_.sources().sources.size() &&
+           work_.sources().sources[state_.selected].can_be_imported();
+  };
   const auto waits = [this] { return state_.page == Page::Import && work_.state() == State::Asking; };
   actions.add({"start.tick",
                "Take it",
@@ -35,10 +39,7 @@ void StartView::add_import_actions(widgets::Actions& actions) {
                GLFW_KEY_SPACE,
                0,
                false,
-               [this, chooses] {
-                 return chooses() && state_.selected < work_.sources().sources.size() &&
-                        work_.sources().sources[state_.selected].can_be_imported();
-               },
+               [chooses, can_take] { return chooses() && can_take(); },
                {},
                [this] { tick_selected(); }});
   actions.add({"start.import",
@@ -47,11 +48,16 @@ void StartView::add_import_actions(widgets::Actions& actions) {
                GLFW_KEY_ENTER,
                0,
                false,
-               [this, chooses] {
-                 return chooses() && !state_.ticked.empty() && !(asks_for_labels() && state_.labels.empty());
+               [this, chooses, can_take] {
+                 return chooses() && (!state_.ticked.empty() || can_take()) &&
+                        !(asks_for_labels() && state_.labels.empty());
                },
                {},
-               [this] { start_import(); }});
+               [this] {
+                 if (state_.ticked.empty())
+                   tick_selected();  // where nothing else was taken that one is meant
+                 start_import();
+               }});
   actions.add(
       {"start.paint",
        "Paint the bones",
@@ -75,6 +81,15 @@ void StartView::add_import_actions(widgets::Actions& actions) {
                [this, waits] { return waits() && state_.side.has_value(); },
                {},
                [this] { save_import(); }});
+  actions.add({"start.swap_axes",
+               "Swap axes",
+               "Reads the mesh as RAS where it was taken for LPS, and the other way round",
+               GLFW_KEY_X,
+               0,
+               false,
+               [this, waits] { return waits() && work_.can_swap_axes(); },
+               {},
+               [this] { work_.swap_axes(); }});
   // Asked once: of what was made, or before where the images show both knees.
   const auto can_say_side = [this, waits] {
     return asks(importing::FailureReason::ShowsBothKnees) || waits();

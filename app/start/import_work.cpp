@@ -29,6 +29,7 @@ void ImportWork::look_into(const fs::path& root) {
   result_ = {};
   said_side_.reset();
   wishes_ = {};
+  spaces_.clear();
   failure_ = {};
   noted_ = 0;
   state_ = State::Looking;  // until poll(), whatever it is: the window sees every step
@@ -91,12 +92,30 @@ double ImportWork::looked_fraction() const { return series_ != nullptr ? series_
 void ImportWork::start(const ImportWishes& wishes) {
   if (state_ != State::Choosing || wishes.sources.empty()) return;
   wishes_ = wishes;
+  spaces_.clear();
+  begin();
+}
+
+void ImportWork::begin() {
   next_ = 0;
   result_ = {};
   said_side_.reset();
   failure_ = {};
   state_ = State::Running;
   start_next();
+}
+
+bool ImportWork::can_swap_axes() const {
+  return state_ == State::Asking &&
+         std::ranges::any_of(result_.bones, [](const auto& bone) { return bone.likelier_in().has_value(); });
+}
+
+// Of meshes each source has made one bone, in their order.
+void ImportWork::swap_axes() {
+  if (!can_swap_axes()) return;
+  for (std::size_t i = 0; i < result_.bones.size(); ++i)
+    if (const auto space = result_.bones[i].likelier_in()) spaces_[wishes_.sources[i]] = *space;
+  begin();
 }
 
 void ImportWork::start_next(std::optional<bones::LengthUnit> unit) {
@@ -108,6 +127,8 @@ void ImportWork::start_next(std::optional<bones::LengthUnit> unit) {
   options.images_only = wishes_.images_only;
   if (source.series) options.labels = wishes_.labels;
   options.unit = unit;
+  if (const auto space = spaces_.find(wishes_.sources[next_]); space != spaces_.end())
+    options.space = space->second;
   progress_ = {};
   try {
     process_ = std::make_unique<importing::ImportProcess>(
@@ -232,7 +253,8 @@ bool ImportWork::is_busy() const {
 std::vector<std::string> ImportWork::doubts() const {
   std::vector<std::string> doubts;
   for (const importing::ImportedBone& bone : result_.bones)
-    for (const std::string& doubt : bone.doubts)
+    for (const std::string& doubt :
+         said_side_ ? importing::doubts_with(result_, bone, *said_side_) : bone.doubts)
       doubts.push_back("The " + std::string(bones::to_text(bone.bone.kind)) + ": " + doubt);
   return doubts;
 }

@@ -55,6 +55,10 @@ class ImportWork {
   // Asking. The side must be known then, or said; the one that is said last holds, and becomes of the case
   // alone: result() tells what was found. Name: of the case, empty for "Knee" and the date.
   void set_side(bones::Side side);
+  // Asking. Whether the front of a mesh looks to the patient's back, as in the other axes it would not; and
+  // the import once more with such meshes in these.
+  [[nodiscard]] bool can_swap_axes() const;
+  void swap_axes();
   void save(const std::filesystem::path& folder, const std::string& name);
   void poll();
 
@@ -85,6 +89,7 @@ class ImportWork {
   void take_sources();
   void note_pictures();
   void take_bones();
+  void begin();
   void start_next(std::optional<bones::LengthUnit> unit = {});
   void take_refusal();
   void end_work();
@@ -97,7 +102,8 @@ class ImportWork {
   worker::Awaited<void> saving_;
   ImportSources sources_;
   ImportWishes wishes_;
-  std::size_t next_ = 0;  // of the wished sources
+  std::map<std::size_t, bones::Space> spaces_;  // of sources whose axes a person has swapped
+  std::size_t next_ = 0;                        // of the wished sources
   std::unique_ptr<importing::ImportProcess> process_;
   importing::ImportProgress progress_;
   importing::BoneImport result_;

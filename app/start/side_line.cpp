@@ -12,6 +12,9 @@ SideLine side_line(const importing::BoneImport& import, std::optional<bones::Sid
             word + ", as you say, but " +
                 (import.side_is_by_shape ? "the bones are shaped" : "the fibula lies") + " as in a " +
                 std::string(bones::to_text(*import.side)) + " knee: look at the picture"};
+  if (import.side_is_contradicted && import.side == side)
+    return {Severity::Bad, word + (was_said ? ", as you say" : ", by the name of the source") +
+                               ", but the bones speak against it, see below: look at the picture"};
   if (was_said) return {Severity::Good, word + ", as you say"};
   if (import.side_was_guessed)
     return {Severity::Caution, word + ", by the name of the source: is that so? Press R or L"};

@@ -212,8 +212,12 @@ void StartView::draw_result(const widgets::Ui& ui, const widgets::Rect& area) {
                          ? "The images are read. Make the case, then paint its bones"
                      : doubts.empty() ? "The bones are made"
                                       : "The bones are made, but look before you rely on them");
-  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-                        {"start.save", "start.right", "start.left", "start.back"});
+  const widgets::Rect buttons = rest.cut_bottom(ui.theme.px(56), ui.theme.px(12));
+  if (work_.can_swap_axes())
+    widgets::draw_buttons(ui, buttons,
+                          {"start.save", "start.swap_axes", "start.right", "start.left", "start.back"});
+  else
+    widgets::draw_buttons(ui, buttons, {"start.save", "start.right", "start.left", "start.back"});
   if (const auto clicked = made_.draw(ui, rest.cut_right(0.4F * rest.width, ui.theme.px(12)), state_.side))
     say_side(*clicked);
   widgets::begin_panel(ui, "start.result", rest);
@@ -231,6 +235,11 @@ void StartView::draw_result(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("import_side",
                     std::string(side.severity == Severity::Good ? "good: " : "look: ") + side.text);
   for (const std::string& doubt : doubts) widgets::status_row(ui, Severity::Caution, "Look", doubt);
+  if (work_.can_swap_axes())
+    widgets::status_row(
+        ui, Severity::Caution, "Axes?",
+        "Many programs write meshes in RAS without saying so. Press X: the mesh is read in the "
+        "other axes, and made again");
   for (const std::string& line : work_.result().lines) widgets::status_row(ui, Severity::Quiet, "", line);
   for (const importing::ImportedBone& bone : work_.result().bones)
     for (const std::string& line : bone.lines)

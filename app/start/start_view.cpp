@@ -43,6 +43,7 @@ void StartView::leave() {
 void StartView::say_side(bones::Side side) {
   state_.side = side;
   state_.side_was_said = true;
+  work_.set_side(side);  // of what was made, if anything was
 }
 
 void StartView::take(const fs::path& path) {

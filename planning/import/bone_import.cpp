@@ -62,8 +62,9 @@ std::string formatted_size(const Eigen::Vector3d& size) {
                        size.z());
 }
 
+// images: that it was made of; null for a mesh.
 ImportedBone finished(BoneKind kind, const std::string& source, const geometry::TriangleMesh& mesh,
-                      const Tell& tell) {
+                      const Volume* images, const Tell& tell) {
   tell("Mending the mesh", kUnknown);
   bones::MeshRepair repair = bones::mend_mesh(mesh);
   ImportedBone imported;
@@ -75,7 +76,11 @@ ImportedBone finished(BoneKind kind, const std::string& source, const geometry::
   for (const auto& line : repair.report.lines()) imported.lines.push_back("mended: " + line);
   imported.doubts = repair.report.doubts();
   // Of a mesh that is no bone at all there is enough to say already.
-  if (imported.doubts.empty()) imported.doubts = segmentation::anatomy_doubts(imported.bone.mesh, kind);
+  if (!imported.doubts.empty()) return imported;
+  std::vector<Eigen::Vector3d> image_ends;
+  if (images != nullptr)
+    for (const ImageCut& cut : cuts_of(imported.bone.mesh, kind, *images)) image_ends.push_back(cut.out);
+  imported.doubts = segmentation::anatomy_doubts(imported.bone.mesh, kind, image_ends);
   return imported;
 }
 
@@ -115,7 +120,8 @@ void import_mesh(const std::filesystem::path& source, const BoneImportOptions& o
   result.lines.push_back(file.format + ", in " + std::string(bones::to_text(file.unit_in_file)) + ", " +
                          (file.space_in_file == bones::Space::LPS ? "LPS" : "RAS") + " (" + said_by + ")");
   try {
-    result.bones.push_back(finished(*kind, file.format, file.mesh, tell));
+    result.bones.push_back(finished(*kind, file.format, file.mesh, nullptr, tell));
+    result.bones.back().read_in = file.space_in_file;
   } catch (const InvalidInput& error) {
     throw InvalidInput(source, "", error.what());
   }
@@ -190,8 +196,8 @@ void import_labels(const Volume& volume, const std::map<BoneKind, int>& labels,
     } else {
       surface = surface_of_label(volume, label);
     }
-    result.bones.push_back(
-        finished(kind, "label " + std::to_string(label) + " of " + volume.format, surface.mesh, tell));
+    result.bones.push_back(finished(kind, "label " + std::to_string(label) + " of " + volume.format,
+                                    surface.mesh, &volume, tell));
     auto& lines = result.bones.back().lines;
     lines.insert(lines.begin(), surface.notes.begin(), surface.notes.end());
   }
@@ -214,12 +220,13 @@ bool import_ct(const Volume& volume, const BoneImportOptions& options, BoneImpor
   const segmentation::CtBones found = segmentation::bones_of_ct(volume, ct);
   result.lines.insert(result.lines.end(), found.notes.begin(), found.notes.end());
   for (const segmentation::CtBone& bone : found.bones) {
-    result.bones.push_back(finished(bone.kind, volume.format, bone.mesh, tell));
+    result.bones.push_back(finished(bone.kind, volume.format, bone.mesh, &volume, tell));
     ImportedBone& imported = result.bones.back();
     imported.lines.insert(imported.lines.begin(), bone.notes.begin(), bone.notes.end());
     imported.doubts.insert(imported.doubts.begin(), bone.doubts.begin(), bone.doubts.end());
     if (found.side_by_fibula && result.side && *found.side_by_fibula != *result.side) {
       imported.doubts.push_back(other_side_by_fibula(*found.side_by_fibula, *result.side));
+      result.side_is_contradicted = true;
     }
   }
   if (!options.kind && found.bones.size() == 1) {
@@ -296,17 +303,29 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   check_shapes(result, fibula_was_seen);
   // After the shapes, which are looked at where nothing speaks against a bone yet.
   for (ImportedBone& imported : result.bones)
-    for (std::string& doubt : cut_doubts(imported.bone.mesh, imported.bone.kind, volume))
-      imported.doubts.push_back(std::move(doubt));
+    for (const ImageCut& cut : cuts_of(imported.bone.mesh, imported.bone.kind, volume))
+      imported.doubts.push_back(cut_doubt(cut));
 }
 
 }  // namespace
 
+std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBone& bone, bones::Side side) {
+  std::vector<std::string> doubts = bone.doubts;
+  if (!import.side || *import.side == side) return doubts;
+  // What spoke against the other side speaks for this one.
+  std::erase(doubts, other_side_by_fibula(side, *import.side));
+  for (const bool of_both : {true, false})
+    std::erase(doubts, other_side_by_shape(side, *import.side, of_both));
+  if (import.side_was_seen && !import.side_is_by_shape)
+    doubts.push_back(other_side_by_fibula(*import.side, side));
+  return doubts;
+}
+
 void say_side(BoneImport& import, bones::Side side) {
   if (import.side == side) return;  // known as it was known
-  if (import.side_was_seen && !import.side_is_by_shape)
-    for (ImportedBone& bone : import.bones) bone.doubts.push_back(other_side_by_fibula(*import.side, side));
+  for (ImportedBone& bone : import.bones) bone.doubts = doubts_with(import, bone, side);
   import.side = side;
+  import.side_is_contradicted = import.side_was_seen && !import.side_is_by_shape;
   import.side_was_guessed = import.side_was_seen = import.side_is_by_shape = false;
 }
 

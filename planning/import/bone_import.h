@@ -51,8 +51,16 @@ struct ImportProgress {
 struct ImportedBone {
   bones::Bone bone;
   bones::MeshRepairReport repair;
-  std::vector<std::string> lines;   // what was found, chosen and mended, for a person
-  std::vector<std::string> doubts;  // why a person should look before relying on it
+  std::vector<std::string> lines;            // what was found, chosen and mended, for a person
+  std::vector<std::string> doubts;           // why a person should look before relying on it
+  std::optional<bones::Space> read_in = {};  // of a mesh: the axes that the file was taken to be in
+  bool looks_backwards = false;              // to the patient's back, which is among the doubts
+  // The axes that a mesh is likelier in than those it was read in; nullopt where nothing speaks against
+  // these.
+  [[nodiscard]] std::optional<bones::Space> likelier_in() const {
+    if (!read_in || !looks_backwards) return std::nullopt;
+    return *read_in == bones::Space::LPS ? bones::Space::RAS : bones::Space::LPS;
+  }
 };
 
 // The volume that the bones were made from, for the case to keep.
@@ -63,11 +71,12 @@ struct ImportedImage {
 
 struct BoneImport {
   std::vector<ImportedBone> bones;
-  std::optional<bones::Side> side;  // nullopt: neither given nor in the name
-  bool side_was_guessed = false;    // by the name
-  bool side_was_seen = false;       // by the anatomy: the fibula,
-  bool side_is_by_shape = false;    // or the shape of the bones alone, which is a doubt
-  std::vector<std::string> lines;   // about the source
+  std::optional<bones::Side> side;    // nullopt: neither given nor in the name
+  bool side_was_guessed = false;      // by the name
+  bool side_was_seen = false;         // by the anatomy: the fibula,
+  bool side_is_by_shape = false;      // or the shape of the bones alone, which is a doubt
+  bool side_is_contradicted = false;  // the one that was said or named, by either: a doubt of the bones
+  std::vector<std::string> lines;     // about the source
   // Whose bones they are, where the source says so (DICOM does). For identity.json alone: nothing else of the
   // import names a person, nor a file or folder, whose name often is the patient's.
   cases::Identity identity;
@@ -82,6 +91,9 @@ struct BoneImport {
   }
 };
 
+// The doubts of one of its bones where a person says that side.
+[[nodiscard]] std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBone& bone,
+                                                   bones::Side side);
 // A person says the side. Where the fibula says another one that is a doubt of the bones from then on.
 void say_side(BoneImport& import, bones::Side side);
 

@@ -49,14 +49,20 @@ double cut_mm2(const geometry::TriangleMesh& mesh, const std::vector<Vector3d>& 
 
 }  // namespace
 
-std::vector<std::string> cut_doubts(const geometry::TriangleMesh& mesh, bones::BoneKind kind,
-                                    const images::Volume& volume) {
+std::string cut_doubt(const ImageCut& cut) {
+  return files::format(
+      "the images end within it: %.0f cm2 of it are cut off flat %s, and what lies beyond is missing",
+      cut.area_mm2 / 100, side_in_words(cut.out));
+}
+
+std::vector<ImageCut> cuts_of(const geometry::TriangleMesh& mesh, bones::BoneKind kind,
+                              const images::Volume& volume) {
   const Eigen::Affine3d voxel_from_lps = volume.lps_from_index.inverse();
   std::vector<Vector3d> in_voxels;
   in_voxels.reserve(mesh.vertices_mm.size());
   for (const Vector3d& at : mesh.vertices_mm) in_voxels.push_back(voxel_from_lps * at);
   const Vector3d shaft = kind == bones::BoneKind::Femur ? Vector3d::UnitZ() : Vector3d(-Vector3d::UnitZ());
-  std::vector<std::string> doubts;
+  std::vector<ImageCut> cuts;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (const bool is_last : {false, true}) {
       // At right angles to the face, whatever the axes' own angles.
@@ -64,13 +70,10 @@ std::vector<std::string> cut_doubts(const geometry::TriangleMesh& mesh, bones::B
       if (out.dot(shaft) > kAlongShaft_cos) continue;
       const double edge_voxel = is_last ? volume.size[axis] - 0.5 : -0.5;
       const double area_mm2 = cut_mm2(mesh, in_voxels, edge_voxel, axis, out);
-      if (area_mm2 >= kLeastCut_mm2)
-        doubts.push_back(files::format(
-            "the images end within it: %.0f cm2 of it are cut off flat %s, and what lies beyond is missing",
-            area_mm2 / 100, side_in_words(out)));
+      if (area_mm2 >= kLeastCut_mm2) cuts.push_back({out, area_mm2});
     }
   }
-  return doubts;
+  return cuts;
 }
 
 }  // namespace arthronaut::importing

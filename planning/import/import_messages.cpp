@@ -133,6 +133,8 @@ void describe(Archive& archive, ImportedBone& imported) {
   describe(archive, imported.repair);
   describe(archive, imported.lines);
   describe(archive, imported.doubts);
+  describe(archive, imported.read_in);
+  describe(archive, imported.looks_backwards);
 }
 
 // The voxels go another way (shared_voxels.h).
@@ -167,6 +169,7 @@ void describe(Archive& archive, BoneImport& import) {
   describe(archive, import.side_was_guessed);
   describe(archive, import.side_was_seen);
   describe(archive, import.side_is_by_shape);
+  describe(archive, import.side_is_contradicted);
   describe(archive, import.lines);
   describe(archive, import.identity.patient_name);
   describe(archive, import.identity.patient_id);
@@ -326,7 +329,9 @@ void refuse_unsound(const BoneImport& import) {
     const geometry::TriangleMesh& mesh = imported.bone.mesh;
     const auto count = static_cast<std::int64_t>(mesh.vertices_mm.size());
     bool is_sound =
-        imported.bone.kind == bones::BoneKind::Femur || imported.bone.kind == bones::BoneKind::Tibia;
+        (imported.bone.kind == bones::BoneKind::Femur || imported.bone.kind == bones::BoneKind::Tibia) &&
+        (!imported.read_in || *imported.read_in == bones::Space::LPS ||
+         *imported.read_in == bones::Space::RAS);
     for (const Eigen::Vector3d& p : mesh.vertices_mm) is_sound = is_sound && p.allFinite();
     for (const auto& triangle : mesh.triangles) {
       for (const std::int32_t corner : triangle) is_sound = is_sound && corner >= 0 && corner < count;

@@ -30,6 +30,11 @@ bool looks_backwards(const landmarks::AnatomicalAxes& axes) {
 
 }  // namespace
 
+std::string other_side_by_shape(bones::Side shape, bones::Side said, bool of_both) {
+  return "by the shape of " + std::string(of_both ? "both bones" : "the bone") + " it is a " +
+         word_of(shape) + " knee, but the side is " + word_of(said) + ": check the side";
+}
+
 void check_shapes(BoneImport& import, bool fibula_was_seen) {
   // Seconds each, and they have nothing to do with each other.
   std::vector<std::pair<ImportedBone*, std::future<landmarks::Proposal>>> looked_at;
@@ -50,19 +55,18 @@ void check_shapes(BoneImport& import, bool fibula_was_seen) {
   }
   // A coarse shape alone may be taken for turned; bones of one file are turned together.
   if (backwards.size() == told.size()) {
-    for (ImportedBone* bone : backwards)
-      bone->doubts.push_back(
-          "its front looks to the patient's back: LPS and RAS may be mixed up; check --space and what wrote "
-          "the file");
+    for (ImportedBone* bone : backwards) {
+      bone->looks_backwards = true;
+      bone->doubts.emplace_back("its front looks to the patient's back: LPS and RAS may be mixed up");
+    }
   }
   const bool agree =
       !told.empty() && told.front() && std::ranges::count(told, told.front()) == std::ssize(told);
   if (fibula_was_seen || !agree) return;
   const std::string seen = word_of(*told.front());
   if (import.side && *import.side != *told.front()) {
-    import.bones.front().doubts.push_back(
-        "by the shape of " + std::string(told.size() > 1 ? "both bones" : "the bone") + " it is a " + seen +
-        " knee, but the side is " + word_of(*import.side) + ": check the side");
+    import.side_is_contradicted = true;
+    import.bones.front().doubts.push_back(other_side_by_shape(*told.front(), *import.side, told.size() > 1));
   }
   if (!import.side && told.size() > 1) {
     import.side = told.front();

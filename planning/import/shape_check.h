@@ -2,6 +2,8 @@
 // of import.
 #pragma once
 
+#include <string>
+
 #include "planning/import/bone_import.h"
 
 namespace arthronaut::importing {
@@ -15,5 +17,8 @@ namespace arthronaut::importing {
 // Without a side, one that both bones tell alike is taken, as a doubt: of a bone alone the shape misleads too
 // often. `fibula_was_seen`: the side needs no judging.
 void check_shapes(BoneImport& import, bool fibula_was_seen);
+
+// The sentence of such a doubt.
+[[nodiscard]] std::string other_side_by_shape(bones::Side shape, bones::Side said, bool of_both);
 
 }  // namespace arthronaut::importing

@@ -205,12 +205,13 @@ const std::array<Direction, 4>& sideways() {
 
 std::string wrong_axes(BoneKind kind, const char* name) {
   return std::string("its shaft points ") + name + ", not " + (kind == BoneKind::Femur ? "up" : "down") +
-         ": the axes of the file are not the patient's (LPS); check --space and what wrote the file";
+         ": the axes of the file are not the patient's (LPS); look at what wrote it";
 }
 
 }  // namespace
 
-std::vector<std::string> anatomy_doubts(const geometry::TriangleMesh& mesh, BoneKind kind) {
+std::vector<std::string> anatomy_doubts(const geometry::TriangleMesh& mesh, BoneKind kind,
+                                        std::span<const Vector3d> image_ends) {
   if (mesh.empty()) return {"it has no surface"};
   const geometry::Bounds bounds = geometry::bounds_of(mesh);
   // However it leans or lies.
@@ -222,6 +223,9 @@ std::vector<std::string> anatomy_doubts(const geometry::TriangleMesh& mesh, Bone
   const double sign = kind == BoneKind::Femur ? 1 : -1;
   const double expected = cap_area_mm2(mesh, sign * Vector3d::UnitZ());
   const auto is_cut_at = [&](const Direction& side) {
+    constexpr double kSameSide = 0.9;
+    if (std::ranges::any_of(image_ends, [&](const Vector3d& out) { return out.dot(side.axis) > kSameSide; }))
+      return false;
     const double cap = cap_area_mm2(mesh, side.axis);
     return cap > kLeastCap_mm2 && expected < kMostOtherCap * cap;
   };

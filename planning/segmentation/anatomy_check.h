@@ -3,6 +3,8 @@
 // cut off at the joint, a fibula, axes that are not the patient's) gives none of these.
 #pragma once
 
+#include <Eigen/Core>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,8 +14,10 @@
 namespace arthronaut::segmentation {
 
 // For a person: why it may not be that bone; empty when nothing speaks against it. The mesh is closed and
-// turned outwards, LPS, mm. The bone may lean by 40 degrees to the patient's axes.
+// turned outwards, LPS, mm. The bone may lean by 40 degrees to the patient's axes. image_ends: unit and
+// outward, where the images end within the bone: a flat face there is no shaft's cut end.
 [[nodiscard]] std::vector<std::string> anatomy_doubts(const geometry::TriangleMesh& mesh,
-                                                      bones::BoneKind kind);
+                                                      bones::BoneKind kind,
+                                                      std::span<const Eigen::Vector3d> image_ends = {});
 
 }  // namespace arthronaut::segmentation

@@ -77,7 +77,7 @@ TEST(ImportRealBones, BonesInMetres) {
     EXPECT_EQ(import.side, Side::Right);
     // Its y is up, not backwards: noticed by the shape.
     EXPECT_TRUE(import.bones.at(0).repair.is_closed);
-    EXPECT_THAT(import.bones.at(0).doubts, testing::Contains(HasSubstr("--space")));
+    EXPECT_THAT(import.bones.at(0).doubts, testing::Contains(HasSubstr("axes of the file")));
     EXPECT_FALSE(import.bones.at(0).repair.changed_anything());
   }
   BoneImportOptions options;

@@ -134,6 +134,32 @@ TEST_F(ImportWorkTest, AsksForTheUnitAndTheBoneOfAMesh) {
                 geometry::bounds_of(knee().bones.at(made.bone.kind).mesh).size_mm().norm(), 0.01);
 }
 
+// Meshes in RAS that do not say so lie the wrong way round; a person who says so gets them as they are in the
+// patient, and nothing else of the import is asked for again.
+TEST_F(ImportWorkTest, SwapsTheAxesOfMeshesThatLookBackwards) {
+  for (const auto& [kind, name] : {std::pair(BoneKind::Femur, "femur.stl"), {BoneKind::Tibia, "tibia.stl"}}) {
+    geometry::TriangleMesh mesh = knee().bones.at(kind).mesh;
+    for (auto& vertex : mesh.vertices_mm) vertex.head<2>() *= -1;
+    bones::write_mesh_stl(folder_ / name, mesh);
+  }
+  work_.look_into(folder_.path());
+  ASSERT_TRUE(reach(State::Choosing));
+  work_.start({.sources = {0, 1}});
+  ASSERT_TRUE(reach(State::Asking)) << work_.failure();
+  ASSERT_TRUE(work_.can_swap_axes());
+  work_.swap_axes();
+  ASSERT_TRUE(reach(State::Asking)) << work_.failure();
+  EXPECT_FALSE(work_.can_swap_axes());
+  ASSERT_EQ(work_.result().bones.size(), 2U);
+  for (const auto& made : work_.result().bones) {
+    EXPECT_EQ(made.read_in, bones::Space::RAS);
+    EXPECT_LT((geometry::bounds_of(made.bone.mesh).center_mm() -
+               geometry::bounds_of(knee().bones.at(made.bone.kind).mesh).center_mm())
+                  .norm(),
+              0.01);
+  }
+}
+
 // The side that the second mesh's name tells is a guess as well as the first one's.
 TEST_F(ImportWorkTest, HowTheSideIsKnownComesWithIt) {
   write_meshes("femur.stl", "tibia_left.stl");

@@ -49,5 +49,17 @@ TEST(SideLineTest, APersonAgainstTheAnatomyIsTold) {
   EXPECT_NE(shape.text.find("shaped as in a left knee"), std::string::npos) << shape.text;
 }
 
+// Said before the bones were made, as of images of both knees, or told by a name.
+TEST(SideLineTest, ASideThatTheBonesSpeakAgainstIsNotGood) {
+  importing::BoneImport import = import_of(false, false, false);
+  import.side_is_contradicted = true;
+  EXPECT_EQ(side_line(import, Side::Left, true).severity, Severity::Bad);
+  EXPECT_EQ(side_line(import, Side::Right, true).severity, Severity::Good);
+  import.side_was_guessed = true;
+  const SideLine named = side_line(import, Side::Left, false);
+  EXPECT_EQ(named.severity, Severity::Bad);
+  EXPECT_TRUE(named.text.starts_with("left, by the name of the source, but")) << named.text;
+}
+
 }  // namespace
 }  // namespace arthronaut::start

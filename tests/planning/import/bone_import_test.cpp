@@ -91,7 +91,7 @@ TEST(BoneImport, AxesThatAreNotThePatientsRaiseADoubt) {
   geometry::TriangleMesh mesh = phantom::make_phantom_knee(coarse()).femur.mesh;
   for (auto& p : mesh.vertices_mm) p = Eigen::Vector3d(p.x(), p.z(), -p.y());
   test::write_bytes(folder / "femur.stl", test::binary_stl(mesh));
-  EXPECT_THAT(import_bones(folder / "femur.stl").bones.at(0).doubts, Contains(HasSubstr("--space")));
+  EXPECT_THAT(import_bones(folder / "femur.stl").bones.at(0).doubts, Contains(HasSubstr("axes of the file")));
 }
 
 // A label map of 3D Slicer says by names which label is which bone.
@@ -159,6 +159,10 @@ TEST(BoneImport, ASideThatIsSaidAgainstTheFibulaStaysADoubt) {
   EXPECT_EQ(import.side, bones::Side::Right);
   ASSERT_EQ(import.bones[0].doubts.size(), 1U);
   EXPECT_THAT(import.bones[0].doubts[0], HasSubstr("as in a left knee, but the side is right"));
+  EXPECT_TRUE(import.side_is_contradicted);
+  say_side(import, bones::Side::Left);
+  EXPECT_TRUE(import.bones[0].doubts.empty()) << "what was said by mistake is no doubt";
+  EXPECT_FALSE(import.side_is_contradicted);
 }
 
 TEST(BoneImport, WhatIsNotSaidIsAskedFor) {

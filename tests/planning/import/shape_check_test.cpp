@@ -49,7 +49,10 @@ TEST(ShapeCheck, FrontsThatLookBackwardsRaiseADoubtOfEachBone) {
   for (auto& bone : import.bones)
     for (auto& p : bone.bone.mesh.vertices_mm) p.head<2>() = -p.head<2>();
   check_shapes(import, false);
-  for (const auto& bone : import.bones) EXPECT_THAT(bone.doubts, Contains(HasSubstr("--space")));
+  for (const auto& bone : import.bones) {
+    EXPECT_THAT(bone.doubts, Contains(HasSubstr("LPS and RAS")));
+    EXPECT_TRUE(bone.looks_backwards);
+  }
 }
 
 // The bones of one file are turned together: of one alone it is the shape that misleads.

@@ -57,6 +57,17 @@ TriangleMesh cut_to(TriangleMesh mesh, BoneKind kind, double length_mm) {
   return mesh;
 }
 
+// A shaft's cut end tells how a bone lies; the flat face that the end of the images has left does not.
+TEST(AnatomyCheck, WhereTheImagesEndIsNoShaft) {
+  const Eigen::AngleAxisd forwards(-M_PI / 2, Eigen::Vector3d::UnitX());  // its shaft points there
+  const TriangleMesh lying = turned(cut_to(bone(BoneKind::Tibia), BoneKind::Tibia, 83), forwards);
+  EXPECT_THAT(anatomy_doubts(lying, BoneKind::Tibia), Contains(HasSubstr("axes of the file")));
+  const Eigen::Vector3d front = -Eigen::Vector3d::UnitY();
+  EXPECT_THAT(anatomy_doubts(lying, BoneKind::Tibia, {&front, 1}),
+              testing::AllOf(testing::Not(testing::IsEmpty()),
+                             testing::Not(Contains(HasSubstr("axes of the file")))));
+}
+
 // The leg of a large knee rolls outwards on the table: from front to back it is then as deep as it is wide.
 TEST(AnatomyCheck, ALargeKneeThatIsRolledIsNoneThatLies) {
   for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
@@ -92,7 +103,7 @@ TEST(AnatomyCheck, AxesThatAreNotThePatientsAreSeen) {
     for (const Eigen::Vector3d& axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) {
       for (const double angle : {M_PI / 2, -M_PI / 2}) {
         EXPECT_THAT(anatomy_doubts(turned(bone(kind), Eigen::AngleAxisd(angle, axis)), kind),
-                    Contains(HasSubstr("--space")))
+                    Contains(HasSubstr("axes of the file")))
             << bones::to_text(kind) << " " << angle << " about " << axis.transpose();
       }
     }
