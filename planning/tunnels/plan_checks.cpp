@@ -70,7 +70,8 @@ std::string breach_text(const Tunnel& tunnel, const TunnelGeometry& geometry,
       surface != nullptr ? breaches_of(tunnel, geometry, *surface) : std::vector<DepthRange>{};
   for (const DepthRange& breach : breaches) {
     const double from = std::max(breach.from_mm, 0.0), to = std::min(breach.to_mm, geometry.length_mm);
-    const bool from_mouth = from<kAtMouth_mm, to_exit = to> geometry.length_mm - kAtMouth_mm;
+    const bool from_mouth = from < kAtMouth_mm;
+    const bool to_exit = geometry.length_mm - to < kAtMouth_mm;
     text += text.empty() ? " " : " and ";
     if (to - from < kAtMouth_mm) {  // in a slanting rim, or too short for a number
       text += from_mouth ? "at the mouth" : to_exit ? "at the exit" : "at " + number_text(from, "mm");
