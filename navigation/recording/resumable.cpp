@@ -54,6 +54,8 @@ class LastRegistration {
     for (const std::string& reason : record.registration.reasons) doubt_ += "; " + reason;
   }
   void take(const operation::Command& command) {
+    // What it takes away is written a moment later, and a program may have ended in between.
+    if (std::holds_alternative<operation::MarkerPlacedAnew>(command)) *this = {};
     const auto* given = std::get_if<operation::GiveRegistration>(&command);
     if (given != nullptr && given->registration.reliable) take(given->registration, given->of);
     const auto* resume = std::get_if<operation::ResumeOperation>(&command);
