@@ -341,18 +341,12 @@ RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fi
   const RowTrend rows = row_trend(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, fit);
   doubt_rows(frame, rows, observation);
   std::optional<SquarePose> other;
-  bool is_contradicted = false;
+  std::optional<RigidTransform> by_corners;  // where that is another tilt
   observation.ambiguity_ratio = kNoOtherPose;
   if (const auto poses = solve_square(frame.camera, corners.corners_px, marker_.size_mm)) {
     other = poses->other;
-    // The edges settled on one tilt, the corners that they make speak for another one, and from there the
-    // edges do not come back: corners that glow or dirt moved are unlike the edges, too, where tilt is seen
-    // badly.
-    if (are_unlike(fit.camera_from_marker, poses->best.camera_from_marker)) {
-      const EdgePose there = fit_edge_pose(frame.camera, marker_.size_mm, samples_, measurements_,
-                                           poses->best.camera_from_marker, frame.smear.bloom, is_inlier_);
-      is_contradicted = !there.converged || are_unlike(fit.camera_from_marker, there.camera_from_marker);
-    }
+    if (are_unlike(fit.camera_from_marker, poses->best.camera_from_marker))
+      by_corners = poses->best.camera_from_marker;
     if (other) {
       observation.ambiguity_ratio =
           std::min(kNoOtherPose, other->rms_px / std::max(observation.rms_px, options_.corner_sigma_px));
@@ -377,7 +371,14 @@ RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fi
   if (is_found && observation.state == MarkerState::Covered &&
       is_confirmed_by_code(frame, fit.camera_from_marker))
     observation.state = judge(fit, observation, other, false);
-  if (observation.is_tracked() && is_contradicted) observation.state = MarkerState::Doubtful;
+  // The edges settled on one tilt, the corners that they make speak for another one, and from there the edges
+  // do not come back: corners that glow or dirt moved are unlike the edges, too, where tilt is seen badly.
+  if (observation.is_tracked() && by_corners) {
+    const EdgePose there = fit_edge_pose(frame.camera, marker_.size_mm, samples_, measurements_, *by_corners,
+                                         frame.smear.bloom, is_inlier_);
+    if (!there.converged || are_unlike(fit.camera_from_marker, there.camera_from_marker))
+      observation.state = MarkerState::Doubtful;
+  }
   if (observation.is_tracked()) {
     const auto rival = rival_tilt(frame.camera, marker_.size_mm, samples_, measurements_, fit,
                                   corners.corners_px, frame.smear.bloom, is_inlier_);

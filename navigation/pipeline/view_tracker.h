@@ -33,13 +33,13 @@ struct PictureObservation {
   // track (a slipped coupler), out of view or of another radius than calibrated (lens.zoom) makes it false,
   // and no pose of this frame is to be trusted.
   bool intrinsics_are_known = false;
-  bool is_frozen = false;                           // the same content again and again: see frozen_picture.h
-  bool is_repeating = false;                        // for a tenth of a second: no pose stands, whatever comes
-  bool is_torn = false;                             // of two moments: intrinsics_are_known is false then
-  bool is_blank = false;                            // no light or no signal
-  double repeat_share = 0;                          // of the pictures of the last half second
-  camera::CameraModel camera;                       // of this frame
-  std::vector<markers::MarkerObservation> markers;  // one for each declared marker, in their order
+  bool is_frozen = false;      // the same content again and again: see frozen_picture.h
+  bool is_repeating = false;   // see FrozenPicture::Signs: no pose stands, whatever comes
+  bool is_torn = false;        // of two moments: intrinsics_are_known is false then
+  bool is_blank = false;       // no light or no signal
+  double repeat_share = 0;     // of the pictures of the last half second
+  camera::CameraModel camera;  // of this frame
+  std::vector<markers::MarkerObservation> markers;   // one for each declared marker, in their order
   std::vector<markers::MarkerCandidate> candidates;  // of this frame's search for markers, when there was one
   // Whether the pose of a marker of this picture may be used at all; its own state says more.
   [[nodiscard]] bool stands_for(const markers::MarkerObservation& marker) const {

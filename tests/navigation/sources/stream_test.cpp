@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gst/rtsp-server/rtsp-server.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -16,7 +14,9 @@
 #include "navigation/sources/frame_source.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
+#include "tests/child_process.h"
 #include "tests/message_of.h"
+#include "tests/navigation/recording/streams.h"
 
 namespace arthronaut::sources {
 namespace {
@@ -39,25 +39,13 @@ enum class KeyFrames { Sent, LeftOut };
 class Sender {
  public:
   Sender(const std::string& address, const std::string& size, KeyFrames key_frames = KeyFrames::Sent)
-      : process_(::fork()) {
-    if (process_ != 0) return;
-    const std::string picture = "testsrc=size=" + size + ":rate=30";
-    const std::string target = address + "?pkt_size=1316";
-    ::execlp("ffmpeg", "ffmpeg", "-loglevel", "quiet", "-re", "-f", "lavfi", "-i", picture.c_str(), "-c:v",
-             "libx264", "-tune", "zerolatency", "-g", "10", "-bf", "0", "-bsf:v",
-             key_frames == KeyFrames::Sent ? "null" : "noise=drop=key", "-f", "mpegts", target.c_str(),
-             static_cast<char*>(nullptr));
-    ::_exit(127);
-  }
-  ~Sender() {
-    ::kill(process_, SIGKILL);
-    ::waitpid(process_, nullptr, 0);
-  }
-  Sender(const Sender&) = delete;
-  Sender& operator=(const Sender&) = delete;
+      : process_(test::run_ffmpeg({"-re", "-f", "lavfi", "-i", "testsrc=size=" + size + ":rate=30", "-c:v",
+                                   "libx264", "-tune", "zerolatency", "-g", "10", "-bf", "0", "-bsf:v",
+                                   key_frames == KeyFrames::Sent ? "null" : "noise=drop=key", "-f", "mpegts",
+                                   address + "?pkt_size=1316"})) {}
 
  private:
-  pid_t process_;
+  test::ChildProcess process_;
 };
 
 double age_s(const camera::Frame& frame) {

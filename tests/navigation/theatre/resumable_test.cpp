@@ -296,6 +296,20 @@ TEST_F(ResumableTest, Hazard16WhatWasDecidedAfterTheEndCounts) {
   EXPECT_FALSE(without && without->operation.registration);
 }
 
+// Killed between the command and what it takes away: the registration of before does not come back.
+TEST_F(ResumableTest, Hazard16AMarkerPlacedAnewInTheLastMomentCounts) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source(SourceKind::Live);
+  operate(run, source);
+  end(run);
+  ASSERT_TRUE(found() && found()->operation.registration);
+  recording::append_event(
+      cases::session_folders(folder_.path()).back(),
+      {.kind = std::string(recording::kCommandEvent), .text = operation::to_text(MarkerPlacedAnew{})});
+  const auto left = found();
+  EXPECT_FALSE(left && left->operation.registration);
+}
+
 TEST_F(ResumableTest, IsNoneWhereNothingWasLeftInTheMiddle) {
   EXPECT_FALSE(found()) << "no session";
   const SourceSetup source = test::scripted_source(SourceKind::Live);
