@@ -17,7 +17,7 @@ using widgets::Severity;
 
 // Strokes shorter than this are crumbs that nobody looks for.
 constexpr double kShownLength_mm = 2;
-// As confidence.cpp counts them: below the first two poses are taken for alike; the second is its "no rival".
+// online_registration.cpp takes poses below the first for alike; the second is confidence.cpp's kNoRival.
 constexpr double kRivalRatio = 1.15, kNoRivalRatio = 10;
 
 // Whose figures may be shown; null: nobody's.

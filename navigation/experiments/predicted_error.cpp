@@ -39,8 +39,8 @@ SetupErrors errors_of(Setup setup) {
           camera.focal_share,  camera.xi,          camera.center_px};
 }
 
-// Focal length and distortion hang together, as in every calibration: a long lens with much barrel looks like
-// a short one with little in the middle of the picture.
+// Focal length and distortion are correlated, as in every calibration: a long lens with much barrel looks
+// like a short one with little in the middle of the picture.
 camera::CameraCovariance camera_covariance(const SetupErrors& errors, double focal_px) {
   constexpr double kCorrelation = 0.7;
   Eigen::Matrix<double, 6, 1> sigma;

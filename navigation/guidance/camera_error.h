@@ -1,5 +1,5 @@
 // What an error of the camera's calibration does to the pose of a marker. Every marker of a frame is seen by
-// the same camera, so that their errors hang together: what is reckoned from two of them is off by less than
+// the same camera, so that their errors are correlated: what is reckoned from two of them is off by less than
 // either.
 #pragma once
 

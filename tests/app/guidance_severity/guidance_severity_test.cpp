@@ -8,7 +8,7 @@ namespace arthronaut::guidance_severity {
 namespace {
 
 // The signs turn where the header says.
-TEST(Readings, FollowTheThresholds) {
+TEST(GuidanceSeverity, FollowTheThresholds) {
   guidance::GuidanceNumbers g;
   g.offset_mm = 0.9;
   g.sigma_offset_mm = 0.4;
@@ -22,7 +22,7 @@ TEST(Readings, FollowTheThresholds) {
 }
 
 // A small angle that nobody knows well is not green, as with the offset.
-TEST(Readings, Hazard11TheAnglesSeverityTakesItsSigma) {
+TEST(GuidanceSeverity, Hazard11TheAnglesSeverityTakesItsSigma) {
   guidance::GuidanceNumbers g;
   g.angle_deg = 0.5;
   g.sigma_angle_deg = 0.8;
@@ -36,7 +36,7 @@ TEST(Readings, Hazard11TheAnglesSeverityTakesItsSigma) {
 }
 
 // What remains and what is left to the far side count, whichever is worse.
-TEST(Readings, Hazard7TheDrillsSeverityWarnsOfTheFarSide) {
+TEST(GuidanceSeverity, Hazard7TheDrillsSeverityWarnsOfTheFarSide) {
   guidance::DrillDepth drill;
   drill.remaining_mm = 20;
   EXPECT_EQ(severity_of_drill(drill), widgets::Severity::Quiet);
@@ -52,7 +52,7 @@ TEST(Readings, Hazard7TheDrillsSeverityWarnsOfTheFarSide) {
 }
 
 // In words, not by a colour and a shape alone; a drill that is too deep is not told by a minus.
-TEST(Readings, Hazard7TheDrillIsWarnedOfInWords) {
+TEST(GuidanceSeverity, Hazard7TheDrillIsWarnedOfInWords) {
   const auto text_at = [](double remaining_mm) {
     guidance::DrillDepth drill;
     drill.remaining_mm = drill.to_exit_mm = remaining_mm;
@@ -68,7 +68,7 @@ TEST(Readings, Hazard7TheDrillIsWarnedOfInWords) {
 }
 
 // The parts of the offset in the bone's words, of whichever two directions lie across the plan.
-TEST(Readings, Hazard31TheOffsetsPartsAreNamedByTheBonesAxes) {
+TEST(GuidanceSeverity, Hazard31TheOffsetsPartsAreNamedByTheBonesAxes) {
   guidance::GuidanceNumbers g;
   g.offset_anterior_mm = -1.2;
   g.offset_proximal_mm = 0.4;
@@ -82,7 +82,7 @@ TEST(Readings, Hazard31TheOffsetsPartsAreNamedByTheBonesAxes) {
 }
 
 // Markers are called by what they are fixed to; one that is declared nowhere, by its number.
-TEST(Readings, NameTheMarkers) {
+TEST(GuidanceSeverity, NameTheMarkers) {
   const tools::ToolSet tools = tools::standard_tools();
   EXPECT_EQ(marker_name(tools, 0), "Femur marker");
   EXPECT_EQ(marker_name(tools, 1), "Tibia marker");
