@@ -23,6 +23,14 @@ struct SagittalProfile {
 const SagittalProfile kLateral{{{-9.5, -3.0}, 19.5}, {{6.0, -1.5}, 23.5}, {{15.5, 6.0}, 18.5}};
 const SagittalProfile kMedial{{{-10.5, -3.5}, 20.5}, {{3.0, -1.5}, 23.5}, {{12.0, 3.0}, 18.0}};
 
+// The profiles lie below this, the fill of their creases too; q.z() above it is a distance from the pulley at
+// least.
+constexpr double kProfilesTopMm = 26.0;
+constexpr double kShaftFromMm = -8.0;
+// A surface further off than the crease is wide is not looked at: a union is the other one's then, to the
+// last bit. The margin is that of rounding.
+constexpr double kShaftCreaseMm = 10.0, kFurtherMm = kShaftCreaseMm + 1e-6;
+
 // 0 far below zero, x far above, without a kink.
 double ramp(double x) { return 0.5 * (x + std::sqrt(x * x + 36.0)); }
 
@@ -32,6 +40,7 @@ FemurShape::FemurShape(const KneeParameters& parameters) : parameters_(parameter
   const double slope = geometry::rad_from_deg(parameters.roof_slope_deg);
   roof_direction_ = {std::sin(slope), -std::cos(slope)};
   roof_normal_ = {-std::cos(slope), -std::sin(slope)};
+  shaft_lean_ = std::tan(geometry::rad_from_deg(parameters.shaft_valgus_deg));
 }
 
 Eigen::Vector3d FemurShape::min_mm() const { return parameters_.scale * Eigen::Vector3d(-50, -40, -36); }
@@ -51,7 +60,8 @@ double FemurShape::pulley(const Eigen::Vector3d& q) const {
   const double medial = kMedial.distance(sagittal - Eigen::Vector2d(0.0, -parameters_.medial_distal_mm));
   const double share = smooth_step(-13.0, 13.0, q.x());
   const double off_groove = std::min(std::abs(q.x() - 1.5) / 20.0, 1.0);
-  const double groove = 0.5 * parameters_.groove_depth_mm * (1.0 + std::cos(geometry::kPi * off_groove));
+  const double groove =
+      off_groove < 1 ? 0.5 * parameters_.groove_depth_mm * (1.0 + std::cos(geometry::kPi * off_groove)) : 0;
   const double surface = (1.0 - share) * medial + share * lateral + groove;
 
   // Seen from below the condyles are a trapezium: the sides come together towards the front, the medial one
@@ -70,18 +80,29 @@ double FemurShape::notch(const Eigen::Vector3d& q) const {
   return filleted_intersection(std::abs(q.x() - kNotchMiddleX) - half_width, -under_roof, 8.5);
 }
 
+// Metaphysis and shaft: a flare that turns from a wide oval into a tube, leaning laterally.
+double FemurShape::shaft(const Eigen::Vector3d& q) const {
+  const double flare = 1.0 / (1.0 + std::exp((q.z() - 22.0) / 9.5));
+  const double lean = shaft_lean_ * std::max(q.z(), -10.0);
+  const double half_width = 16.8 + 18.0 * flare, half_depth = 16.2 + 0.8 * flare;
+  const double tube = superellipse(q.x() - lean, q.y() - 8.5, half_width, half_depth, 2.0 + 0.9 * flare);
+  return filleted_intersection(tube, kShaftFromMm - q.z(), 3.0);
+}
+
+double FemurShape::pulley_and_shaft(const Eigen::Vector3d& q) const {
+  if (q.z() > kProfilesTopMm) {
+    const double tube = shaft(q);
+    return q.z() - kProfilesTopMm > tube + kFurtherMm ? tube : smooth_union(pulley(q), tube, kShaftCreaseMm);
+  }
+  const double joint = pulley(q);
+  return kShaftFromMm - q.z() > joint + kFurtherMm ? joint : smooth_union(joint, shaft(q), kShaftCreaseMm);
+}
+
 double FemurShape::operator()(const Eigen::Vector3d& p) const {
   Eigen::Vector3d q = p / parameters_.scale;
   q.x() /= parameters_.width_factor;
 
-  // Metaphysis and shaft: a flare that turns from a wide oval into a tube, leaning laterally.
-  const double flare = 1.0 / (1.0 + std::exp((q.z() - 22.0) / 9.5));
-  const double lean = std::tan(geometry::rad_from_deg(parameters_.shaft_valgus_deg)) * std::max(q.z(), -10.0);
-  const double half_width = 16.8 + 18.0 * flare, half_depth = 16.2 + 0.8 * flare;
-  double shaft = superellipse(q.x() - lean, q.y() - 8.5, half_width, half_depth, 2.0 + 0.9 * flare);
-  shaft = filleted_intersection(shaft, -(q.z() + 8.0), 3.0);
-
-  double bone = smooth_union(pulley(q), shaft, 10.0);
+  double bone = pulley_and_shaft(q);
   bone = smooth_union(bone, ellipsoid(q, {29.0, -3.0, 1.0}, {9.0, 13.0, 12.0}), 12.0);   // lateral epicondyle
   bone = smooth_union(bone, ellipsoid(q, {-30.0, -3.5, 1.5}, {9.5, 14.0, 12.0}), 12.0);  // medial epicondyle
   bone = smooth_union(bone, ellipsoid(q, {-26.5, -6.0, 13.5}, {6.0, 6.0, 6.0}), 12.0);   // adductor tubercle

@@ -15,6 +15,9 @@ namespace arthronaut::phantom {
 
 namespace {
 
+// No function changes faster than twice its distance from the surface.
+constexpr double kSteepest = 2.0;
+
 Eigen::Vector3d gradient_of(const ImplicitFunction& function, const Eigen::Vector3d& p) {
   constexpr double kStep = 1e-4;
   Eigen::Vector3d gradient;
@@ -33,13 +36,26 @@ vtkNew<vtkImageData> sample(const ImplicitFunction& function, const ImplicitMesh
   grid->SetOrigin(options.min_mm.data());
   grid->SetSpacing(edge, edge, edge);
   grid->AllocateScalars(VTK_FLOAT, 1);
-  auto* value = static_cast<float*>(grid->GetScalarPointer());
-  for (int k = 0; k < size.z(); ++k) {
-    for (int j = 0; j < size.y(); ++j) {
-      for (int i = 0; i < size.x(); ++i) {
-        const auto sampled = static_cast<float>(function(options.min_mm + edge * Eigen::Vector3d(i, j, k)));
-        // A sample on the surface would give triangles without area.
-        *value++ = std::abs(sampled) < 1e-3F ? 1e-3F : sampled;
+  auto* const values = static_cast<float*>(grid->GetScalarPointer());
+  const auto sampled = [&](const Eigen::Array3i& at) {
+    const auto value = static_cast<float>(function(options.min_mm + edge * at.cast<double>().matrix()));
+    // A sample on the surface would give triangles without area.
+    return std::abs(value) < 1e-3F ? 1e-3F : value;
+  };
+  // By blocks. Far from the surface all of a block is as its middle: only the sign counts there.
+  constexpr int kBlock = 4;
+  const double far_mm = kSteepest * std::sqrt(3.0) * 0.5 * kBlock * edge;
+  Eigen::Array3i from, at;
+  for (from.z() = 0; from.z() < size.z(); from.z() += kBlock) {
+    for (from.y() = 0; from.y() < size.y(); from.y() += kBlock) {
+      for (from.x() = 0; from.x() < size.x(); from.x() += kBlock) {
+        const Eigen::Array3i end = (from + kBlock).min(size);
+        const float middle = sampled(from + kBlock / 2);
+        const bool is_far = std::abs(middle) > far_mm;
+        for (at.z() = from.z(); at.z() < end.z(); ++at.z())
+          for (at.y() = from.y(); at.y() < end.y(); ++at.y())
+            for (at.x() = from.x(); at.x() < end.x(); ++at.x())
+              values[at.x() + size.x() * (at.y() + size.y() * at.z())] = is_far ? middle : sampled(at);
       }
     }
   }

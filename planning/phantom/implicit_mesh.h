@@ -7,7 +7,8 @@
 
 namespace arthronaut::phantom {
 
-// Negative inside; its gradient must not vanish on the surface.
+// Negative inside, and no further from zero than twice the distance from the surface; its gradient must not
+// vanish on the surface.
 using ImplicitFunction = std::function<double(const Eigen::Vector3d&)>;
 
 struct ImplicitMeshOptions {

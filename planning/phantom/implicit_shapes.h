@@ -17,7 +17,9 @@ namespace arthronaut::phantom {
 // Intersection whose edge is a circular fillet of the given radius where the two meet at a right angle.
 [[nodiscard]] inline double filleted_intersection(double a, double b, double radius_mm) {
   const double u = std::max(radius_mm + a, 0.0), v = std::max(radius_mm + b, 0.0);
-  return std::min(-radius_mm, std::max(a, b)) + std::hypot(u, v);
+  // A root is needed at the fillet alone.
+  const double from_middle = u == 0 ? v : v == 0 ? u : std::hypot(u, v);
+  return std::min(-radius_mm, std::max(a, b)) + from_middle;
 }
 
 [[nodiscard]] inline double filleted_difference(double a, double b, double radius_mm) {
@@ -60,12 +62,13 @@ struct Circle {
 // First-order distance to the superellipse |x/a|^n + |y/b|^n = 1.
 [[nodiscard]] inline double superellipse(double x, double y, double a, double b, double n) {
   const double u = std::abs(x / a), v = std::abs(y / b);
-  const double un = std::pow(u, n - 1.0), vn = std::pow(v, n - 1.0);
+  const bool is_ellipse = n == 2.0;
+  const double un = is_ellipse ? u : std::pow(u, n - 1.0), vn = is_ellipse ? v : std::pow(v, n - 1.0);
   const double rho_n = un * u + vn * v;
   if (rho_n < 1e-6) return -std::min(a, b);
   const double rho = std::pow(rho_n, 1.0 / n);
   // |grad rho| = |(un / a, vn / b)| / rho^(n-1)
-  return (rho - 1.0) * std::pow(rho, n - 1.0) / std::hypot(un / a, vn / b);
+  return (rho - 1.0) * (is_ellipse ? rho : std::pow(rho, n - 1.0)) / std::hypot(un / a, vn / b);
 }
 
 }  // namespace arthronaut::phantom

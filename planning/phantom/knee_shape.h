@@ -42,11 +42,14 @@ class FemurShape {
   [[nodiscard]] const KneeParameters& parameters() const { return parameters_; }
 
  private:
+  [[nodiscard]] double pulley_and_shaft(const Eigen::Vector3d& q) const;
   [[nodiscard]] double pulley(const Eigen::Vector3d& q) const;
+  [[nodiscard]] double shaft(const Eigen::Vector3d& q) const;
   [[nodiscard]] double notch(const Eigen::Vector3d& q) const;
 
   KneeParameters parameters_;
   Eigen::Vector2d roof_direction_, roof_normal_;
+  double shaft_lean_;  // lateral by superior
 };
 
 class TibiaShape {
@@ -58,9 +61,11 @@ class TibiaShape {
   [[nodiscard]] const KneeParameters& parameters() const { return parameters_; }
 
  private:
+  [[nodiscard]] double plateau_slope_mm(double anterior) const;
   [[nodiscard]] double plateau_height_mm(double lateral, double anterior) const;
 
   KneeParameters parameters_;
+  double slope_;
 };
 
 }  // namespace arthronaut::phantom

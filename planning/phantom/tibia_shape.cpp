@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kPlateauZ = -30.5;  // bone only: the cartilage of both bones fills the gap to the femur
 constexpr double kBottomMm = -112.0;
+constexpr double kHollowMm = 2.2;  // below the slope; all else stands above it
 
 double bump(double x, double y, double sigma_x, double sigma_y) {
   return std::exp(-0.5 * (std::pow(x / sigma_x, 2) + std::pow(y / sigma_y, 2)));
@@ -16,7 +17,8 @@ double mix(double a, double b, double share) { return a + share * (b - a); }
 
 }  // namespace
 
-TibiaShape::TibiaShape(const KneeParameters& parameters) : parameters_(parameters) {}
+TibiaShape::TibiaShape(const KneeParameters& parameters)
+    : parameters_(parameters), slope_(std::tan(geometry::rad_from_deg(parameters.plateau_slope_deg))) {}
 
 Eigen::Vector3d TibiaShape::min_mm() const {
   return parameters_.scale * Eigen::Vector3d(-48, -40, kBottomMm - 4);
@@ -25,11 +27,12 @@ Eigen::Vector3d TibiaShape::max_mm() const {
   return parameters_.scale * Eigen::Vector3d(48, 38, kPlateauZ + 20);
 }
 
+double TibiaShape::plateau_slope_mm(double anterior) const { return kPlateauZ + slope_ * (anterior + 3.0); }
+
 // The top: sloping backwards, hollow medially, slightly domed laterally, with the two spines between.
 double TibiaShape::plateau_height_mm(double lateral, double anterior) const {
-  const double slope = std::tan(geometry::rad_from_deg(parameters_.plateau_slope_deg));
-  double height = kPlateauZ + slope * (anterior + 3.0);
-  height -= 2.2 * bump(lateral + 20.0, anterior + 3.0, 9.0, 12.0);
+  double height = plateau_slope_mm(anterior);
+  height -= kHollowMm * bump(lateral + 20.0, anterior + 3.0, 9.0, 12.0);
   height += 0.8 * bump(lateral - 20.0, anterior + 6.0, 9.0, 11.0);
   height += (parameters_.eminence_height_mm - 0.5) * bump(lateral + 6.5, anterior + 6.0, 4.4, 8.0);
   height += (parameters_.eminence_height_mm - 1.5) * bump(lateral - 6.0, anterior + 9.0, 4.2, 7.0);
@@ -55,8 +58,13 @@ double TibiaShape::operator()(const Eigen::Vector3d& p) const {
   double bone = smooth_union(smooth_union(medial, lateral, 7.0), middle, 9.0);
   bone =
       smooth_union(bone, ellipsoid(q, {4.0, 13.5, kPlateauZ - 30.0}, {8.5, 8.5, 15.0}), 10.0);  // tuberosity
-  const double top = (q.z() - plateau_height_mm(q.x(), q.y())) / 1.15;
-  bone = filleted_intersection(bone, top, 3.0);
+  // Far below the top nothing is cut off: no bit depends on how far.
+  constexpr double kFillet_mm = 3.0;
+  const double top_at_most = (q.z() - plateau_slope_mm(q.y()) + kHollowMm + 1e-6) / 1.15;
+  const double top = top_at_most < std::min(bone, -kFillet_mm)
+                         ? top_at_most
+                         : (q.z() - plateau_height_mm(q.x(), q.y())) / 1.15;
+  bone = filleted_intersection(bone, top, kFillet_mm);
 
   const auto& phase = parameters_.ripple_phases;
   bone += 0.22 * std::sin(0.29 * q.x() + 0.22 * q.z() + phase[4]) * std::sin(0.31 * q.y() + phase[5]) +
