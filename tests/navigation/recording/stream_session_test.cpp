@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <deque>
 #include <fstream>
 #include <map>
 #include <random>
@@ -150,10 +152,12 @@ TEST_F(StreamSession, ComesBackWholeAndTellsTampering) {
   EXPECT_EQ(check_session(folder.path()).outcome, SessionCheck::Outcome::Broken);
 }
 
-// A process that records the stream, and tells each picture that it has given to its recorder.
+// A process that records the stream for a while, and tells each picture that it has given to its recorder.
 class RecordingProcess {
  public:
-  RecordingProcess(const fs::path& folder, const std::string& address, rlim_t largest_file = RLIM_INFINITY) {
+  RecordingProcess(const fs::path& folder, const std::string& address, double seconds,
+                   rlim_t largest_file = RLIM_INFINITY)
+      : seconds_(seconds) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
     ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
@@ -169,30 +173,18 @@ class RecordingProcess {
   RecordingProcess(const RecordingProcess&) = delete;
   RecordingProcess& operator=(const RecordingProcess&) = delete;
 
-  // Takes in what it has told.
-  void listen() {
-    GivenPicture picture;
-    while (::read(pipe_, &picture, sizeof picture) == static_cast<ssize_t>(sizeof picture))
-      given_.emplace_back(Clock::now(), picture);
-  }
-  [[nodiscard]] double recorded_s() const {
-    return given_.empty() ? 0 : std::chrono::duration<double>(Clock::now() - given_.front().first).count();
-  }
-  // False when it has ended by itself.
-  bool record_for(double seconds) {
-    while (recorded_s() < seconds) {
+  // Its time has passed since its first picture, or it has ended by itself.
+  [[nodiscard]] bool is_over() {
+    listen();
+    int status = 0;
+    if (::waitpid(process_, &status, WNOHANG) == process_) {
+      process_ = -1;
+      ended_ = Clock::now();
       listen();
-      ::usleep(2000);
-      int status = 0;
-      if (::waitpid(process_, &status, WNOHANG) == process_) {
-        process_ = -1;
-        ended_ = Clock::now();
-        listen();
-        return false;
-      }
     }
-    return true;
+    return has_ended() || recorded_s() >= seconds_;
   }
+  [[nodiscard]] bool has_ended() const { return process_ < 0; }
   void kill(int signal = SIGKILL) {
     if (process_ < 0) return;
     ::kill(process_, signal);
@@ -209,11 +201,36 @@ class RecordingProcess {
   }
 
  private:
+  // Takes in what it has told.
+  void listen() {
+    GivenPicture picture;
+    while (::read(pipe_, &picture, sizeof picture) == static_cast<ssize_t>(sizeof picture))
+      given_.emplace_back(Clock::now(), picture);
+  }
+  [[nodiscard]] double recorded_s() const {
+    return given_.empty() ? 0 : std::chrono::duration<double>(Clock::now() - given_.front().first).count();
+  }
+
+  double seconds_;
   pid_t process_ = -1;
   int pipe_ = -1;
   std::vector<std::pair<Clock::time_point, GivenPicture>> given_;
   Clock::time_point ended_;
 };
+
+// They record side by side. `over`: what is done with each, by its number, as soon as it is over.
+template <typename Over>
+void record(std::deque<RecordingProcess>& processes, const Over& over) {
+  std::vector<bool> was_over(processes.size());
+  while (std::count(was_over.begin(), was_over.end(), false) > 0) {
+    for (std::size_t i = 0; i < processes.size(); ++i) {
+      if (was_over[i] || !processes[i].is_over()) continue;
+      was_over[i] = true;
+      over(i);
+    }
+    ::usleep(1000);
+  }
+}
 
 void expect_all_there(const fs::path& folder, const std::vector<GivenPicture>& wanted) {
   ASSERT_FALSE(wanted.empty());
@@ -248,32 +265,21 @@ void expect_all_there(const fs::path& folder, const std::vector<GivenPicture>& w
 
 // Killed at 20 seeded moments: everything but the last second is there.
 TEST_F(StreamSession, LosesAtMostASecondAtAnyOf20Kills) {
-  constexpr int kAtOnce = 4, kRounds = 5;
+  constexpr std::size_t kAtOnce = 10, kRounds = 2;
   std::mt19937 random(23);
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<std::unique_ptr<test::TemporaryFolder>> folders;
-    std::vector<std::unique_ptr<RecordingProcess>> processes;
-    std::vector<double> lives_s;
-    for (int i = 0; i < kAtOnce; ++i) {
-      folders.push_back(std::make_unique<test::TemporaryFolder>());
-      processes.push_back(
-          std::make_unique<RecordingProcess>(folders.back()->path(), test::rtsp_address(port_)));
-      lives_s.push_back(std::uniform_real_distribution(1.3, 4.0)(random));
-    }
-    std::size_t alive = processes.size();
-    while (alive > 0) {
-      for (std::size_t i = 0; i < processes.size(); ++i) {
-        processes[i]->listen();
-        if (lives_s[i] <= 0 || processes[i]->recorded_s() < lives_s[i]) continue;
-        processes[i]->kill();
-        lives_s[i] = 0;
-        --alive;
-      }
-      ::usleep(1000);
-    }
-    for (std::size_t i = 0; i < processes.size(); ++i) {
+  for (std::size_t round = 0; round < kRounds; ++round) {
+    const std::deque<test::TemporaryFolder> folders(kAtOnce);
+    std::deque<RecordingProcess> processes;
+    for (const test::TemporaryFolder& folder : folders)
+      processes.emplace_back(folder.path(), test::rtsp_address(port_),
+                             std::uniform_real_distribution(1.3, 4.0)(random));
+    record(processes, [&](std::size_t i) {
+      EXPECT_FALSE(processes[i].has_ended()) << i;
+      processes[i].kill();
+    });
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
       SCOPED_TRACE("round " + std::to_string(round) + ", process " + std::to_string(i));
-      expect_all_there(folders[i]->path(), processes[i]->must_be_there());
+      expect_all_there(folders[i].path(), processes[i].must_be_there());
     }
   }
 }
@@ -282,15 +288,19 @@ TEST_F(StreamSession, LosesAtMostASecondAtAnyOf20Kills) {
 // recorder ends with an error, and what was made before is there.
 TEST_F(StreamSession, LosesAtMostASecondOnADiskThatIsFullAtOnce) {
   std::mt19937 random(29);
-  for (int i = 0; i < 4; ++i) {
-    const test::TemporaryFolder folder;
-    const auto largest = std::uniform_int_distribution<rlim_t>(150'000, 1'500'000)(random);
-    SCOPED_TRACE("no file beyond " + std::to_string(largest) + " bytes");
-    RecordingProcess process(folder.path(), test::rtsp_address(port_), largest);
-    if (process.record_for(12)) process.kill();
-    const std::vector<GivenPicture> wanted = process.must_be_there();
+  const std::deque<test::TemporaryFolder> folders(4);
+  std::vector<rlim_t> largest;
+  std::deque<RecordingProcess> processes;
+  for (const test::TemporaryFolder& folder : folders) {
+    largest.push_back(std::uniform_int_distribution<rlim_t>(150'000, 1'500'000)(random));
+    processes.emplace_back(folder.path(), test::rtsp_address(port_), 12, largest.back());
+  }
+  record(processes, [&](std::size_t i) { processes[i].kill(); });
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    SCOPED_TRACE("no file beyond " + std::to_string(largest[i]) + " bytes");
+    const std::vector<GivenPicture> wanted = processes[i].must_be_there();
     if (wanted.empty()) continue;  // full before the first second was over
-    expect_all_there(folder.path(), wanted);
+    expect_all_there(folders[i].path(), wanted);
   }
 }
 
@@ -335,25 +345,32 @@ class PowerlessDisk {
 // be mounted (root alone can) nothing is tried.
 TEST_F(StreamSession, LosesAtMostASecondWhenThePowerGoes) {
   std::mt19937 random(31);
-  for (int i = 0; i < 6; ++i) {
+  const std::deque<test::TemporaryFolder> folders(6);
+  std::deque<PowerlessDisk> disks;
+  std::deque<RecordingProcess> processes;
+  const auto session_on = [](const PowerlessDisk& disk) { return disk.mount_point() / "session"; };
+  for (const test::TemporaryFolder& folder : folders) {
+    disks.emplace_back(folder.path());
+    if (!disks.back().is_mounted()) GTEST_SKIP() << "no file system can be mounted here";
+    fs::create_directory(session_on(disks.back()));
+  }
+  for (const PowerlessDisk& disk : disks)
+    processes.emplace_back(session_on(disk), test::rtsp_address(port_),
+                           std::uniform_real_distribution(1.6, 5.0)(random));
+  std::vector<std::vector<GivenPicture>> wanted(disks.size());
+  record(processes, [&](std::size_t i) {
     SCOPED_TRACE(i);
-    const test::TemporaryFolder folder;
-    PowerlessDisk disk(folder.path());
-    if (!disk.is_mounted()) GTEST_SKIP() << "no file system can be mounted here";
-    const fs::path session = disk.mount_point() / "session";
-    fs::create_directory(session);
-    std::vector<GivenPicture> wanted;
-    {
-      RecordingProcess process(session, test::rtsp_address(port_));
-      ASSERT_TRUE(process.record_for(std::uniform_real_distribution(1.6, 5.0)(random)));
-      process.kill(SIGSTOP);
-      wanted = process.must_be_there();
-      ::usleep(50'000);  // a write that was under way comes to its end
-      ASSERT_TRUE(disk.remember());
-      process.kill();
-    }
-    ASSERT_TRUE(disk.come_back());
-    expect_all_there(session, wanted);
+    ASSERT_FALSE(processes[i].has_ended());
+    processes[i].kill(SIGSTOP);
+    wanted[i] = processes[i].must_be_there();
+    ::usleep(50'000);  // a write that was under way comes to its end
+    ASSERT_TRUE(disks[i].remember());
+    processes[i].kill();
+  });
+  for (std::size_t i = 0; i < disks.size() && !HasFailure(); ++i) {
+    SCOPED_TRACE(i);
+    ASSERT_TRUE(disks[i].come_back());
+    expect_all_there(session_on(disks[i]), wanted[i]);
   }
 }
 
