@@ -51,7 +51,19 @@ struct Axis {
 struct Placed {
   double along, off;          // from the axis' middle; from the axis
   double across_u, across_v;  // unit
-  std::size_t stretch, bin, sector;
+  std::size_t stretch, bin;
+
+  [[nodiscard]] std::size_t sector() const {
+    return static_cast<std::size_t>((std::atan2(across_v, across_u) / M_PI + 1) * 0.5 *
+                                    static_cast<double>(kSectors)) %
+           kSectors;
+  }
+};
+
+struct FittedVoxel {
+  Placed placed;
+  std::size_t sector;
+  float hu;
 };
 
 class Fit {
@@ -113,7 +125,7 @@ class Fit {
     placed.along = w.dot(axis_.direction);
     if (std::abs(placed.along) >= half_mm_) return std::nullopt;
     const double a = w.dot(axis_.u), b = w.dot(axis_.v);
-    placed.off = std::hypot(a, b);
+    placed.off = std::sqrt(a * a + b * b);
     const double share = (placed.along + half_mm_) / (2 * half_mm_);
     placed.stretch = static_cast<std::size_t>(share * static_cast<double>(stretches_));
     placed.bin = static_cast<std::size_t>(share * static_cast<double>(bins_));
@@ -121,9 +133,6 @@ class Fit {
       placed.across_u = a / placed.off;
       placed.across_v = b / placed.off;
     }
-    placed.sector =
-        static_cast<std::size_t>((std::atan2(b, a) / M_PI + 1) * 0.5 * static_cast<double>(kSectors)) %
-        kSectors;
     return placed;
   }
 
@@ -148,14 +157,16 @@ class Fit {
       WallLevels& levels = levels_[placed->bin];
       const WallGrey grey = grey_at(*placed, profile_.blur_mm);
       if (off < -kBesideWallFrom_mm) levels.add_inside(voxels_[i].hu, grey);
-      if (beyond > kBesideWallFrom_mm) levels.add_outside(placed->sector, voxels_[i].hu, grey);
-      if (off > 0 && beyond < 0) levels.add_rim(placed->sector, voxels_[i].hu);
-      if (off > -kInward_mm) placed_.emplace_back(*placed, voxels_[i].hu);
+      if (off <= -kInward_mm) continue;
+      const std::size_t sector = placed->sector();
+      if (beyond > kBesideWallFrom_mm) levels.add_outside(sector, voxels_[i].hu, grey);
+      if (off > 0 && beyond < 0) levels.add_rim(sector, voxels_[i].hu);
+      placed_.push_back({*placed, sector, voxels_[i].hu});
     }
     for (WallLevels& levels : levels_) levels.part(profile_.has_rim() ? profile_.rim_hu : kNoRim_hu);
     std::vector<double> off_model;
-    for (const auto& [placed, hu] : placed_) {
-      if (const auto model = model_at(placed, blur)) off_model.push_back(std::abs(hu - model->value));
+    for (const auto& [placed, sector, hu] : placed_) {
+      if (const auto model = model_at(placed, sector, blur)) off_model.push_back(std::abs(hu - model->value));
     }
     noise_hu_ = std::max(kLeastNoise_hu, 1.4826 * geometry::median(std::move(off_model), 1e3));
   }
@@ -164,14 +175,14 @@ class Fit {
     double value, slope;  // slope: by the distance from the axis
     double variance;      // of what the levels are made of: beside a cortex that slants there is no one level
   };
-  [[nodiscard]] std::optional<Model> model_at(const Placed& placed, double blur) const {
+  [[nodiscard]] std::optional<Model> model_at(const Placed& placed, std::size_t sector, double blur) const {
     const WallLevels& levels = levels_[placed.bin];
-    if (!levels.has_inside() || !levels.has_outside(placed.sector)) return std::nullopt;
+    if (!levels.has_inside() || !levels.has_outside(sector)) return std::nullopt;
     const WallGrey grey = grey_at(placed, blur);
-    const double a = levels.inside_hu(), b = levels.outside_hu(placed.sector), rim = rim_hu(b);
+    const double a = levels.inside_hu(), b = levels.outside_hu(sector), rim = rim_hu(b);
     return Model{a * grey.inside + rim * grey.rim + b * grey.beyond,
                  a * grey.inside_slope + rim * grey.rim_slope + b * grey.beyond_slope,
-                 std::max(levels.inside().variance(), levels.outside(placed.sector).variance())};
+                 std::max(levels.inside().variance(), levels.outside(sector).variance())};
   }
 
   [[nodiscard]] WallGrey grey_at(const Placed& placed, double blur) const {
@@ -207,7 +218,7 @@ class Fit {
     for (const WallVoxel& voxel : voxels_) {
       const auto placed = place(voxel.p_mm);
       if (!placed || !counts(voxel, *placed)) continue;
-      const Level& out = levels_[placed->bin].outside(placed->sector);
+      const Level& out = levels_[placed->bin].outside(placed->sector());
       if (!levels_[placed->bin].has_inside() || out.count < full || std::abs(out.mean() - grey) > far_off)
         continue;
       const double at = (placed->off - radius_[placed->stretch] + kInward_mm) / kPoint_mm;
@@ -229,8 +240,8 @@ class Fit {
     normal = Eigen::MatrixXd::Zero(n, n);
     right = Eigen::VectorXd::Zero(n);
     if (by_eighth) *by_eighth = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(stretches_ * kSectors));
-    for (const auto& [placed, hu] : placed_) {
-      const auto model = model_at(placed, blur);
+    for (const auto& [placed, sector, hu] : placed_) {
+      const auto model = model_at(placed, sector, blur);
       if (!model) continue;
       const double residual = hu - model->value,
                    sigma = std::sqrt(0.5 * (noise_hu_ * noise_hu_ + model->variance)),
@@ -248,7 +259,7 @@ class Fit {
       right.head<4>() += weight * residual * row.head<4>();
       right[r] += weight * residual * row[4];
       if (by_eighth) {
-        const auto eighth = static_cast<Eigen::Index>(placed.stretch * kSectors + placed.sector);
+        const auto eighth = static_cast<Eigen::Index>(placed.stretch * kSectors + sector);
         by_eighth->col(eighth).head<4>() += weight * residual * row.head<4>();
         (*by_eighth)(r, eighth) += weight * residual * row[4];
       }
@@ -387,7 +398,7 @@ class Fit {
   std::vector<double> radius_;
   std::vector<WallLevels> levels_;  // by bins
   std::vector<Level> metal_, metal_of_bin_;
-  std::vector<std::pair<Placed, float>> placed_;
+  std::vector<FittedVoxel> placed_;
   double noise_hu_ = 25;
   WallProfile profile_;
 };

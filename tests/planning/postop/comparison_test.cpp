@@ -45,7 +45,12 @@ class Achieved : public ::testing::Test {
     EXPECT_NEAR(achieved.tunnel.diameter_mm, truth.diameter_mm, diameter_mm);
   }
 
-  const phantom::PhantomKnee knee_ = phantom::make_phantom_knee();
+  static const phantom::PhantomKnee& knee() {
+    static const auto made = phantom::make_phantom_knee();
+    return made;
+  }
+
+  const phantom::PhantomKnee& knee_ = knee();
   const geometry::RigidTransform truth_ = test::lying(30, {1, 2, 3}, {30, -20, 60});
 };
 
