@@ -27,18 +27,18 @@ void blur_along(std::vector<float>& values, const Eigen::Vector3i& size, int axi
   }
   std::size_t step = 1;
   for (int a = 0; a < axis; ++a) step *= static_cast<std::size_t>(size[a]);
-  const int n = size[axis];
-  std::vector<float> row(static_cast<std::size_t>(n));
-  for (std::size_t start = 0; start < values.size(); ++start) {
-    if (start / step % static_cast<std::size_t>(n) != 0) continue;
-    for (int i = 0; i < n; ++i)
-      row[static_cast<std::size_t>(i)] = values[start + static_cast<std::size_t>(i) * step];
-    for (int i = 0; i < n; ++i) {
-      float blurred = 0;
-      for (int d = -reach; d <= reach; ++d)
-        blurred += kernel[static_cast<std::size_t>(d + reach)] *
-                   row[static_cast<std::size_t>(std::clamp(i + d, 0, n - 1))];
-      values[start + static_cast<std::size_t>(i) * step] = blurred / sum;
+  const auto n = static_cast<std::size_t>(size[axis]), before = static_cast<std::size_t>(reach);
+  std::vector<float> row(n + 2 * before);
+  for (std::size_t first = 0; first < values.size(); first += n * step) {
+    for (std::size_t start = first; start < first + step; ++start) {
+      for (std::size_t i = 0; i < n; ++i) row[before + i] = values[start + i * step];
+      std::fill_n(row.begin(), reach, row[before]);
+      std::fill_n(row.end() - reach, reach, row[before + n - 1]);
+      for (std::size_t i = 0; i < n; ++i) {
+        float blurred = 0;
+        for (std::size_t k = 0; k < kernel.size(); ++k) blurred += kernel[k] * row[i + k];
+        values[start + i * step] = blurred / sum;
+      }
     }
   }
 }
