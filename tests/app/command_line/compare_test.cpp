@@ -46,8 +46,13 @@ class CompareCommand : public ::testing::Test {
     return json::parse(files::read_text(folder_ / name));
   }
 
+  [[nodiscard]] static const phantom::PhantomKnee& made() {
+    static const auto knee = phantom::make_phantom_knee();
+    return knee;
+  }
+
   const test::TemporaryFolder folder_;
-  const phantom::PhantomKnee made_ = phantom::make_phantom_knee();
+  const phantom::PhantomKnee& made_ = made();
   cases::Case knee_ = phantom::case_of(made_, "Phantom");
   const geometry::RigidTransform lying_ = test::lying(25, {1, -1, 2}, {20, 40, -30});
 };
