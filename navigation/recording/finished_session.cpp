@@ -22,6 +22,10 @@ void FinishedSession::append_event(const SessionEvent& event) {
   hashes_->sync();
 }
 
+void FinishedSession::close_database() {
+  if (hashes_) hashes_->cover_sealed_database();
+}
+
 void FinishedSession::rewrite_file(const std::string& name, const std::function<void()>& write) {
   if (!hashes_) return write();
   hashes_->write_file(name, write);
@@ -29,7 +33,9 @@ void FinishedSession::rewrite_file(const std::string& name, const std::function<
 }
 
 void append_event(const std::filesystem::path& session_folder, const SessionEvent& event) {
-  FinishedSession(session_folder).append_event(event);
+  FinishedSession session(session_folder);
+  session.append_event(event);
+  session.close_database();
 }
 
 void rewrite_file(const std::filesystem::path& session_folder, const std::string& name,

@@ -19,6 +19,8 @@ class FinishedSession {
  public:
   explicit FinishedSession(const std::filesystem::path& session_folder);
   void append_event(const SessionEvent& event);
+  // After the last event.
+  void close_database();
   // Writes a file anew by `write`, and what the record says of it. Throws what `write` throws, too.
   void rewrite_file(const std::string& name, const std::function<void()>& write);
 

@@ -122,6 +122,7 @@ void append_entries(const std::filesystem::path& session_folder, const std::vect
     }
     session.append_event(event);
   }
+  if (!entries.empty()) session.close_database();
 }
 
 OperationRecord::OperationRecord(const std::filesystem::path& folder, const operation::OperationSetup& setup,

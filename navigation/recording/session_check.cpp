@@ -64,7 +64,9 @@ class Checker {
     const bool is_rows = is_of_rows(record.of);
     std::int64_t& end = ends_[record.of];
     end = std::max(end, record.to);
-    if (record.is_open()) {
+    if (record.of == kDatabaseFile && !record.is_open()) {
+      database_bytes_ = &record;  // its rows first: they tell what was changed
+    } else if (record.is_open()) {
       check_.notes.push_back(record.of + ": was being written when the record ended: not looked at");
       open_.insert(record.of);
     } else if (is_rows) {
@@ -76,7 +78,7 @@ class Checker {
 
   // What a finished session holds beyond what its chain speaks of.
   void look_beyond() {
-    if (!check_.was_finished) return;
+    if (!check_.was_finished) return look_at_database_bytes();
     for (const auto& [of, end] : ends_) {
       if (open_.contains(of)) continue;
       const std::int64_t there = is_of_rows(of) ? end : size_of(file_of(folder_, of));
@@ -84,11 +86,20 @@ class Checker {
     }
     for (const char* const rows : {kFrameRows, kEventRows, kPictureRows})
       if (database_ && !open_.contains(rows)) look_beyond_rows(rows);
+    look_at_database_bytes();
     // Without its last lines the chain says nothing of a video that was copied at the session's end.
     if (!has_end_ && says_it_has_a_chain_.value_or(false)) add("chain.csv", 0, 0, kCutOff);
   }
 
  private:
+  void look_at_database_bytes() {
+    const auto is_of_database = [](const CheckFinding& finding) {
+      return finding.of.starts_with(kDatabaseFile);
+    };
+    if (database_bytes_ && std::none_of(check_.findings.begin(), check_.findings.end(), is_of_database))
+      look_at_bytes(*database_bytes_);
+  }
+
   void look_at_rows(const ChainRecord& record) {
     if (!database_) return;
     try {
@@ -153,6 +164,7 @@ class Checker {
   std::optional<SessionDatabase> database_;
   std::map<std::string, std::int64_t> ends_;
   std::set<std::string> open_;
+  const ChainRecord* database_bytes_ = nullptr;
   bool has_end_ = false;
   std::optional<bool> says_it_has_a_chain_;  // nullopt: session.json cannot be read
 };

@@ -111,7 +111,7 @@ SessionHashes::SessionHashes(const fs::path& session_folder)
 SessionHashes::SessionHashes(const fs::path& session_folder, const ReadChain& read)
     : folder_(session_folder), chain_(session_folder, read) {
   for (const ChainRecord& record : read.records)
-    if (!record.is_open()) covered_[record.of] = std::max(covered_[record.of], record.to);
+    covered_[record.of] = std::max(covered_[record.of], record.to);  // -1: about to be written
 }
 
 std::optional<SessionHashes> SessionHashes::of_finished(const fs::path& session_folder) {
@@ -122,11 +122,15 @@ std::optional<SessionHashes> SessionHashes::of_finished(const fs::path& session_
 }
 
 void SessionHashes::write_file(const std::string& name, const std::function<void()>& write) {
-  chain_.append(name, 0, -1, std::string(64, '0'));
+  announce_file(name);
   // Else a power cut could leave the new file and the old hash: changed, as it seems.
   chain_.sync();
   write();
   cover_file(name);
+}
+
+void SessionHashes::announce_file(const std::string& name) {
+  chain_.append(name, 0, -1, std::string(64, '0'));
 }
 
 void SessionHashes::cover_file(const std::string& name) {
@@ -170,6 +174,13 @@ void SessionHashes::cover_rows(SessionDatabase& database, const std::string& of,
 
 void SessionHashes::announce_events() {
   chain_.append(kEventRows, covered_[kEventRows], -1, std::string(64, '0'));
+  if (covered_.contains(kDatabaseFile)) announce_file(kDatabaseFile);
+  chain_.sync();
+}
+
+void SessionHashes::cover_sealed_database() {
+  if (!covered_.contains(kDatabaseFile)) return;
+  cover_file(kDatabaseFile);
   chain_.sync();
 }
 

@@ -4,7 +4,8 @@
 //   poses.csv, guidance.csv, the encoded video     as they grow, each stretch of bytes by itself
 //   a copied video, every copied still             at the end, 64 MiB a record
 //   session.sqlite:frames, :events, :pictures      rows of the database by their numbers, as they are read
-//                                                  back; its bytes change with every opening
+//                                                  back: while it is recorded its bytes change all the time
+//   session.sqlite                                 its bytes, once it is sealed: what no row holds, too
 //   end                                            nothing: that all before it was said when the session was
 //                                                  finished
 //
@@ -25,6 +26,7 @@ inline constexpr const char* kFrameRows = "session.sqlite:frames";
 inline constexpr const char* kEventRows = "session.sqlite:events";
 inline constexpr const char* kPictureRows = "session.sqlite:pictures";
 [[nodiscard]] bool is_of_rows(const std::string& of);
+inline constexpr const char* kDatabaseFile = "session.sqlite";
 // Of the record that closes a finished session's chain.
 inline constexpr const char* kChainEnd = "end";
 
@@ -55,6 +57,8 @@ class SessionHashes {
   // Writes a file by `write`, and its hash. A program or a machine that ends in between is known to have.
   void write_file(const std::string& name, const std::function<void()>& write);
   void cover_file(const std::string& name);
+  // That a file is about to be written: until it is covered, what it holds is not known. Not yet on the disk.
+  void announce_file(const std::string& name);
   // What was added since the last call; the first `head` bytes only once they are all there.
   void cover_growth(const std::string& name, std::int64_t head = 0);
   // The same of a file that is whole now, its head anew.
@@ -63,6 +67,8 @@ class SessionHashes {
   void cover_rows(SessionDatabase& database, const std::string& of, std::int64_t end);
   // That event rows are about to be added to a session that is finished. On the disk before they are.
   void announce_events();
+  // The database's bytes, sealed, where the chain has spoken of them before. On the disk.
+  void cover_sealed_database();
   // That the session is finished, and all of it is in the chain. On the disk.
   void close();
   void sync() { chain_.sync(); }

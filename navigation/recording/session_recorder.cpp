@@ -127,6 +127,7 @@ struct SessionRecorder::State {
       hashes.cover_rows(database, rows, rows_end(database, rows));
     for (const char* const table : {"poses.csv", "guidance.csv"}) hashes.cover_to_end(table);
     for (const std::string& file : copied) hashes.cover_to_end(file);
+    hashes.announce_file(kDatabaseFile);
     hashes.close();
   }
 
@@ -301,6 +302,8 @@ void SessionRecorder::finish() {
   s.cover_to_end();
   s.database.execute("INSERT INTO ending VALUES(1)");
   s.database.seal();
+  s.hashes.cover_file(kDatabaseFile);
+  s.hashes.sync();
 }
 
 std::filesystem::path SessionRecorder::folder() const { return state_->folder; }

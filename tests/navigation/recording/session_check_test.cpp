@@ -128,8 +128,9 @@ TEST_F(SessionCheckTest, FindsAWholeSessionUnbroken) {
   EXPECT_EQ(check.head.size(), 64u);
   // All bytes of the files that it speaks of were looked at, each once.
   std::int64_t size = 0;
-  for (const char* const name : {"session.json", "camera.json", "tools.json", "poses.csv", "guidance.csv",
-                                 "curves.csv", "registration.json", "registration_1.json", "video.mkv"})
+  for (const char* const name :
+       {"session.json", "camera.json", "tools.json", "poses.csv", "guidance.csv", "curves.csv",
+        "registration.json", "registration_1.json", "video.mkv", "session.sqlite"})
     size += static_cast<std::int64_t>(fs::file_size(folder_ / name));
   EXPECT_EQ(check.covered_bytes, size);
 }
@@ -169,23 +170,39 @@ TEST_F(SessionCheckTest, SaysWhichBytesAreWrong) {
 // A number in the database is part of what is hashed, in whatever table it stands.
 TEST_F(SessionCheckTest, SaysWhichFramesAndEventsWereChanged) {
   record(false);
-  struct Change {
-    const char *sql, *back;
-  };
-  for (const Change& change :
-       {Change{"UPDATE guidance SET angle_deg = angle_deg + 1 WHERE frame = 60",
-               "UPDATE guidance SET angle_deg = angle_deg - 1 WHERE frame = 60"},
-        Change{"UPDATE latency SET tracking_ms = 4 WHERE frame = 60",
-               "UPDATE latency SET tracking_ms = 3 WHERE frame = 60"},
-        Change{"INSERT INTO bodies(frame, body_id) VALUES(60, 0)", "DELETE FROM bodies"}}) {
-    SCOPED_TRACE(change.sql);
-    change_database(change.sql);
+  const std::string whole = text_of(folder_ / "session.sqlite");
+  for (const char* const change : {"UPDATE guidance SET angle_deg = angle_deg + 1 WHERE frame = 60",
+                                   "UPDATE latency SET tracking_ms = 4 WHERE frame = 60",
+                                   "INSERT INTO bodies(frame, body_id) VALUES(60, 0)"}) {
+    SCOPED_TRACE(change);
+    change_database(change);
     expect_one_finding("session.sqlite:frames", 60, "session.sqlite: frames ");
-    change_database(change.back);
+    put_text(folder_ / "session.sqlite", whole);
   }
   EXPECT_TRUE(check_session(folder_).is_unbroken());
   change_database("UPDATE events SET text = 'another note' WHERE id = 2");
   expect_one_finding("session.sqlite:events", 2, "are not what was recorded");
+}
+
+// Bytes that no number is read from, too: beside the rows of a page, in its header, in a table that is empty.
+TEST_F(SessionCheckTest, FindsDamageAnywhereInTheDatabase) {
+  record(false);
+  const std::string whole = text_of(folder_ / "session.sqlite");
+  std::mt19937 random(14);
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t at = std::uniform_int_distribution<std::size_t>(0, whole.size() - 14)(random);
+    SCOPED_TRACE(at);
+    std::string damaged = whole;
+    for (std::size_t k = 0; k < 14; ++k) damaged[at + k] = static_cast<char>(damaged[at + k] ^ 0x55);
+    put_text(folder_ / "session.sqlite", damaged);
+    const SessionCheck check = check_session(folder_);
+    EXPECT_EQ(check.outcome, Outcome::Broken);
+    EXPECT_THAT(check_words(check), HasSubstr("session.sqlite: "));
+  }
+  put_text(folder_ / "session.sqlite", whole);
+  EXPECT_TRUE(check_session(folder_).is_unbroken());
+  put_text(folder_ / "session.sqlite", whole + "more");
+  expect_one_finding("session.sqlite", static_cast<std::int64_t>(whole.size()), "are not in the chain");
 }
 
 TEST_F(SessionCheckTest, SaysWhatIsMissingAndWhatWasAdded) {
@@ -199,9 +216,10 @@ TEST_F(SessionCheckTest, SaysWhatIsMissingAndWhatWasAdded) {
   put_text(folder_ / "poses.csv", poses + "90,0");
   expect_one_finding("poses.csv", static_cast<std::int64_t>(poses.size()), "are not in the chain");
   put_text(folder_ / "poses.csv", poses);
+  const std::string database = text_of(folder_ / "session.sqlite");
   change_database("INSERT INTO events(after_frame, timestamp_ns, kind, text) VALUES(1, 2, 'note', 'new')");
   EXPECT_EQ(check_session(folder_).findings.size(), 1u);
-  change_database("DELETE FROM events WHERE text = 'new'");
+  put_text(folder_ / "session.sqlite", database);
   EXPECT_TRUE(check_session(folder_).is_unbroken());
   fs::remove(folder_ / "camera.json");
   expect_one_finding("camera.json", 0, "are missing");
@@ -259,7 +277,7 @@ TEST_F(SessionCheckTest, FindsThatTheEndOfAFinishedChainIsGone) {
   }
   const std::string chain = text_of(folder_ / "chain.csv");
   ASSERT_TRUE(check_session(folder_).is_unbroken());
-  for (const int lines : {1, 2}) {
+  for (const int lines : {2, 3}) {
     SCOPED_TRACE(lines);
     put_text(folder_ / "chain.csv", without_last_lines(chain, lines));
     const SessionCheck check = check_session(folder_);
@@ -274,10 +292,14 @@ TEST_F(SessionCheckTest, FindsThatTheEndOfAFinishedChainIsGone) {
 TEST_F(SessionCheckTest, FindsThatTheEndIsGoneOfASessionWithPictures) {
   record();
   const std::string chain = text_of(folder_ / "chain.csv");
-  put_text(folder_ / "chain.csv", without_last_lines(chain, 1));
+  put_text(folder_ / "chain.csv", without_last_lines(chain, 2));
   const SessionCheck check = check_session(folder_);
   EXPECT_EQ(check.outcome, Outcome::Broken);
   EXPECT_THAT(check_words(check), HasSubstr("chain.csv: is cut off"));
+  // As a power cut leaves it between the seal and the database's own hash.
+  put_text(folder_ / "chain.csv", without_last_lines(chain, 1));
+  EXPECT_TRUE(check_session(folder_).is_unbroken());
+  EXPECT_THAT(check_session(folder_).notes, ElementsAre(HasSubstr("session.sqlite: was being written")));
 }
 
 // A chain that was deleted is told from one that never was.
