@@ -1,6 +1,6 @@
 #include "app/case/postop_comparison.h"
 
-#include "planning/cases/identity.h"
+#include "planning/cases/same_patient.h"
 #include "planning/geometry/error.h"
 #include "planning/plan_review/plan_review.h"
 #include "planning/plan_review/proposed_landmarks.h"
@@ -26,17 +26,17 @@ std::vector<tunnels::Tunnel> planned(const cases::Case& knee, const PostopQuesti
   return wanted;
 }
 
-// Where both say whose knee it is.
-bool is_another_patient(const images::Volume& volume, const std::filesystem::path& case_folder) {
+// Empty: of the same patient, or nobody says so.
+std::string other_patient_of(const images::Volume& volume, const std::filesystem::path& case_folder) {
   const cases::Identity images{volume.patient.name, volume.patient.id, volume.patient.birth_date};
   const auto of_case = cases::load_identity(case_folder);
-  return of_case && !images.is_empty() && *of_case != images;
+  return of_case && cases::is_another_patient(*of_case, images) ? images.in_words() : "";
 }
 
 void doubt(postop::Comparison& comparison, const std::string& reason) {
   comparison.bone.reliable = comparison.tunnel.reliable = false;
-  comparison.bone.reasons.push_back(reason);
-  comparison.tunnel.reasons.push_back(reason);
+  for (auto* const reasons : {&comparison.bone.reasons, &comparison.tunnel.reasons})
+    reasons->insert(reasons->begin(), reason);
 }
 
 void add_places(cases::Case knee, PostopAnswer& answer) {
@@ -100,9 +100,11 @@ PostopAnswer compare_with_postop(const PostopQuestion& question) {
   } catch (const InvalidInput& error) {
     throw InvalidInput(question.source, "", error.what());
   }
-  if (is_another_patient(answer.images, question.case_folder)) {
+  answer.other_patient = other_patient_of(answer.images, question.case_folder);
+  if (!answer.other_patient.empty()) {
     for (auto& [key, comparison] : answer.comparisons)
-      doubt(comparison, "the images say that they are of another patient than the case");
+      doubt(comparison,
+            "the images say that they are of another patient than the case: " + answer.other_patient);
   }
   return answer;
 }

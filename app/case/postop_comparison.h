@@ -35,6 +35,8 @@ struct PostopAnswer {
   std::map<tunnels::TunnelKey, postop::AchievedPlace> places;
   images::Volume images;     // as they were read
   bool was_stopped = false;  // then there may be fewer comparisons
+  std::string
+      other_patient;  // whose the images are where that is another patient than the case's; else empty
   // Why it must not be relied on, each sentence beginning with the tunnel: "femur: ..."; empty: reliable.
   [[nodiscard]] std::vector<std::string> doubts() const;
 };

@@ -15,7 +15,7 @@ namespace arthronaut::review {
 
 namespace {
 
-constexpr std::size_t kKept = 12;  // pictures of 8 MB
+constexpr std::size_t kKept = 6;  // pictures of 8 MB
 // Of what is passed on the way to a picture, so much is shown: the first at once, then ten a second.
 constexpr auto kShowEvery = std::chrono::milliseconds(100);
 // Longer, and copies are made.

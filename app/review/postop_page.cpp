@@ -193,6 +193,10 @@ void PostopPage::draw_head(const widgets::Ui& ui, widgets::Rect area) {
   } else if (answer_ == nullptr && !comparisons_.empty()) {
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      "As kept in the case (achieved.json). Its images are read again by a comparison (C).");
+  } else if (answer_ != nullptr && !answer_->other_patient.empty()) {
+    widgets::status_row(
+        ui, widgets::Severity::Bad, "Another patient",
+        "these images say that they are of " + answer_->other_patient + "; nothing of them is kept");
   } else if (!read_only_.empty() && answer_ != nullptr) {
     widgets::status_row(ui, widgets::Severity::Caution, "Not kept", read_only_);
   }

@@ -35,7 +35,8 @@ PostopRun::PostopRun(const std::filesystem::path& case_folder, const std::filesy
             }
             auto answer = open_case::compare_with_postop(question);
             if (answer.was_stopped || inbox.stops()) return;
-            if (writes)
+            // What the case keeps of its own patient stays.
+            if (writes && answer.other_patient.empty())
               postop::write_achieved_file(achieved_file(case_folder), answer.comparisons, answer.places);
             progress.answer = std::make_shared<const open_case::PostopAnswer>(std::move(answer));
             inbox.publish(progress);

@@ -17,7 +17,7 @@ namespace arthronaut::sources {
 
 namespace {
 
-constexpr std::size_t kRememberedPictures = 32;  // 100 MB at 1080p
+constexpr std::size_t kRememberedPictures = 16;  // 50 MB at 1080p, and as much of what lies before them
 // A picture comes out of a decoder this many packets after its own at the latest: what may be put in order
 // (16), and as many threads.
 constexpr std::int64_t kLatest = 64;

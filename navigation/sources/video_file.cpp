@@ -20,7 +20,7 @@ namespace {
 constexpr double kFallbackFramesPerSecond = 60;
 // How much earlier it is tried again where a file's index leads to a key frame behind the wish.
 constexpr std::array<double, 4> kSeekBack_s{0, 1, 10, 60};
-constexpr std::size_t kRememberedPictures = 32;  // 100 MB at 1080p
+constexpr std::size_t kRememberedPictures = 16;  // 50 MB at 1080p, and as much of what lies before them
 
 class VideoFile : public FrameSource, public SeekableVideo {
  public:

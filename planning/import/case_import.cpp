@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "planning/cases/bone_doubts.h"
-#include "planning/cases/identity.h"
+#include "planning/cases/same_patient.h"
 #include "planning/cases/study.h"
 #include "planning/files/remove_file.h"
 #include "planning/files/utc_clock.h"
@@ -138,7 +138,7 @@ void save_doubts_of(const fs::path& folder, const BoneImport& import, cases::Bon
 // Another patient's bone in a case would be navigated by.
 void refuse_another_patient(const fs::path& folder, const cases::Identity& of_import) {
   const auto of_case = cases::load_identity(folder);
-  if (!of_case || of_import.is_empty() || *of_case == of_import) return;
+  if (!of_case || !cases::is_another_patient(*of_case, of_import)) return;
   throw InvalidInput(folder, "",
                      "is the knee of another patient (" + of_case->in_words() +
                          ") than what was to be added (" + of_import.in_words() + "); nothing was written");

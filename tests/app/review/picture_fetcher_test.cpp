@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -9,6 +10,7 @@
 #include <mutex>
 #include <random>
 #include <thread>
+#include <vector>
 
 #include "planning/geometry/error.h"
 
@@ -59,6 +61,22 @@ TEST(PictureFetcher, NeverLosesTheLastWish) {
     EXPECT_EQ(fetched->picture->timestamp_ns, wish * 1000);
   }
   EXPECT_GT(news.load(), 0);
+}
+
+// Pictures of 8 MB: what was looked at long ago is let go.
+TEST(PictureFetcher, KeepsFewPictures) {
+  std::vector<std::weak_ptr<const camera::Frame>> given;
+  const auto open = [&] {
+    return PictureReader{[&](const PictureWish& wish, const sources::OnTheWay&) {
+      const camera::FramePtr picture = number(wish.frame);
+      given.emplace_back(picture);
+      return picture;
+    }};
+  };
+  PictureFetcher fetcher(open, [] {});
+  for (std::int64_t wish = 0; wish < 30; ++wish) ASSERT_TRUE(wait_for(fetcher, wish));
+  EXPECT_LE(std::count_if(given.begin(), given.end(), [](const auto& one) { return !one.expired(); }), 7);
+  EXPECT_TRUE(fetcher.picture(wish_of(28)));
 }
 
 // An end that falls between the worker's test and its wait is not missed: else this would never return.

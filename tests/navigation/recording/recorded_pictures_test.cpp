@@ -124,7 +124,7 @@ TEST(RecordedPictures, NamesWhatIsPassedInACopiedVideo) {
   EXPECT_EQ(passed, all);
 }
 
-// Who goes back in a copied video decodes nothing anew: what was passed is remembered, 32 pictures of it, and
+// Who goes back in a copied video decodes nothing anew: what was passed is remembered, 16 pictures of it, and
 // what lies before that is read between two wishes.
 TEST(RecordedPictures, GoesBackInACopiedVideoByWhatItRemembers) {
   const test::TemporaryFolder folder;

@@ -75,7 +75,7 @@ TEST_F(StreamSession, NamesWhatIsPassedAndReadsBefore) {
     EXPECT_TRUE(same != given.end() && luma_of_picture(*picture) == same->second) << picture->index;
     return true;
   };
-  // The last is up to 44 pictures behind its key frame, of which 32 are remembered.
+  // The last is up to 44 pictures behind its key frame, of which 16 are remembered.
   auto at = std::prev(given.end());
   ASSERT_NE(pictures.picture(at->first, time_of(at->first), note), nullptr);
   std::mt19937 random(4);
