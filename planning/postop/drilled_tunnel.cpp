@@ -23,8 +23,8 @@ constexpr double kLeastDiameter_mm = 3.5, kMostDiameter_mm = 14;
 constexpr double kLeastSeen = 0.5;
 // Half of what is asked for: 0.3 mm and 0.5 deg, and where there is metal 0.6 mm and 1 deg.
 constexpr double kMostEntrySigma_mm = 0.15, kMostDirectionSigma_deg = 0.25, kMostDiameterSigma_mm = 0.15;
-// Through more blur than this (sigma, voxel included) bores come out too thin, by 0.3 mm and more.
-constexpr double kMostBlur_mm = 0.75;
+// How wide a bore is is known through as much blur as this (sigma, voxel included): there is no trial beyond.
+constexpr double kMostBlur_mm = 1.0;
 constexpr double kMostEntrySigmaByMetal_mm = 0.3, kMostDirectionSigmaByMetal_deg = 0.5;
 constexpr double kSomeMetal = 0.01;
 // Pieces of the bore lie off its axis by no more than this.

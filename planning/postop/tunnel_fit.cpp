@@ -81,6 +81,7 @@ class Fit {
   // `known`: not to be sought.
   TunnelFit run(const std::optional<WallProfile>& known) {
     if (known) profile_ = *known;
+    if (!profile_.has_rim()) profile_.blur_mm = WallProfile{}.blur_mm;
     if (!settle(kFirstBlur_mm)) return {};
     // The axis that is found with a rim tells better what the rim is.
     constexpr int kRounds = 3;
@@ -96,6 +97,7 @@ class Fit {
       for (double& radius : radius_) radius += seen.wall_mm + seems_nearer_mm(radius);
       if (!settle(profile_.blur_mm)) return {};
     }
+    if (!settle_radii()) return {};
     return result();
   }
 
@@ -109,6 +111,22 @@ class Fit {
       const double moved = improve(blur);
       if (!(moved < 1e3)) return false;
       if (blur == profile_.blur_mm && moved < 0.004) break;
+    }
+    take_levels(profile_.blur_mm);
+    return true;
+  }
+
+  // How wide a bore without a rim is follows from how much the images are blurred, which is seen; its axis
+  // does not, and would follow marrow that changes beside it. False where nothing is to be found.
+  bool settle_radii() {
+    if (profile_.has_rim() || wall_ == Wall::Screw || profile_.plain_blur_mm == 0) return true;
+    profile_.blur_mm = profile_.plain_blur_mm;
+    constexpr int kSteps = 12;
+    for (int step = 0; step < kSteps; ++step) {
+      take_levels(profile_.blur_mm);
+      const double moved = improve(profile_.blur_mm, Moves::Radii);
+      if (!(moved < 1e3)) return false;
+      if (moved < 0.004) break;
     }
     take_levels(profile_.blur_mm);
     return true;
@@ -279,12 +297,18 @@ class Fit {
     normal.diagonal().array() += 1e-3;
   }
 
+  enum class Moves { All, Radii };
   // One step; how far it went, mm.
-  double improve(double blur) {
+  double improve(double blur, Moves moves = Moves::All) {
     Eigen::MatrixXd normal;
     Eigen::VectorXd right;
     assemble(blur, normal, right);
-    Eigen::VectorXd change = normal.ldlt().solve(right);
+    const auto radii = static_cast<Eigen::Index>(stretches_);
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(4 + radii);
+    if (moves == Moves::All)
+      change = normal.ldlt().solve(right);
+    else
+      change.tail(radii) = normal.bottomRightCorner(radii, radii).ldlt().solve(right.tail(radii));
     constexpr double kMost_mm = 0.5;
     const double most = change.cwiseAbs().maxCoeff();
     if (!std::isfinite(most)) return std::numeric_limits<double>::infinity();

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kLeastPoints = 10;
 constexpr double kFirstBlur_mm = 0.45;
-constexpr double kLeastBlur_mm = 0.2, kMostBlur_mm = 1.0, kLeastRim_mm = 0.3, kMostRim_mm = 2,
-                 kMostOff_mm = 1.4;
+constexpr double kLeastBlur_mm = 0.2, kMostBlur_mm = 1.0, kMostPlainBlur_mm = 1.3, kLeastRim_mm = 0.3,
+                 kMostRim_mm = 2, kMostOff_mm = 1.4;
 // Points nearer than this tell the same.
 constexpr double kApart_mm = 0.25;
 // A rim stands out from both sides by so much, and is no denser than cortex. One thinner than the least
@@ -24,11 +24,12 @@ double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI); 
 
 struct Shape {
   double wall_mm, blur_mm, rim_mm;
+  bool is_sloping = false;  // what is beyond the wall changes evenly with the distance from it
 };
 
 struct Explained {
   Shape shape;
-  Eigen::Vector3d levels;  // HU: inside, rim, beyond
+  Eigen::Vector3d levels;  // HU: inside, rim (or the slope in HU/mm), beyond
   double unexplained;      // sum of squares, weights of mean 1
 };
 
@@ -52,6 +53,9 @@ class Explanation {
     return best;
   }
 
+  // A wall without a rim.
+  [[nodiscard]] Explained sloping() const { return descended({0, kFirstBlur_mm, 0, true}); }
+
  private:
   // The best levels for a shape.
   [[nodiscard]] Explained levelled(const Shape& shape) const {
@@ -61,7 +65,8 @@ class Explanation {
     double squares = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const WallGrey grey = wall_grey(points_[i].off_mm - shape.wall_mm, shape.rim_mm, shape.blur_mm);
-      const Eigen::Vector3d row(grey.inside, grey.rim, grey.beyond);
+      const Eigen::Vector3d row(grey.inside, shape.is_sloping ? past_mm(points_[i].off_mm, shape) : grey.rim,
+                                grey.beyond);
       normal += weights_[i] * row * row.transpose();
       right += weights_[i] * points_[i].hu * row;
       squares += weights_[i] * points_[i].hu * points_[i].hu;
@@ -71,6 +76,12 @@ class Explanation {
     const bool is_rim = levels[1] > std::max(levels[0], levels[2]) + kRimStep_hu && levels[1] < kMostRim_hu;
     if (shape.rim_mm > 0 && !is_rim) explained.unexplained = std::numeric_limits<double>::infinity();
     return explained;
+  }
+
+  // How far beyond the wall, as seen through the blur.
+  [[nodiscard]] static double past_mm(double off_mm, const Shape& shape) {
+    const double z = (off_mm - shape.wall_mm) / shape.blur_mm;
+    return shape.blur_mm * (z * cumulated(z) + density(z));
   }
 
   // By ever smaller steps of the wall and of the blur.
@@ -84,7 +95,7 @@ class Explanation {
           Shape shape = now.shape;
           (way < 2 ? shape.wall_mm : shape.blur_mm) += way < 2 ? by : 0.5 * by;
           if (std::abs(shape.wall_mm) > kMostOff_mm || shape.blur_mm < kLeastBlur_mm ||
-              shape.blur_mm > kMostBlur_mm)
+              shape.blur_mm > (shape.is_sloping ? kMostPlainBlur_mm : kMostBlur_mm))
             continue;
           const Explained tried = levelled(shape);
           if (!(tried.unexplained < now.unexplained * (1 - 1e-6))) continue;
@@ -147,7 +158,7 @@ WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu, 
               : plain;
   WallProfile profile{.wall_mm = taken.shape.wall_mm,
                       .blur_mm = taken.shape.blur_mm,
-                      .plain_blur_mm = plain.shape.blur_mm,
+                      .plain_blur_mm = explanation.sloping().shape.blur_mm,
                       .wall_sigma_mm = std::hypot(std::sqrt(variance), taken.shape.wall_mm - mean_mm)};
   if (has_rim) {
     profile.rim_mm = taken.shape.rim_mm;

@@ -17,7 +17,9 @@ struct WallProfile {
   double wall_mm = 0;             // where the wall is
   double rim_mm = 0, rim_hu = 0;  // 0: no rim
   double blur_mm = 0.5;           // sigma of the scanner's, voxel included
-  double plain_blur_mm = 0;  // by which a wall without a rim would look most like this; 0: not looked for
+  // By which a wall without a rim would look most like this, in marrow that may change evenly away from it;
+  // 0: not looked for.
+  double plain_blur_mm = 0;
   // One sigma of `wall_mm`, by that rims of other thicknesses, or none, explain the same as well or nearly.
   double wall_sigma_mm = 0;
 

@@ -11,6 +11,7 @@ namespace {
 
 struct Wall3 {
   double wall_mm = 0, rim_mm = 0, rim_hu = 0, blur_mm = 0.4;
+  double slope_hu_per_mm = 0;  // beyond the wall
 };
 
 // As of a tunnel: some 1000 voxels to a point, their noise 25 HU; 60 HU inside, 160 beyond.
@@ -20,8 +21,10 @@ std::vector<WallPoint> points_of(const Wall3& truth) {
   std::vector<WallPoint> points;
   for (double off_mm = -1.7; off_mm < 3; off_mm += 0.2) {
     const WallGrey grey = wall_grey(off_mm - truth.wall_mm, truth.rim_mm, truth.blur_mm);
-    points.push_back(
-        {off_mm, 60 * grey.inside + truth.rim_hu * grey.rim + 160 * grey.beyond + noise(random), 1000});
+    points.push_back({off_mm,
+                      60 * grey.inside + truth.rim_hu * grey.rim + 160 * grey.beyond +
+                          truth.slope_hu_per_mm * std::max(0.0, off_mm - truth.wall_mm) + noise(random),
+                      1000});
   }
   return points;
 }
@@ -52,6 +55,16 @@ TEST(WallProfile, AThinRimIsKnownTheLessTheMoreItIsBlurred) {
   EXPECT_GT(blurred.wall_sigma_mm, 2 * sharp.wall_sigma_mm);
   for (const WallProfile& seen : {sharp, blurred})
     EXPECT_LT(std::abs(seen.wall_mm - 0.2), 3 * seen.wall_sigma_mm + 0.02) << seen.blur_mm;
+}
+
+// Marrow that is denser towards the cortex was taken for blur, and such tunnels were refused.
+TEST(WallProfile, MarrowThatChangesBesideTheWallIsNoBlur) {
+  for (const double blur_mm : {0.4, 0.8})
+    for (const double slope : {0.0, 15.0, 30.0})
+      EXPECT_NEAR(
+          explain_wall(points_of({.blur_mm = blur_mm, .slope_hu_per_mm = slope}), 25, 4).plain_blur_mm,
+          blur_mm, 0.1)
+          << blur_mm << " mm, " << slope << " HU/mm";
 }
 
 TEST(WallProfile, TooFewPointsTellNothing) {
