@@ -17,12 +17,24 @@ constexpr double kEntryReach_mm = 10;
 // The cortex is looked for from here to there under the surface.
 constexpr double kFrom_mm = 0.3, kTo_mm = 2.1, kStep_mm = 0.3;
 constexpr double kLeastSoft_hu = -100;
+constexpr double kShine_mm = 1.5;  // of metal through the blur
 constexpr int kTurns = 16;
 constexpr double kLeastStep_hu = 30;  // of the grey where a bore ends
 
 struct Column {
   double most_hu = 0, outside_hu = 0;
+  bool is_by_metal = false;
 };
+
+// What metal shines over is as bright as cortex.
+bool is_by_metal(const images::VolumeSampler& postop, const geometry::RigidTransform& postop_from_plan,
+                 const Vector3d& place, const Vector3d& inward) {
+  const Vector3d u = kShine_mm * inward.unitOrthogonal(), v = inward.cross(u);
+  for (double t = 0; t <= kTo_mm + kShine_mm; t += kStep_mm)
+    for (const Vector3d& off : {Vector3d(Vector3d::Zero()), u, v, Vector3d(-u), Vector3d(-v)})
+      if (postop.at(postop_from_plan * (place + t * inward + off)) > kMetal_hu) return true;
+  return false;
+}
 
 std::optional<Column> column_at(const images::VolumeSampler& postop,
                                 const geometry::RigidTransform& postop_from_plan,
@@ -40,6 +52,7 @@ std::optional<Column> column_at(const images::VolumeSampler& postop,
     if (std::isfinite(v)) column.most_hu = std::max(column.most_hu, v);
   }
   column.outside_hu = postop.at(postop_from_plan * (entry->point_mm - 2 * inward));
+  column.is_by_metal = is_by_metal(postop, postop_from_plan, entry->point_mm, inward);
   if (column.most_hu < -9e3 || !std::isfinite(column.outside_hu)) return std::nullopt;
   return column;
 }
@@ -93,7 +106,7 @@ SeenMouth mouth_at(const images::VolumeSampler& postop, const geometry::RigidTra
   mouth.step_hu = hard - soft;
   for (const Column& column : disc)
     mouth.open_share +=
-        (column.most_hu < level || column.most_hu > kMetal_hu ? 1.0 : 0.0) / static_cast<double>(disc.size());
+        (column.most_hu < level || column.is_by_metal ? 1.0 : 0.0) / static_cast<double>(disc.size());
   for (const Column& column : ring)
     mouth.closed_share += (column.most_hu >= level ? 1.0 : 0.0) / static_cast<double>(ring.size());
   return mouth;
