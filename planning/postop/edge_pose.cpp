@@ -135,12 +135,28 @@ Matrix6d step(const std::vector<Seen>& edges, double scale_mm, const Vector3d& c
   return normal;
 }
 
-// Of the fit of a pose, a strain, an offset all over (another threshold, another scanner), and an offset
-// where the cortex is thin, at once: through the scanner's blur a thin cortex is lower, and half-way down
-// lies further out. Where it is thin differs from place to place, which would pass for a strain.
+// Sum of both curvatures, 1/mm, convex positive, as the edges about it tell; 0 where they are too few.
+double curvature_at(const Seen& edge, const std::vector<Seen>& edges) {
+  constexpr double kNear_mm = 4, kTooNear_mm = 0.2, kMost = 0.8;
+  double sum = 0;
+  int count = 0;
+  for (const Seen& other : edges) {
+    const Vector3d apart = other.q - edge.q;
+    const double square = apart.squaredNorm();
+    if (square < kTooNear_mm * kTooNear_mm || square > kNear_mm * kNear_mm) continue;
+    sum += (other.normal - edge.normal).dot(apart) / square;
+    ++count;
+  }
+  return count > 3 ? std::clamp(2 * sum / count, -kMost, kMost) : 0;
+}
+
+// Of the fit of a pose, a strain, an offset all over (another threshold, another scanner), one by how curved
+// the surface is (a blurred convex edge lies further in), and an offset where the cortex is thin, at once:
+// through the scanner's blur a thin cortex is lower, and half-way down lies further out. Where it is thin
+// differs from place to place, which would pass for a strain.
 double stretch_of(const std::vector<Seen>& edges, double most_mm) {
-  using Row = Eigen::Matrix<double, 14, 1>;
-  Eigen::Matrix<double, 14, 14> normal = Eigen::Matrix<double, 14, 14>::Identity() * 1e-9;
+  using Row = Eigen::Matrix<double, 15, 1>;
+  Eigen::Matrix<double, 15, 15> normal = Eigen::Matrix<double, 15, 15>::Identity() * 1e-9;
   Row right = Row::Zero();
   const Vector3d center = middle_of(edges);
   constexpr double kUnit_mm = 40;  // keeps the columns alike
@@ -153,7 +169,7 @@ double stretch_of(const std::vector<Seen>& edges, double most_mm) {
     Row row;
     row << n, x.cross(n), n.x() * x.x(), n.y() * x.y(), n.z() * x.z(), n.x() * x.y() + n.y() * x.x(),
         n.y() * x.z() + n.z() * x.y(), n.z() * x.x() + n.x() * x.z(), 1,
-        std::max(0.0, 1 - edge.height_hu / full);
+        std::max(0.0, 1 - edge.height_hu / full), curvature_at(edge, edges);
     normal += row * row.transpose();
     right += edge.outward_mm * row;
   }

@@ -96,6 +96,21 @@ TEST(BonePose, AnUnevenCortexIsNoOtherBoneAndHidesNone) {
   }
 }
 
+// Blur rounds the plateau's edge, as if the bone were narrower than it was: it is the patient's all the same,
+// and one that is narrower or lower by a hundredth is not.
+TEST(BonePose, ABlurThatRoundsItsEdgesIsNoOtherBone) {
+  const RigidTransform truth = test::lying(20, {1, 2, 3}, {30, -20, 60});
+  test::KnownCtOptions options = half_fine();
+  options.blur_mm = 0.8;
+  const auto volume = test::postop_ct({knee().tibia.mesh}, {}, truth, options);
+  const FoundBone found = found_in(volume, knee(), bones::BoneKind::Tibia);
+  EXPECT_TRUE(found.reliable) << testing::PrintToString(found.reasons);
+  EXPECT_LT(found.pose.stretch, 0.003);
+  auto other = knee();
+  for (Eigen::Vector3d& p : other.tibia.mesh.vertices_mm) p *= 1.01;
+  EXPECT_FALSE(found_in(volume, other, bones::BoneKind::Tibia).reliable);
+}
+
 // Other knees, so much alike that nearly all of their surface lies within 1 mm of this one's; and the other
 // side's.
 TEST(BonePose, AnotherPatientsBoneIsNotReliable) {
