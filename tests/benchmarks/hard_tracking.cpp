@@ -2,15 +2,19 @@
 // ArUco. Thresholds are set on even seeds; odd seeds are only ever printed as totals. Prints the tables of
 // docs/benchmarks.md.
 //
-//   hard_tracking [--clips N] [--frames N] [--only KIND] [--half set|report] [--cache FOLDER] [--aruco]
-//                 [--each]   every lost or wrong marker of the even seeds
+//   hard_tracking [--first CLIP] [--clips N] [--frames N] [--only KIND] [--half set|report] [--cache FOLDER]
+//                 [--jobs N]  clips at a time, each on a core of its own
+//                 [--aruco]
+//                 [--each]    every lost or wrong marker of the even seeds
 #include <Eigen/LU>
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <cstring>
 #include <map>
-#include <set>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "planning/geometry/quantile.h"
 #include "tests/benchmarks/aruco_tracker.h"
@@ -21,7 +25,7 @@ namespace arthronaut::hard_clips {
 namespace {
 
 struct Choice {
-  int clips = 3, frames = 40;
+  int first = 0, clips = 3, frames = 40, jobs = 1;
   std::string only, half;
   std::filesystem::path cache;
   bool with_aruco = false, tells_each = false;
@@ -42,7 +46,7 @@ struct Count {
 std::string percent(const Count& count) {
   if (count.shown == 0) return "-";
   char text[32];
-  std::snprintf(text, sizeof text, "%.1f", 100.0 * count.found / count.shown);
+  std::snprintf(text, sizeof text, "%.1f of %d", 100.0 * count.found / count.shown, count.shown);
   return text;
 }
 
@@ -158,29 +162,53 @@ Tally track_clip(const ClipRecipe& recipe, const Choice& choice, TrackerMaker ma
   return tally;
 }
 
-int run(const Choice& choice) {
+struct Work {
+  ClipRecipe recipe;
+  Tally tally = {};
+};
+
+// The clips of a half, the longest first, by as many threads as there are jobs.
+std::vector<Work> track_clips(std::uint64_t odd, const Choice& choice, TrackerMaker make) {
+  std::vector<Work> clips;
+  for (const Hardness hardness : kAllHardness) {
+    if (!choice.only.empty() && choice.only != to_text(hardness)) continue;
+    for (int k = choice.first; k < choice.first + choice.clips; ++k)
+      clips.push_back({recipe_of(hardness, 2 * static_cast<std::uint64_t>(k) + odd, choice.frames)});
+  }
+  std::stable_sort(clips.begin(), clips.end(),
+                   [](const Work& l, const Work& r) { return l.recipe.height > r.recipe.height; });
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::jthread> threads;
+  for (int job = 0; job < choice.jobs; ++job) {
+    threads.emplace_back([&] {
+      for (std::size_t at = next++; at < clips.size(); at = next++)
+        clips[at].tally = track_clip(clips[at].recipe, choice, make);
+    });
+  }
+  threads.clear();  // joins them
+  return clips;
+}
+
+void run(const Choice& choice) {
   std::vector<std::pair<const char*, TrackerMaker>> trackers = {{"own", markers::make_tracker}};
   if (choice.with_aruco) trackers.emplace_back("ArUco", markers::make_aruco_tracker);
   print_header();
   for (const std::uint64_t odd : {0, 1}) {
     const char* half = odd ? "report" : "set";
     if (!choice.half.empty() && choice.half != half) continue;
-    std::vector<Tally> all(trackers.size());
-    for (const Hardness hardness : kAllHardness) {
-      if (!choice.only.empty() && choice.only != to_text(hardness)) continue;
-      for (std::size_t t = 0; t < trackers.size(); ++t) {
+    for (const auto& [name, make] : trackers) {
+      const std::vector<Work> clips = track_clips(odd, choice, make);
+      Tally all;
+      for (const Hardness hardness : kAllHardness) {
         Tally tally;
-        for (int k = 0; k < choice.clips; ++k) {
-          const auto recipe = recipe_of(hardness, 2 * static_cast<std::uint64_t>(k) + odd, choice.frames);
-          tally += track_clip(recipe, choice, trackers[t].second);
-        }
-        print_row(half, to_text(hardness), trackers[t].first, tally);
-        all[t] += tally;
+        for (const Work& clip : clips)
+          if (clip.recipe.hardness == hardness) tally += clip.tally;
+        if (tally.markers > 0) print_row(half, to_text(hardness), name, tally);
+        all += tally;
       }
+      print_row(half, "all", name, all);
     }
-    for (std::size_t t = 0; t < trackers.size(); ++t) print_row(half, "all", trackers[t].first, all[t]);
   }
-  return 0;
 }
 
 }  // namespace
@@ -195,6 +223,10 @@ int main(int argc, char** argv) {
       choice.with_aruco = true;
     } else if (option == "--each") {
       choice.tells_each = true;
+    } else if (option == "--first" && has_value) {
+      choice.first = std::atoi(argv[++i]);
+    } else if (option == "--jobs" && has_value) {
+      choice.jobs = std::atoi(argv[++i]);
     } else if (option == "--clips" && has_value) {
       choice.clips = std::atoi(argv[++i]);
     } else if (option == "--frames" && has_value) {
@@ -207,11 +239,12 @@ int main(int argc, char** argv) {
       choice.cache = argv[++i];
     } else {
       std::fprintf(stderr,
-                   "usage: hard_tracking [--clips N] [--frames N] [--only KIND] [--half set|report] "
-                   "[--cache FOLDER] [--aruco] [--each]\n");
+                   "usage: hard_tracking [--first CLIP] [--clips N] [--frames N] [--only KIND] "
+                   "[--half set|report] [--cache FOLDER] [--jobs N] [--aruco] [--each]\n");
       return 2;
     }
   }
   if (!choice.cache.empty()) std::filesystem::create_directories(choice.cache);
-  return arthronaut::hard_clips::run(choice);
+  arthronaut::hard_clips::run(choice);
+  return 0;
 }

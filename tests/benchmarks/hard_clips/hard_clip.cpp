@@ -210,7 +210,7 @@ void HardClip::State::draw_light(double field_delay_s) {
       for (int s = 0; s < samples; ++s) {
         const auto part = [s](double shift, double step) {
           const double value = shift + s * step;
-          return value - std::floor(value);
+          return value - static_cast<int>(value);
         };
         const Eigen::Vector2f place = ray + static_cast<float>(part(a, 0.7548776662) - 0.5) * right +
                                       static_cast<float>(part(b, 0.5698402910) - 0.5) * below;
