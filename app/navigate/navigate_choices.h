@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/navigate/hindrance.h"
 #include "app/navigate/navigate_display.h"
 #include "app/navigate/reached_plan.h"
 #include "navigation/operation/operation_state.h"
@@ -36,6 +37,7 @@ struct NavigateChoices {
   std::optional<operation::Step> looked_at;     // the surgeon went back to it; empty: the one of now
   std::string next;                             // what is asked of the surgeon now
   double next_since_s = 0;                      // and since when
+  SteadyWords missing;                          // what that waits for
   bool goes_to_other_bone = false;              // once the source has ended
   bool shows_menu = false, shows_more = false;  // of the menu its second page
   ReachedPlan reached;

@@ -103,6 +103,19 @@ std::string NavigateView::next_step() {
   return (have_ended ? "the pictures have ended: " : "") + words_of_start();
 }
 
+std::string NavigateView::missing_now(const Rail& rail) {
+  const bool asks_otherwise = model_ == nullptr || cameras_.is_open() || left_behind() != nullptr ||
+                              resume_.is_looking() || choices_.goes_to_other_bone || !lent_step().empty();
+  if (asks_otherwise) return "";
+  if (choices_.looked_at) return hindrance_of(rail[static_cast<std::size_t>(*choices_.looked_at)], true);
+  if (finishes()) return "";
+  const bool has_pictures = is_running() && !awaits_picture(*live_) && words_without_pictures().empty();
+  if (has_pictures && !is_in_wrong_medium())
+    if (const std::string words = hindrance_of(*live_->operation, live_->trouble); !words.empty())
+      return words;
+  return hindrance_of(rail[static_cast<std::size_t>(step_of_now(rail))], false);
+}
+
 std::string NavigateView::words_of_start() const {
   const bool stands = registration().in_force.standing == operation::Standing::Stands;
   if (simulates()) return stands ? "drill (simulation)" : "start the simulated operation";
@@ -285,7 +298,8 @@ bool NavigateView::takes_guide_in_simulation() const {
 
 bool NavigateView::must_set_up() const {
   if (simulates() || live_->operation->source != nullptr) return false;
-  return !choices_.has_camera_file || !choices_.tools;
+  const operation::Step now = step_of_now(rail());
+  return now == operation::Step::Calibrate || now == operation::Step::Tools;
 }
 
 RailContext NavigateView::rail_context() const {

@@ -49,6 +49,7 @@ void NavigateView::note_states(const widgets::Ui& ui, const NavigateScreen& scre
                                                               : "off");
   ui.log.note_state("view", choices_.undistorts ? "undistorted" : "as it came");
   ui.log.note_state("next", screen.next_step);
+  ui.log.note_state("missing", screen.missing);
   ui.log.note_state("calibration", screen.has_source() ? screen.live->operation->source->calibration : "");
   ui.log.note_state("notice", notice_);
   ui.log.note_state("layout", screen.layout == NavigateLayout::Register ? "register" : "guide");

@@ -310,6 +310,7 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
     for (RailStep& step : screen.rail)
       if (step.state == StepState::Now) step.state = StepState::Open;
   screen.looked_at = choices_.looked_at;
+  screen.missing = choices_.missing.follow(missing_now(screen.rail), now_s);
   screen.patient = patient_;
   follow_reached(display, now_s);
   screen.reached_for_s = choices_.reached.since(now_s);
@@ -357,6 +358,7 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const double now = theatre::LiveOperation::now_s();
   NavigateDisplay display = display_of(live_.get(), now);
   const bool was_refused = is_lent_ && now - refused_s_ < kRefusal_s;
+  if (live_->phase == Phase::NoSource && !pedal_acts()) display.detail.clear();
   if ((live_->phase == Phase::NoSource || was_refused) && !notice_.empty()) display.detail = notice_;
   if (!live_->operation->plan && model_ != nullptr && bones_.must_choose(choices_.bone))
     display.detail = "Two tunnels are planned in this bone: choose AM (1) or PL (2)";

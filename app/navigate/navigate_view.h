@@ -120,6 +120,8 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] bool refuses_while_lent();  // and says so
   void look_along_plan();
   [[nodiscard]] std::string next_step();
+  // What that waits for; empty: nothing, or next_step() says it.
+  [[nodiscard]] std::string missing_now(const Rail& rail);
   [[nodiscard]] std::string lent_step() const { return is_lent_ && lent_step_ ? lent_step_() : ""; }
   [[nodiscard]] bool can_simulate() const;
   [[nodiscard]] bool is_running() const;

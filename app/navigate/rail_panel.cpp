@@ -88,9 +88,22 @@ void draw_words(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
     draw.AddRectFilled(badge.min(), badge.max(), IM_COL32(28, 74, 104, 255), ui.theme.px(6));
     draw.AddText(small, small->FontSize, {badge.x + ui.theme.px(10), badge.y}, widgets::kText, key);
   }
-  std::string words = screen.next_step;
-  if (!words.empty()) words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
-  widgets::draw_afar(ui, inner, widgets::kText, words);
+  const auto sentence = [](std::string words) {
+    if (!words.empty()) words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+    return words;
+  };
+  // What is missing stands below what is to be done, and takes its room first: it may be why nothing goes on.
+  if (!screen.missing.empty()) {
+    const std::string missing = sentence(screen.missing);
+    const float sign = ui.theme.afar->FontSize;
+    (void)inner.cut_bottom(ui.theme.px(6));
+    widgets::Rect foot = inner.cut_bottom(
+        std::min(widgets::afar_height(ui, inner.width - sign, missing), inner.height * 0.6F));
+    widgets::draw_sign(draw, {foot.x + sign * 0.4F, foot.y + sign / 2}, sign * 0.36F, Severity::Caution);
+    (void)foot.cut_left(sign);
+    widgets::draw_afar(ui, foot, widgets::kCaution, missing);
+  }
+  widgets::draw_afar(ui, inner, widgets::kText, sentence(screen.next_step));
 }
 
 void draw_reason(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
