@@ -22,6 +22,7 @@
 
 #include "navigation/camera/frame.h"
 #include "navigation/pipeline/picture_seam.h"
+#include "navigation/pipeline/repeated_pictures.h"
 #include "navigation/pipeline/standing_parts.h"
 #include "navigation/pipeline/torn_picture.h"
 
@@ -42,7 +43,7 @@ class FrozenPicture {
   struct Signs {
     bool is_blank = false;      // one grey all over: no light, or no signal
     bool is_torn = false;       // see torn_picture.h
-    bool is_repeating = false;  // repeats for 60 ms, twice more than its way is: perhaps about to freeze
+    bool is_repeating = false;  // perhaps about to freeze: see repeated_pictures.h
     double repeat_share = 0;    // of the frames of the last half second
   };
   [[nodiscard]] const Signs& signs() const { return signs_; }
@@ -53,33 +54,24 @@ class FrozenPicture {
   [[nodiscard]] double noise() const { return noise_; }
 
  private:
-  static constexpr int kColumns = TornPicture::kColumns, kRows = TornPicture::kRows, kMostFrames = 128;
+  static constexpr int kColumns = TornPicture::kColumns, kRows = TornPicture::kRows;
   using Tiles = std::array<float, static_cast<std::size_t>(kColumns) * kRows>;
-  struct Step {
-    std::int64_t timestamp_ns = 0;
-    bool repeats = false;
-  };
 
   void sample(const camera::GrayView& picture);
   [[nodiscard]] Tiles difference(const std::vector<std::uint8_t>& other) const;
   void learn_noise(Tiles step);
-  [[nodiscard]] double share_of_repeats(std::int64_t since_ns) const;
   [[nodiscard]] bool is_blank() const;
 
   double frozen_after_s_;
   int width_ = 0, height_ = 0, row_count_ = 0;
   std::vector<std::uint8_t> now_, before_, anchor_;  // the sampled rows
   std::int64_t anchor_ns_ = 0, last_ns_ = 0;         // since when no tile has left its place
-  std::array<Step, kMostFrames> steps_{};            // a ring of the newest
-  std::size_t step_count_ = 0;
   double noise_ = -1;
+  bool is_frozen_ = false;
   PictureSeam seam_;
   StandingParts standing_;
   TornPicture torn_;
-  struct Row {  // of repeats
-    int count = 0;
-    std::int64_t since_ns = 0;
-  } row_;
+  RepeatedPictures repeated_;
   Signs signs_;
 };
 

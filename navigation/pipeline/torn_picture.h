@@ -13,6 +13,10 @@
 // that was lost does not, as soon as the scope moves. With a seam the picture is torn until the part is
 // renewed, however long that takes. Without one, more than three on end are a codec's, and repeating tiles
 // alone tell nothing for a while; a marker in such a part is judged by itself (standing_parts.h).
+//
+// An encoder that is given torn pictures refines what was not renewed, and little is left of the repeat and
+// of the seam. What it leaves is the stop: everything in one end of the picture that moved until the picture
+// before stands still in this one, while the other end moves on. No hand does that.
 #pragma once
 
 #include <array>
@@ -38,10 +42,15 @@ class TornPicture {
  private:
   enum class RowState { Unknown, Repeats, Moves, Mixed };
   using RowStates = std::array<RowState, kRows>;
+  // Whether the rows, from above, are of the one state and then of the other, but for one between them.
+  [[nodiscard]] static bool is_parted(std::span<const RowState> rows, RowState above, RowState below);
   [[nodiscard]] RowState state_of(std::span<const float, kColumns> step, std::size_t first_tile) const;
   [[nodiscard]] bool is_still_stale(const RowStates& rows);
+  // In one end alone, from the picture before to this one.
+  [[nodiscard]] bool has_stopped(Steps step);
 
   std::array<float, kColumns * kRows> noise_{};  // 0: not known
+  std::array<float, kRows> moved_{};             // of each row what changed most in the picture before
   int torn_in_a_row_ = 0;
   bool has_seam_ = false;  // of those in a row
   std::int64_t not_before_ns_ = 0;

@@ -13,6 +13,11 @@ namespace {
 
 class SourceFaults : public ::testing::Test {
  protected:
+  static std::vector<Fault> all_faults() {
+    std::vector<Fault> faults;
+    for (int i = 0; i < kFaultCount; ++i) faults.push_back(static_cast<Fault>(i));
+    return faults;
+  }
   static void expect_told_and_overcome(std::vector<Fault> faults, const std::string& codec) {
     constexpr unsigned kSeed = 13;
     constexpr double kLasts_s = 0.8, kPatience_s = 20;
@@ -38,18 +43,14 @@ class SourceFaults : public ::testing::Test {
   }
 };
 
-TEST_F(SourceFaults, AreToldAndOvercome) {
-  std::vector<Fault> faults;
-  for (int i = 0; i < kFaultCount; ++i) faults.push_back(static_cast<Fault>(i));
-  expect_told_and_overcome(faults, "jpeg");
-}
+TEST_F(SourceFaults, AreToldAndOvercome) { expect_told_and_overcome(all_faults(), "jpeg"); }
 
-// Read picture by picture (rtsp_pictures.h). What a codec makes of torn and of repeated pictures is neither
-// for long: those are not told of every such stream.
+// Read picture by picture (rtsp_pictures.h), torn before they are coded. Of repeated ones the codec refines
+// the first, and what is left is not always told.
 TEST_F(SourceFaults, OfAnH264StreamAreToldAndOvercome) {
-  expect_told_and_overcome({Fault::Killed, Fault::Hangs, Fault::Stalled, Fault::OtherCodec, Fault::OtherSize,
-                            Fault::Black, Fault::Frozen},
-                           "h264");
+  std::vector<Fault> faults = all_faults();
+  std::erase(faults, Fault::Repeated);
+  expect_told_and_overcome(faults, "h264");
 }
 
 }  // namespace

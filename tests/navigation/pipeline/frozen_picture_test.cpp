@@ -183,7 +183,7 @@ TEST(FrozenPicture, IsSuspectedWithin80MsAtEveryRate) {
 TEST(FrozenPicture, IsNotSuspectedForARepeatingConverter) {
   for (const SentAs sent : {SentAs{60, 2}, SentAs{60, 4}, SentAs{30, 2}})
     EXPECT_LE(seconds_until_repeating(sent, 3), 0.17) << sent.rate << ' ' << sent.times;
-  EXPECT_LE(seconds_until_repeating({30, 1}, 0.3), 0.17);
+  EXPECT_LE(seconds_until_repeating({30, 1}, 0.3), 0.08);
 }
 
 }  // namespace

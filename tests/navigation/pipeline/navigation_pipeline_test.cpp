@@ -286,7 +286,7 @@ TEST_F(NavigationPipeline, ZoomUnknownMakesEveryPoseInvalidInThatFrame) {
   };
   using lens::ZoomState;
   expect(test::plain_frame(0, 90), ZoomState::Unknown, false);  // never seen
-  for (int i = 1; i < 6; ++i) expect(test::round_frame(i, 90), ZoomState::AsCalibrated, true);
+  for (int i = 1; i < 6; ++i) expect(test::round_frame(i, 90 + 2 * i), ZoomState::AsCalibrated, true);
   for (int i = 6; i < 9; ++i) expect(test::plain_frame(i, 90), ZoomState::Unknown, false);
   for (int i = 9; i < 12; ++i) expect(test::round_frame(i, 90), ZoomState::AsCalibrated, true);
   camera::Frame smaller = test::plain_frame(12, 0);  // the same picture, zoomed out by a tenth

@@ -1,0 +1,142 @@
+// By how much the tile changed that changed most, picture by picture, as measured of encoded streams.
+#include "navigation/pipeline/repeated_pictures.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace arthronaut::pipeline {
+namespace {
+
+constexpr double kNoise = 2.1;
+
+// A source of so many pictures a second.
+class Source {
+ public:
+  explicit Source(int rate) : rate_(rate) { repeated_.begin(0); }
+  bool give(double largest) {
+    (void)repeated_.observe(largest, kNoise, ++frame_ * 1'000'000'000LL / rate_);
+    return repeated_.is_suspected();
+  }
+  // A live scene in motion.
+  void live(int count) {
+    std::uniform_real_distribution<double> motion(10.5, 14.5);
+    for (int i = 0; i < count; ++i) EXPECT_FALSE(give(motion(random_))) << i;
+  }
+  // Milliseconds from the first of these until it is suspected, counted to the picture that tells; it stays
+  // so to the last. -1: never.
+  double suspected_after_ms(const std::vector<double>& steps) {
+    double after_ms = -1;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const bool is_suspected = give(steps[i]);
+      EXPECT_FALSE(after_ms >= 0 && !is_suspected) << "it hangs still, " << i;
+      if (is_suspected && after_ms < 0) after_ms = 1000.0 * static_cast<double>(i + 1) / rate_;
+    }
+    return after_ms;
+  }
+
+ private:
+  int rate_;
+  long frame_ = 0;
+  std::mt19937 random_{7};
+  RepeatedPictures repeated_;
+};
+
+// What openh264 makes of a picture that hangs: it refines it, and codes it anew every 15 pictures. `until`
+// the first key frame.
+std::vector<double> hanging_h264(int until) {
+  std::vector<double> steps{0.79};
+  while (steps.size() < 120) {
+    const int after_key = (static_cast<int>(steps.size()) - until + 150) % 15;
+    const bool is_first = static_cast<int>(steps.size()) < until + 15;
+    const std::vector<double> refined{is_first ? 2.47 : 0.69, 0.62, 0.18, 0.06};
+    steps.push_back(static_cast<std::size_t>(after_key) < refined.size()
+                        ? refined[static_cast<std::size_t>(after_key)]
+                        : 0);
+  }
+  if (until == 0) steps[0] = 2.47;
+  return steps;
+}
+
+// Guidance is to be gone a tenth of a second after the source hangs, and to stay away: each key frame of the
+// hanging picture changes all of it by as much as noise does.
+TEST(RepeatedPictures, OfAnEncoderThatRefinesAPictureThatHangsAreTold) {
+  for (int until = 0; until < 15; ++until) {
+    Source source(30);
+    source.live(60);
+    const double after_ms = source.suspected_after_ms(hanging_h264(until));
+    EXPECT_GT(after_ms, 0) << until;
+    EXPECT_LE(after_ms, 101) << until;
+  }
+}
+
+// x264 at CRF 28, 60 pictures a second, of a scope whose mask hides how much noise there is.
+TEST(RepeatedPictures, OfACoarseEncoderAreToldByTheStop) {
+  Source source(60);
+  source.live(60);
+  EXPECT_LE(source.suspected_after_ms({1.0, 0.89, 0.40, 0.31, 0.31, 0.14, 0.09, 0.06, 0.09, 0.04}), 84);
+}
+
+// Before anything is known of the source, and after it hung a moment ago.
+TEST(RepeatedPictures, AreToldAtOnceAlsoOfASourceThatIsNotKnown) {
+  Source source(30);
+  source.live(3);
+  EXPECT_LE(source.suspected_after_ms({0, 0, 0, 0, 0}), 67);
+  source.live(6);
+  EXPECT_LE(source.suspected_after_ms({0, 0, 0, 0, 0}), 101);
+}
+
+// A habit is none once what it shows on is older than may guide.
+TEST(RepeatedPictures, ThatAreTooOldAreToldWhateverTheHabit) {
+  Source source(30);
+  source.live(20);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_FALSE(source.give(12));
+    for (int repeat = 0; repeat < 4; ++repeat) {
+      const bool is_suspected = source.give(0);
+      EXPECT_TRUE(repeat < 2 || is_suspected) << repeat;
+    }
+  }
+}
+
+// A scope that comes to rest keeps its noise, also where a codec takes most of it away; a probe's tip that is
+// stopped by the bone leaves that of the scope.
+TEST(RepeatedPictures, OfAScopeThatComesToRestAreNone) {
+  for (const double noise : {0.5, 0.8, 1.2, 2.0, 5.0}) {
+    Source source(60);
+    source.live(60);
+    std::uniform_real_distribution<double> rest(noise, 1.2 * noise);
+    std::mt19937 random(3);
+    for (int i = 0; i < 90; ++i) EXPECT_FALSE(source.give(rest(random))) << noise << ' ' << i;
+  }
+}
+
+// 30 pictures a second, each sent twice; 24, two and three times; 15, four times: moving, and at rest.
+TEST(RepeatedPictures, OfAConverterAreItsHabit) {
+  for (const std::vector<int>& times : {std::vector<int>{2}, std::vector<int>{2, 3}, std::vector<int>{4}}) {
+    for (const double largest : {12.0, 2.5}) {
+      Source source(60);
+      for (int i = 0; i < 240; ++i) {
+        EXPECT_FALSE(source.give(largest));
+        for (int repeat = 1; repeat < times[static_cast<std::size_t>(i) % times.size()]; ++repeat)
+          EXPECT_FALSE(source.give(0.1)) << times[0] << ' ' << largest;
+      }
+    }
+  }
+}
+
+// It ends with the first picture in which something moves, and a tenth of a second after it is noisy again.
+TEST(RepeatedPictures, EndWhenTheSourceLivesAgain) {
+  for (const bool moves : {true, false}) {
+    Source source(30);
+    source.live(30);
+    (void)source.suspected_after_ms({0, 0, 0, 0, 0});
+    for (int i = 0; !moves && i < 2; ++i) EXPECT_TRUE(source.give(2.4));
+    EXPECT_FALSE(source.give(moves ? 12 : 2.4));
+  }
+}
+
+}  // namespace
+}  // namespace arthronaut::pipeline
