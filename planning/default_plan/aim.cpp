@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "planning/geometry/rigid_transform.h"
-#include "planning/tunnels/tunnel_pair.h"
+#include "planning/tunnels/knee_checks.h"
+#include "planning/tunnels/plan_norms.h"
 
 namespace arthronaut::default_plan {
 
@@ -20,11 +21,13 @@ using geometry::rad_from_deg;
 
 // Of the portal from the flexion axis, in the tibia's axes.
 constexpr double kPortalMedial_mm = 24, kPortalAnterior_mm = 35, kPortalDistal_mm = 15;
-constexpr double kCoronal_deg = 67.5;
 constexpr double kLeastFacing = 0.25;  // of the exit's normal along where it should look
-constexpr double kThickWall_mm = 2;    // to the outside and to another tunnel
-// What a millimetre of missing wall or length, and a step away from what was asked for, count.
-constexpr double kPerWall = 4, kPerBetween = 8, kPerLength = 3, kPerStep = 0.6;
+// How far inside of its limit a number should stay: what is about as good is a mean of several directions,
+// and another scan shows all of them a little otherwise.
+constexpr double kMargin = 0.5;
+// What a millimetre or a degree beyond that, a check that is failed, and a step away from what was asked for
+// count.
+constexpr double kPerMillimetre = 4, kPerDegree = 0.5, kPerBetween = 8, kPerFailed = 12, kPerStep = 0.6;
 // What costs less than so much more than the best counts, too: four steps, or 0.6 mm of wall.
 constexpr double kStillCounts = 2.4;
 
@@ -58,15 +61,14 @@ std::vector<Candidate> through_portal(const tunnels::Tunnel& at, const Joint& jo
 std::vector<Candidate> along_guide(const Joint& joint, const Options& options, bool is_beside) {
   std::vector<Candidate> candidates;
   const auto& axes = joint.axes;
-  std::vector<double> guides{0, -5, 5, -10, 10}, coronals{0, -2.5, 2.5, -5, 5, -10};
-  if (is_beside) {
-    guides.insert(guides.end(), {-15, 15, 20});
-    coronals.insert(coronals.end(), {10, -15, -20});
-  }
+  const double coronal_deg = tunnels::PlanNorms{}.tibial_coronal_deg.center;
+  const std::array<double, 8> guides{0, -5, 5, -10, 10, -15, 15, 20};
+  std::vector<double> coronals{0, -2.5, 2.5, -5, 5, -10};
+  if (is_beside) coronals.insert(coronals.end(), {10, -15, -20});
   for (const double guide : guides) {
     for (const double coronal : coronals) {
       const double forward = 1 / std::tan(rad_from_deg(options.guide_deg + guide));
-      const double medial = 1 / std::tan(rad_from_deg(kCoronal_deg + coronal));
+      const double medial = 1 / std::tan(rad_from_deg(coronal_deg + coronal));
       candidates.push_back({(forward * axes.anterior - medial * axes.lateral - axes.proximal).normalized(),
                             std::abs(guide) / 5 + std::abs(coronal) / 2.5});
     }
@@ -74,17 +76,23 @@ std::vector<Candidate> along_guide(const Joint& joint, const Options& options, b
   return candidates;
 }
 
+double misfit_cost(const tunnels::PlanCheck& check) {
+  if (!check.value || check.unit == "%") return 0;  // shares of a grid are the entry's, however it is aimed
+  const double beyond = std::max({0.0, check.least ? *check.least + kMargin - *check.value : 0.0,
+                                  check.greatest ? *check.value - *check.greatest + kMargin : 0.0});
+  return (check.unit == "deg" ? kPerDegree : kPerMillimetre) * beyond;
+}
+
 }  // namespace
 
 std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry, const geometry::Surface& surface,
                                    const Joint& joint, const Options& options,
                                    const tunnels::Tunnel* beside) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
   const bool is_femur = at_entry.bone == bones::BoneKind::Femur;
   const auto& axes = joint.axes;
   const Vector3d exit_side =
       is_femur ? axes.lateral : Vector3d((axes.anterior - 0.7 * axes.lateral).normalized());
-  const std::array<double, 2> fitting_mm =
-      is_femur ? std::array<double, 2>{30, 45} : std::array<double, 2>{32, 55};
   auto candidates =
       is_femur ? through_portal(at_entry, joint, options) : along_guide(joint, options, beside != nullptr);
   const auto neighbour = beside != nullptr ? tunnels::measure(*beside, surface) : tunnels::TunnelGeometry{};
@@ -92,22 +100,22 @@ std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry, const geomet
                    [](const auto& a, const auto& b) { return a.steps < b.steps; });
   // Of the tunnel itself; infinite where it cannot be.
   const auto cost_along = [&](const Vector3d& direction) {
-    constexpr double kNever = std::numeric_limits<double>::infinity();
     tunnels::Tunnel tunnel = at_entry;
     tunnel.direction = direction;
     const auto measured = tunnels::measure(tunnel, surface);
     if (!measured.enters_bone || (measured.entry_on_surface_mm - tunnel.entry_mm).norm() > 2) return kNever;
     if (measured.exit.normal.dot(exit_side) < kLeastFacing) return kNever;
-    const double misfit =
-        std::max({0.0, fitting_mm[0] - measured.length_mm, measured.length_mm - fitting_mm[1]});
-    const double between_mm = neighbour.enters_bone
-                                  ? tunnels::gap_between(tunnel, measured, *beside, neighbour).bone_mm
-                                  : kThickWall_mm;
-    return kPerLength * misfit + kPerWall * std::max(0.0, kThickWall_mm - measured.wall_mm) +
-           kPerBetween * std::max(0.0, kThickWall_mm - between_mm);
+    double cost = 0;
+    for (const tunnels::PlanCheck& check : tunnels::check_plan(tunnel, measured, joint.surroundings))
+      cost += misfit_cost(check) + (tunnels::is_failed(check) ? kPerFailed : 0);
+    if (neighbour.enters_bone) {
+      const auto between = tunnels::check_pair(tunnel, measured, *beside, neighbour);
+      cost += kPerBetween * std::max(0.0, *between.least - *between.value);
+    }
+    return cost;
   };
   std::vector<std::pair<double, Vector3d>> possible;
-  double least_cost = std::numeric_limits<double>::infinity();
+  double least_cost = kNever;
   Vector3d best = at_entry.direction;
   for (const Candidate& candidate : candidates) {
     if (options.stop.stop_requested()) return std::nullopt;
@@ -124,9 +132,13 @@ std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry, const geomet
   Vector3d sum = Vector3d::Zero();
   for (const auto& [cost, direction] : possible)
     sum += std::max(0.0, 1 - (cost - least_cost) / kStillCounts) * direction;
+  // Where the mean of them fails what the best passes, no further from the best than is needed.
+  const Vector3d mean = sum.normalized();
   tunnels::Tunnel aimed = at_entry;
-  aimed.direction = sum.normalized();
-  if (cost_along(aimed.direction) > least_cost + kStillCounts) aimed.direction = best;
+  for (const double share : {1.0, 0.75, 0.5, 0.25, 0.0}) {
+    aimed.direction = (share * mean + (1 - share) * best).normalized();
+    if (cost_along(aimed.direction) <= least_cost + kStillCounts) break;
+  }
   return aimed;
 }
 

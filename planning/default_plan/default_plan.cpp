@@ -40,7 +40,11 @@ void check_range(const char* field, double value, double least, double greatest)
 
 std::optional<Joint> joint_of(const BoneInput& input, const Landmarks& marks, bones::Side side) {
   Joint joint;
-  joint.axes = landmarks::anatomical_axes(input.bone->kind, side, marks, input.bone->mesh);
+  // The surface is the caller's, for as long as this call.
+  joint.surroundings = tunnels::surroundings_of(
+      input.bone->mesh, input.bone->kind, marks, side,
+      std::shared_ptr<const geometry::Surface>(std::shared_ptr<void>(), input.surface));
+  joint.axes = *joint.surroundings.axes;
   if (joint.axes.origin != landmarks::AnatomicalAxes::Origin::FromLandmarks) return std::nullopt;
   const bool is_femur = input.bone->kind == bones::BoneKind::Femur;
   if (!is_femur) return joint;
@@ -285,6 +289,11 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
     return result;
   }
   result.tunnel = *aimed;
+  for (auto& check :
+       tunnels::check_plan(*aimed, tunnels::measure(*aimed, *input.surface), joint->surroundings)) {
+    const bool was_asked_for = check.name == "Diameter";
+    if (tunnels::is_failed(check) && !was_asked_for) result.failed.push_back(std::move(check));
+  }
   result.outcome = Outcome::Planned;
   result.message.clear();
   return result;

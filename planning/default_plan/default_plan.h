@@ -1,6 +1,7 @@
 // A first plan without a hand: tunnels through the native footprint where a person marked it, else through
-// the one that norms expect, aimed as a drill can follow. What the window's one key and `arthronaut plan
-// --default` call. A proposal: the surgeon moves it.
+// the one that norms expect, aimed as a drill can follow so that they pass the plan's own checks where
+// the bone lets them. What the window's one key and `arthronaut plan --default` call. A proposal: the
+// surgeon moves it.
 #pragma once
 
 #include <map>
@@ -15,6 +16,7 @@
 #include "planning/landmarks/landmarks.h"
 #include "planning/landmarks/propose.h"
 #include "planning/norms/insertion_norms.h"
+#include "planning/tunnels/plan_checks.h"
 #include "planning/tunnels/tunnel.h"
 
 namespace arthronaut::default_plan {
@@ -71,6 +73,8 @@ struct DefaultTunnel {
   // between the two: 0.9 mm at the norm's place".
   std::string place;
   std::vector<std::string> doubts;  // why the plan is not reliable: proposed landmarks, doubts of the shape
+  // The plan's checks of this tunnel alone (check_plan) that no direction passes which was tried from there.
+  std::vector<tunnels::PlanCheck> failed;
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Planned; }
 };
 

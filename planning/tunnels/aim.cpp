@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "planning/geometry/rigid_transform.h"
+#include "planning/tunnels/plan_norms.h"
 
 namespace arthronaut::tunnels {
 
@@ -44,7 +45,9 @@ Eigen::Vector3d customary_direction(bones::BoneKind kind, bones::Side side) {
 
 AimOptions customary_aim(bones::BoneKind kind) {
   if (kind == bones::BoneKind::Femur) return {};
-  return {.least_length_mm = 36, .greatest_length_mm = 44};
+  // A millimetre inside of what the plan's check calls fine.
+  const auto& [center, radius] = PlanNorms{}.tibial_length_mm;
+  return {.least_length_mm = center - radius + 1, .greatest_length_mm = center + radius - 1};
 }
 
 Tunnel aim(const Tunnel& tunnel, const geometry::Surface& bone, const AimOptions& options) {

@@ -207,6 +207,10 @@ std::string_view to_text(PlanCheck::Verdict verdict) {
   return "unknown";
 }
 
+bool is_failed(const PlanCheck& check) {
+  return check.verdict == Verdict::Look || check.verdict == Verdict::Wrong;
+}
+
 std::vector<std::string> wrong_in_words(const std::vector<PlanCheck>& checks) {
   std::vector<std::string> wrong;
   for (const PlanCheck& check : checks)

@@ -33,6 +33,8 @@ struct PlanCheck {
 // "fine", "look", "wrong", "note", "not checked": the sign beside the number, for files and for those who see
 // no colour.
 [[nodiscard]] std::string_view to_text(PlanCheck::Verdict verdict);
+// Look or wrong: not as the norm has it. What was not checked has not failed.
+[[nodiscard]] bool is_failed(const PlanCheck& check);
 // "Wall: 0.4 mm at 0.0 mm of depth: may break out, less than 1 mm" of each that is wrong.
 [[nodiscard]] std::vector<std::string> wrong_in_words(const std::vector<PlanCheck>& checks);
 
