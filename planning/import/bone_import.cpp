@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 
 #include "planning/bones/unit_unknown.h"
 #include "planning/files/format.h"
@@ -62,9 +63,15 @@ std::string formatted_size(const Eigen::Vector3d& size) {
                        size.z());
 }
 
+// Images that bones are made of, and where they end within each, which is asked for twice.
+struct BoneImages {
+  const Volume& volume;
+  std::map<BoneKind, std::vector<ImageCut>> cuts = {};
+};
+
 // images: that it was made of; null for a mesh.
 ImportedBone finished(BoneKind kind, const std::string& source, const geometry::TriangleMesh& mesh,
-                      const Volume* images, const Tell& tell) {
+                      BoneImages* images, const Tell& tell) {
   tell("Mending the mesh", kUnknown);
   bones::MeshRepair repair = bones::mend_mesh(mesh);
   ImportedBone imported;
@@ -75,11 +82,13 @@ ImportedBone finished(BoneKind kind, const std::string& source, const geometry::
                            formatted_size(bounds.size_mm()));
   for (const auto& line : repair.report.lines()) imported.lines.push_back("mended: " + line);
   imported.doubts = repair.report.doubts();
+  std::vector<Eigen::Vector3d> image_ends;
+  if (images != nullptr) {
+    const auto& cuts = images->cuts[kind] = cuts_of(imported.bone.mesh, kind, images->volume);
+    for (const ImageCut& cut : cuts) image_ends.push_back(cut.out);
+  }
   // Of a mesh that is no bone at all there is enough to say already.
   if (!imported.doubts.empty()) return imported;
-  std::vector<Eigen::Vector3d> image_ends;
-  if (images != nullptr)
-    for (const ImageCut& cut : cuts_of(imported.bone.mesh, kind, *images)) image_ends.push_back(cut.out);
   imported.doubts = segmentation::anatomy_doubts(imported.bone.mesh, kind, image_ends);
   return imported;
 }
@@ -183,8 +192,9 @@ std::optional<Volume> ct_of(const Volume& labels, const BoneImportOptions& optio
   return grey;
 }
 
-void import_labels(const Volume& volume, const std::map<BoneKind, int>& labels,
+void import_labels(BoneImages& images, const std::map<BoneKind, int>& labels,
                    const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
+  const Volume& volume = images.volume;
   const std::optional<Volume> ct = ct_of(volume, options, tell);
   for (const auto& [kind, label] : labels) {
     if (options.kind && *options.kind != kind) continue;
@@ -197,7 +207,7 @@ void import_labels(const Volume& volume, const std::map<BoneKind, int>& labels,
       surface = surface_of_label(volume, label);
     }
     result.bones.push_back(finished(kind, "label " + std::to_string(label) + " of " + volume.format,
-                                    surface.mesh, &volume, tell));
+                                    surface.mesh, &images, tell));
     auto& lines = result.bones.back().lines;
     lines.insert(lines.begin(), surface.notes.begin(), surface.notes.end());
   }
@@ -211,16 +221,16 @@ std::string other_side_by_fibula(bones::Side fibula, bones::Side said) {
 }
 
 // Returns whether a fibula told the side.
-bool import_ct(const Volume& volume, const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
+bool import_ct(BoneImages& images, const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
   segmentation::CtBonesOptions ct;
   ct.threshold = options.threshold;
   ct.only = options.kind;
   ct.side = result.side;
   ct.tell = tell;
-  const segmentation::CtBones found = segmentation::bones_of_ct(volume, ct);
+  const segmentation::CtBones found = segmentation::bones_of_ct(images.volume, ct);
   result.lines.insert(result.lines.end(), found.notes.begin(), found.notes.end());
   for (const segmentation::CtBone& bone : found.bones) {
-    result.bones.push_back(finished(bone.kind, volume.format, bone.mesh, &volume, tell));
+    result.bones.push_back(finished(bone.kind, images.volume.format, bone.mesh, &images, tell));
     ImportedBone& imported = result.bones.back();
     imported.lines.insert(imported.lines.begin(), bone.notes.begin(), bone.notes.end());
     imported.doubts.insert(imported.doubts.begin(), bone.doubts.begin(), bone.doubts.end());
@@ -265,11 +275,12 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   result.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
   const bool is_label_map = labels.size() > 1 && labels.front().first >= 0 && volume.modality.empty();
   bool fibula_was_seen = false;
+  BoneImages images_of_bones{volume};
   try {
     if (options.images_only) {
       if (is_label_map) throw InvalidInput("is a label map: there is no image to paint in");
     } else if (!options.labels.empty()) {
-      import_labels(volume, options.labels, options, result, tell);
+      import_labels(images_of_bones, options.labels, options, result, tell);
     } else if (is_label_map && !options.threshold) {
       const auto named = labels_by_name(volume, result.lines);
       if (named.empty() || (options.kind && !named.contains(*options.kind))) {
@@ -279,10 +290,10 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
                 ": say which are the bones, for example --label femur=" + std::to_string(labels[1].first),
             {.reason = FailureReason::NeedsLabels, .labels = found_labels(volume)});
       }
-      import_labels(volume, named, options, result, tell);
+      import_labels(images_of_bones, named, options, result, tell);
     } else {
       refuse_without_threshold(volume, source, options);
-      fibula_was_seen = import_ct(volume, options, result, tell);
+      fibula_was_seen = import_ct(images_of_bones, options, result, tell);
     }
   } catch (const segmentation::ShowsBothKnees& error) {
     throw refusal(source, error.what(), {.reason = FailureReason::ShowsBothKnees});
@@ -303,7 +314,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   check_shapes(result, fibula_was_seen);
   // After the shapes, which are looked at where nothing speaks against a bone yet.
   for (ImportedBone& imported : result.bones)
-    for (const ImageCut& cut : cuts_of(imported.bone.mesh, imported.bone.kind, volume))
+    for (const ImageCut& cut : images_of_bones.cuts[imported.bone.kind])
       imported.doubts.push_back(cut_doubt(cut));
 }
 
