@@ -110,6 +110,11 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee
              .source = planned.source,
              .place = planned.place,
              .off_norm_mm = planned.off_norm_mm};
+  for (const tunnels::PlanCheck& check : planned.failed) {
+    verdict.is_reliable = false;
+    verdict.reasons.push_back("no direction that a drill can follow from there passes the check \"" +
+                              check.name + "\": " + check.text);
+  }
   return planned.tunnel;
 }
 

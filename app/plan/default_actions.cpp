@@ -41,7 +41,8 @@ void PlanView::take_defaults(std::vector<MadeTunnel> made, const std::string& wh
   const bool took_the_place = std::ranges::any_of(cases::compare_plans(model_->knee().plan, before),
                                                   &cases::TunnelDifference::is_lost_here);
   const bool is_as_it_should_be = std::ranges::all_of(made, [](const MadeTunnel& one) {
-    return one.made.is_usable() && one.made.doubts.empty() && tunnels::wrong_in_words(one.checks).empty();
+    return one.made.is_usable() && one.made.doubts.empty() && one.made.failed.empty() &&
+           tunnels::wrong_in_words(one.checks).empty();
   });
   state_.hint = {default_in_words(made, took_the_place), is_as_it_should_be, model_->revision()};
   show_page(PanelPage::Checks);

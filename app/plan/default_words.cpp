@@ -15,6 +15,9 @@ std::string default_in_words(const std::vector<MadeTunnel>& made, bool took_the_
     words += "Default " + name + ": " + one.made.place + ".";
     for (const std::string& wrong : tunnels::wrong_in_words(one.checks))
       words += " Wrong there: " + wrong + ".";
+    for (const tunnels::PlanCheck& check : one.made.failed)
+      if (check.verdict == tunnels::PlanCheck::Verdict::Look)
+        words += " No aim from there passes it: " + check.name + ": " + check.text + ".";
     words += "\n";
   }
   if (std::ranges::any_of(

@@ -24,9 +24,12 @@ TEST(DefaultWords, SayWhereEachTunnelIsAndWhatIsWrongThere) {
                                made({BoneKind::Femur, norms::Bundle::Posterolateral}, "1.1 mm off it")};
   both[0].checks = {{.verdict = Verdict::Look, .name = "Length", .text = "28.0 mm"},
                     {.verdict = Verdict::Wrong, .name = "Wall", .text = "0.4 mm: may break out"}};
-  EXPECT_EQ(default_in_words(both, false),
-            "Default femur AM: at the norm's place. Wrong there: Wall: 0.4 mm: may break out.\n"
-            "Default femur PL: 1.1 mm off it.");
+  both[0].made.failed = both[0].checks;
+  EXPECT_EQ(
+      default_in_words(both, false),
+      "Default femur AM: at the norm's place. Wrong there: Wall: 0.4 mm: may break out. No aim from there "
+      "passes it: Length: 28.0 mm.\n"
+      "Default femur PL: 1.1 mm off it.");
 }
 
 TEST(DefaultWords, SayWhatTheyRestOnAndHowToHaveThePlanBack) {
