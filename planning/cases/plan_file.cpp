@@ -4,9 +4,11 @@
 
 #include "planning/bones/mesh_hash.h"
 #include "planning/files/atomic_file.h"
+#include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/files/sha256.h"
 #include "planning/geometry/error.h"
+#include "planning/tunnels/diameter_range.h"
 
 namespace arthronaut::cases {
 
@@ -58,6 +60,9 @@ Plan plan_from(const std::string& text, const fs::path& file) {
     if (tunnel.direction.norm() < 1e-6) node.fail("direction", "must not be zero");
     tunnel.direction.normalize();
     tunnel.diameter_mm = node.positive_number("diameter_mm");
+    if (tunnel.diameter_mm < tunnels::kLeastDiameter_mm || tunnel.diameter_mm > tunnels::kGreatestDiameter_mm)
+      node.fail("diameter_mm", files::format("is %g, must be %g to %g", tunnel.diameter_mm,
+                                             tunnels::kLeastDiameter_mm, tunnels::kGreatestDiameter_mm));
     if (node.has("bundle")) {
       try {
         tunnel.bundle = norms::bundle_from_text(node.text("bundle"));

@@ -184,5 +184,22 @@ TEST_F(PlanFile, RefusesBundlesThatContradictEachOther) {
   EXPECT_THAT(with("am", "posterior"), HasSubstr("must be single, am or pl"));
 }
 
+// No key, command or markups file gives a tunnel of 100 mm, or of a hair: a file with one is broken.
+TEST_F(PlanFile, RefusesADiameterThatNoTunnelHas) {
+  const auto with = [&](const char* diameter_mm) {
+    return test::message_of<InvalidInput>([&] {
+      (void)plan_from(
+          R"({"format":"arthronaut.plan","version":1,"tunnels":[{"bone":"femur","entry_mm":[1,2,3],)"
+          R"("direction":[0,0,1],"diameter_mm":)" +
+              std::string(diameter_mm) + "}]}",
+          "plan.json");
+    });
+  };
+  EXPECT_THAT(with("100"), HasSubstr("tunnels[0].diameter_mm: is 100, must be 3 to 15"));
+  EXPECT_THAT(with("0.001"), HasSubstr("must be 3 to 15"));
+  EXPECT_THAT(with("0"), HasSubstr("diameter_mm"));
+  EXPECT_THAT(with("NaN"), HasSubstr("plan.json"));
+}
+
 }  // namespace
 }  // namespace arthronaut::cases
