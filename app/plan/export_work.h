@@ -38,6 +38,8 @@ class ExportWork {
   // Nothing will have been written, unless all was drilled by then: the outcome says it.
   void stop() { stop_.request_stop(); }
   [[nodiscard]] bool is_running() const { return running_.is_busy(); }
+  // Asked to stop, and not there yet: a bone that is being drilled is drilled to its end.
+  [[nodiscard]] bool is_stopping() const { return is_running() && stop_.stop_requested(); }
   // For every frame: once what came of it; nullopt while there is no news.
   [[nodiscard]] std::optional<ExportOutcome> take_outcome();
 

@@ -155,7 +155,8 @@ void PlanView::add_history_actions(widgets::Actions& actions) {
 }
 
 bool PlanView::can_stop_placing() const {
-  const bool can_stop_export = export_.is_running() && slices_.tool() == MeasuringTool::None;
+  const bool can_stop_export =
+      export_.is_running() && !export_.is_stopping() && slices_.tool() == MeasuringTool::None;
   return can_stop_export || defaults_.is_running() || state_.placing != Placing::Nothing ||
          !state_.hint.text.empty();
 }

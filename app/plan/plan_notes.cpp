@@ -33,12 +33,14 @@ void PlanView::draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const
   if (text.empty() && defaults_.is_running())
     text = "Making the default plan: " + defaults_.progress() + ". Esc leaves it.";
   if (text.empty() && export_.is_running())
-    text = "Exporting: the bones are drilled, which takes a while. Esc stops it.";
+    text = export_.is_stopping() ? "Stopping the export ..."
+                                 : "Exporting: the bones are drilled, which takes a while. Esc stops it.";
   if (text.empty()) return;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   ImFont* font = hint.of ? ui.theme.body : text.size() > 90 ? ui.theme.strong : ui.theme.title;
   const float wrap = area.width - ui.theme.px(40), pad = ui.theme.px(6);
-  const ImVec2 at{area.x + ui.theme.px(20), area.y + ui.theme.px(16)};
+  // Below the word at the picture's upper edge, which says where that is.
+  const ImVec2 at{area.x + ui.theme.px(20), area.y + ui.theme.px(20) + ui.theme.body->FontSize};
   text = widgets::wrapped(font, text, wrap);
   ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, wrap, text.c_str());
   // What came of something stands there until somebody has read it, and hides the bone.

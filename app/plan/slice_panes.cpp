@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "planning/cases/case_image.h"
+#include "planning/cases/measurements.h"
 
 namespace arthronaut::plan {
 
@@ -115,7 +116,11 @@ void SlicePanes::draw(const widgets::Ui& ui, const std::array<widgets::Rect, 3>&
   content.measures = tool_ != MeasuringTool::None;
   std::vector<Eigen::Vector3d> line = points_mm_;
   line.insert(line.end(), reaching_mm_.begin(), reaching_mm_.end());
-  if (!line.empty()) content.lines.push_back({line, ""});
+  // What it would be if the mouse let go here. An angle has a number with its third point.
+  const std::string reached =
+      !line.empty() && line.size() == points_asked() ? cases::Measurement{line}.in_words() : "";
+  if (!line.empty()) content.lines.push_back({line, reached});
+  ui.log.note_state("measuring", reached);
   reaching_mm_.clear();
   constexpr std::array<const char*, 3> kNames{"plan.axial_slice", "plan.coronal_slice",
                                               "plan.sagittal_slice"};

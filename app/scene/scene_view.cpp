@@ -95,7 +95,8 @@ class VolumeCost {
  public:
   // One ray for a square of this many pixels.
   [[nodiscard]] double pixels_per_ray(double pixels, bool is_still) const {
-    const double allowed_s = is_still ? 0.25 : 0.035;
+    // 30 moving pictures a second, what is drawn over them included.
+    const double allowed_s = is_still ? 0.25 : 0.027;
     return std::clamp(std::sqrt(pixels * ray_s_ / allowed_s), 1.0, 12.0);
   }
   // The first picture of a volume makes its gradients, too: it is not counted.

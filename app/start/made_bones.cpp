@@ -136,11 +136,19 @@ std::optional<Side> MadeBones::draw(const widgets::Ui& ui, const widgets::Rect& 
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const std::string left = side_of_picture(pane_.camera(), true),
                       right = side_of_picture(pane_.camera(), false);
-    ImFont* const font = ui.theme.body;
-    const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, right.c_str()).x, edge = ui.theme.px(10);
-    widgets::draw_text(draw, font, rest.x + edge, rest.center().y, widgets::kCaution, left);
-    widgets::draw_text(draw, font, rest.x + rest.width - wide - edge, rest.center().y, widgets::kCaution,
-                       right);
+    ImFont* const font = ui.theme.strong;
+    const float edge = ui.theme.px(10), pad = ui.theme.px(5);
+    // across: the share of what the words leave free of the picture. Read over a bright bone, too.
+    const auto put = [&](const std::string& words, float across) {
+      if (words.empty()) return;
+      const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str()).x;
+      const ImVec2 at{rest.x + edge + across * (rest.width - wide - 2 * edge), rest.center().y};
+      draw.AddRectFilled({at.x - pad, at.y - pad / 2}, {at.x + wide + pad, at.y + font->FontSize + pad / 2},
+                         IM_COL32(12, 16, 20, 190), pad);
+      widgets::draw_text(draw, font, at.x, at.y, widgets::kCaution, words);
+    };
+    put(left, 0);
+    put(right, 1);
   }
   std::optional<Side> clicked;
   const float half = (sketches.width - ui.theme.px(8)) / 2;

@@ -58,11 +58,13 @@ void action_button(const Ui& ui, std::string_view action_id, float width, float 
   if (action == nullptr) return;
   const bool enabled = action->can_run(), needs_hold = enabled && action->needs_hold();
   const bool is_on = action->is_on && action->is_on();
-  const std::string key = key_name(action->key, action->mods);
+  std::string key = key_name(action->key, action->mods), key_in_tooltip;
   const ImGuiStyle& style = ImGui::GetStyle();
   const ImVec2 label_size = text_size(ui.theme.body, action->label);
   const float key_width = key.empty() ? 0 : text_size(ui.theme.body, key).x + ui.theme.px(18);
   if (width <= 0) width = label_size.x + key_width + 2 * style.FramePadding.x;
+  // Where both do not fit beside each other the label is what has to be read.
+  if (label_size.x + key_width + 2 * style.FramePadding.x > width + 0.5F) key_in_tooltip.swap(key);
   if (height <= 0) height = label_size.y + 2 * style.FramePadding.y;
 
   ImGui::PushID(action->id.c_str());
@@ -102,7 +104,8 @@ void action_button(const Ui& ui, std::string_view action_id, float width, float 
   }
   draw.PopClipRect();
   if (hovered && !action->tooltip.empty())
-    tooltip(ui.theme, action->tooltip + (needs_hold ? ". Hold it down" : ""));
+    tooltip(ui.theme, action->tooltip + (needs_hold ? ". Hold it down" : "") +
+                          (key_in_tooltip.empty() ? "" : " (" + key_in_tooltip + ")"));
   ui.log.note(action->id, min, max);
   ImGui::PopID();
 }

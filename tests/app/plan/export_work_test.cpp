@@ -47,9 +47,12 @@ TEST(ExportWork, IsStoppedWithoutATrace) {
   std::atomic<int> woken = 0;
   ExportWork work([&] { ++woken; });
   work.start(knee, 7, folder / "Knee.arthro");
+  EXPECT_FALSE(work.is_stopping());
   work.stop();
+  EXPECT_TRUE(work.is_stopping()) << "what is shown meanwhile is that it ends, not that it goes on";
   std::optional<ExportOutcome> outcome;
   while (!outcome) outcome = work.take_outcome();
+  EXPECT_FALSE(work.is_stopping());
   EXPECT_TRUE(outcome->was_stopped);
   EXPECT_FALSE(outcome->is_written);
   EXPECT_EQ(outcome->in_words(7), "The export was stopped: nothing was written.");

@@ -79,6 +79,7 @@ class RunningWorkstation {
                                 double seconds = 40) const;
   void type(const std::string& text) const;  // as fast as it goes
   void click(const std::string& widget) const;
+  void point_at(const std::string& widget) const;  // the mouse rests on its middle
   // The same with the mouse on a widget.
   [[nodiscard]] bool hold_click_until(const std::string& widget, const std::string& state,
                                       const std::string& value, double seconds = 40) const;
@@ -96,7 +97,6 @@ class RunningWorkstation {
  private:
   void read_output(int pipe);
   void hand(const std::string& arguments) const;
-  void point_at(const std::string& widget) const;
 
   std::string display_;
   std::filesystem::path folder_;

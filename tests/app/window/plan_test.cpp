@@ -157,10 +157,19 @@ TEST_F(PlanWindow, SlicesAreScrolledWindowedAndMeasuredIn) {
   app.press("d");
   const Area slice = app.widgets().at("plan.axial_slice");
   app.click_at(slice.x + slice.width / 4, slice.y + slice.height / 2);
+  // Its length stands there before it ends.
+  app.point_at("plan.axial_slice");
+  std::string reached;
+  for (int i = 0; i < 500 && (reached.empty() || reached.starts_with("0.0")); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    reached = app.state("measuring");
+  }
   app.click_at(slice.x + slice.width / 2, slice.y + slice.height / 2);
   ASSERT_TRUE(app.wait_for_state("undo", "Measure a distance"));
   const auto measured = cases::load_measurements(folder);
   ASSERT_EQ(measured.size(), 1U);
+  EXPECT_EQ(reached, measured[0].in_words());
+  EXPECT_TRUE(app.wait_for_state("measuring", ""));
   EXPECT_TRUE(app.wait_for_state("measured", measured[0].in_words()));
   EXPECT_GT(measured[0].distance_mm(), 10);
   EXPECT_NEAR(measured[0].points_mm[0].z(), measured[0].points_mm[1].z(), 1e-9)
