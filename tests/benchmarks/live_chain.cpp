@@ -105,6 +105,7 @@ int stream(const StreamChoice& choice) {
     ++seen;
   };
   const theatre::NavigationSummary summary = theatre::navigate_source(source, options, record, observer);
+  const double memory_at_end_mb = resident_mb();  // reading the record back is not the chain's
   const double sent = 60 * (last_s - first_s) + 1;
   std::printf("%.1f s, %s the record\n", last_s - first_s, records ? "with" : "without");
   std::printf("sent %.0f, decoded %lld, tracked %ld (%.2f %% of what was sent)\n", sent,
@@ -120,7 +121,7 @@ int stream(const StreamChoice& choice) {
                   stage.p99_ms, stage.worst_ms);
   if (memory_mb > 0)
     std::printf("memory: %.1f MB after %lld s, %+.1f MB since\n", memory_mb,
-                static_cast<long long>(kBuffersFull_s), resident_mb() - memory_mb);
+                static_cast<long long>(kBuffersFull_s), memory_at_end_mb - memory_mb);
   for (const std::string& trouble : summary.troubles) std::printf("trouble: %s\n", trouble.c_str());
   if (!summary.ending.empty()) std::printf("ended: %s\n", summary.ending.c_str());
   return 0;

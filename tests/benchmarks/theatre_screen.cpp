@@ -1,7 +1,7 @@
 // The theatre's screen with everything running, on a display of its own: the real window, an operation on a
 // live 1080p60 H.264 stream by RTSP over the loopback, with tracking, recording, video, plan, 3D and
 // bullseye.
-//   theatre_screen [SECONDS] [--seed N] [--without-record] [--shot FILE.png] [--stream FILE.mkv]
+//   theatre_screen [SECONDS] [--seed N] [--size WxH] [--without-record] [--shot FILE.png] [--stream FILE.mkv]
 // --stream: taken where it is there, else made and kept, for the next run.
 // Registers on the path-traced scratching first, then measures while the guide comes and goes: pictures a
 // second, what a frame costs and in which part, how soon a key is seen, how old a picture is on the screen,
@@ -39,6 +39,7 @@ namespace fs = std::filesystem;
 
 struct Choice {
   double seconds = 60;
+  int width = 1920, height = 1080;  // of the screen
   unsigned seed = 1;
   bool records = true;
   std::string shot, stream;
@@ -259,7 +260,7 @@ int measure(const Choice& choice) {
   if (!fs::exists(stream)) fs::copy_file(make_stream(folder.path(), clips, choice.seconds + 60), stream);
   const std::string port = std::to_string(20000 + ::getpid() % 40000);
   const auto sender = test::send_by_rtsp(port, test::h264_clip_launch(stream));
-  const test::VirtualDisplay display(1920, 1080);
+  const test::VirtualDisplay display(choice.width, choice.height);
   measure_start(display, folder.path());
 
   test::RunningWorkstation app(display, folder.path(), {case_folder.string()});
@@ -303,11 +304,14 @@ int measure(const Choice& choice) {
 
 int main(int count, char** arguments) {
   arthronaut::Choice choice;
+  bool is_understood = true;
   for (int i = 1; i < count; ++i) {
     const std::string word = arguments[i];
     const bool has_next = i + 1 < count;
     if (word == "--seed" && has_next)
       choice.seed = static_cast<unsigned>(std::atoi(arguments[++i]));
+    else if (word == "--size" && has_next)
+      is_understood = std::sscanf(arguments[++i], "%dx%d", &choice.width, &choice.height) == 2;
     else if (word == "--shot" && has_next)
       choice.shot = arguments[++i];
     else if (word == "--stream" && has_next)
@@ -317,8 +321,10 @@ int main(int count, char** arguments) {
     else
       choice.seconds = std::atof(word.c_str());
   }
-  if (choice.seconds <= 0) {
-    std::puts("theatre_screen [SECONDS] [--seed N] [--without-record] [--shot FILE.png] [--stream FILE.mkv]");
+  if (choice.seconds <= 0 || !is_understood) {
+    std::puts(
+        "theatre_screen [SECONDS] [--seed N] [--size WxH] [--without-record] [--shot FILE.png] [--stream "
+        "FILE.mkv]");
     return 2;
   }
   try {
