@@ -134,8 +134,7 @@ class EdgeTracker final : public MarkerTracker {
     ++searches_;
     look_at(frame);
     // The dearer search takes the place of the other now and then; what was just lost is looked for before.
-    // What is covered from the first frame on is found in the second.
-    const bool is_for_covered = searches_ % kSearchesForCovered == 2 && is_missing();
+    const bool is_for_covered = searches_ % kSearchesForCovered == 0 && is_missing();
     if (!is_for_covered) {
       take_squares(search_.find(frame.camera), frame, Pass::Usual);
       if (is_missing()) {
