@@ -61,8 +61,7 @@ CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& nam
 CLI::Option* add_vector_option(CLI::App& subcommand, const std::string& name, Eigen::Vector3d& value,
                                const std::string& description) {
   constexpr double kFarthest_mm = 1e6;  // a kilometre; what is reckoned with it stays finite
-  const auto parse = [&value](const CLI::results_t& results) {
-    const std::string& text = results.front();
+  const auto read = [&value](const std::string& text) {
     const char* at = text.data();
     const char* const end = at + text.size();
     Eigen::Vector3d parsed;
@@ -75,6 +74,11 @@ CLI::Option* add_vector_option(CLI::App& subcommand, const std::string& name, Ei
     if (at != end) return false;
     value = parsed;
     return true;
+  };
+  const auto parse = [read, name](const CLI::results_t& results) {
+    if (read(results.front())) return true;
+    throw CLI::ValidationError(name,
+                               "\"" + results.front() + "\" must be three numbers as X,Y,Z without spaces");
   };
   return subcommand.add_option(name, parse, description)->type_name("X,Y,Z")->expected(1);
 }

@@ -24,7 +24,7 @@ CLI::Validator of_number(const std::string& limits, const std::function<bool(dou
   return {[limits, is_right](const std::string& text) {
             double value = 0;
             if (CLI::detail::lexical_cast(text, value) && is_right(value)) return std::string();
-            return "\"" + text + "\" is not a number, " + limits;
+            return "\"" + text + "\" must be a number, " + limits;
           },
           limits};
 }

@@ -114,8 +114,11 @@ TEST_F(PlanCommand, WhatWouldDoNothingIsRefused) {
   EXPECT_THAT(diameter.errors, HasSubstr("--default or --direction"));
   const auto nan = run({"plan", "--bone", "femur", "--default", "--diameter-mm", "nan"});
   EXPECT_EQ(nan.exit_code, 2);
-  EXPECT_THAT(nan.errors, HasSubstr("--diameter-mm: \"nan\" is not a number, 3 to 15"));
-  EXPECT_THAT(run({"plan", "--take", "0"}).errors, HasSubstr("--take: \"0\" is not a number, above 0"));
+  EXPECT_THAT(nan.errors, HasSubstr("--diameter-mm: \"nan\" must be a number, 3 to 15"));
+  const auto two = run({"plan", "--bone", "femur", "--entry", "1,2", "--direction", "1,0,0"});
+  EXPECT_EQ(two.exit_code, 2);
+  EXPECT_THAT(two.errors, HasSubstr("--entry: \"1,2\" must be three numbers"));
+  EXPECT_THAT(run({"plan", "--take", "0"}).errors, HasSubstr("--take: \"0\" must be a number, above 0"));
   EXPECT_EQ(run({"plan", "--bone", "femur", "--direction", "1,0,0"}).exit_code, 2);
   EXPECT_EQ(run({"plan", "--bone", "femur", "--at-footprint", "--direction", "0,0,0"}).exit_code, 2);
   EXPECT_THAT(run({"plan", "--bone", "femur", "--type", "am"}).output,
