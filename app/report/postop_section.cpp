@@ -111,4 +111,11 @@ void draw_postop_section(FlowingPages& pages, const Content& content) {
       {.size_pt = 8, .ink = kGray});
 }
 
+std::vector<tunnels::Tunnel> tunnels_in_the_images(const Content& content) {
+  std::vector<tunnels::Tunnel> tunnels;
+  for (const auto& [key, comparison] : content.postoperative)
+    if (verdict_of(content, key) == "reliable") tunnels.push_back(comparison.tunnel.tunnel);
+  return tunnels;
+}
+
 }  // namespace arthronaut::report

@@ -1,6 +1,7 @@
 #include "app/report/report.h"
 
 #include <optional>
+#include <vector>
 
 #include "app/report/flowing_pages.h"
 #include "app/report/pdf_document.h"
@@ -64,10 +65,17 @@ class Report {
   }
 
  private:
-  // Two pictures side by side with their names.
-  void pictures(scene::ViewDirection left, scene::ViewDirection right, bool with_result) {
+  // What a picture shows beside the plan.
+  struct Result {
+    std::vector<tunnels::Tunnel> achieved;
+    std::vector<Eigen::Vector3d> touched_points_mm;
+  };
+
+  // Two pictures side by side with their names; of the plan alone where there is no result.
+  void pictures(scene::ViewDirection left, scene::ViewDirection right,
+                const std::optional<Result>& result = std::nullopt) {
     constexpr int kPictureWidth = 1000;
-    const int picture_height = with_result ? 580 : 720;
+    const int picture_height = result ? 580 : 720;
     const double width = (kWidthMm - 6) / 2, needed = width * picture_height / kPictureWidth;
     pages_.need(needed + 8);
     const double y = pages_.y_mm() + 3;
@@ -79,14 +87,10 @@ class Report {
       request.width = kPictureWidth;
       request.height = picture_height;
       request.light_background = true;
-      if (with_result)
-        for (const operation::AchievedTunnel& achieved : content_.achieved)
-          request.achieved.push_back(achieved.truth ? *achieved.truth : achieved.measured);
-      if (with_result)
-        for (const Content::Earlier& earlier : content_.earlier)
-          request.achieved.push_back(earlier.achieved.truth ? *earlier.achieved.truth
-                                                            : earlier.achieved.measured);
-      if (with_result) request.curve_points_in_bone = touched_points();
+      if (result) {
+        request.achieved = result->achieved;
+        request.curve_points_in_bone = result->touched_points_mm;
+      }
       const auto picture = scene::render_plan_picture(request);
       pdf_.image(x, y, width, picture.rgb, picture.width, picture.height);
       pdf_.text(x, y + needed + 3.5, std::string(scene::to_text(view)), {.size_pt = 8, .ink = kGray});
@@ -101,6 +105,16 @@ class Report {
     const bool is_tibia = content_.session ? content_.session->header().bone == bones::BoneKind::Tibia
                                            : !bones.contains(bones::BoneKind::Femur);
     return is_tibia ? scene::ViewDirection::Plateau : scene::ViewDirection::Notch;
+  }
+
+  std::vector<tunnels::Tunnel> navigated_tunnels() const {
+    std::vector<tunnels::Tunnel> tunnels;
+    const auto add = [&](const operation::AchievedTunnel& achieved) {
+      tunnels.push_back(achieved.truth ? *achieved.truth : achieved.measured);
+    };
+    for (const operation::AchievedTunnel& achieved : content_.achieved) add(achieved);
+    for (const Content::Earlier& earlier : content_.earlier) add(earlier.achieved);
+    return tunnels;
   }
 
   std::vector<Eigen::Vector3d> touched_points() const {
@@ -155,7 +169,7 @@ void Report::plan_page() {
     pages_.table({16, 34, 30, 20, 20, 18, 32}, rows);
     for (const auto& [key, tunnel] : content_.knee.plan.tunnels) say_plan_fit(key);
   }
-  pictures(scene::ViewDirection::Anterior, scene::ViewDirection::Lateral, false);
+  pictures(scene::ViewDirection::Anterior, scene::ViewDirection::Lateral);
 }
 
 // A plan is of the mesh that it was made on, and of no other.
@@ -290,15 +304,26 @@ void Report::navigate_page() {
 }
 
 void Report::result_pictures() {
-  if (!content_.session) return pictures(joint_view(), scene::ViewDirection::Medial, false);
-  pages_.continue_as("Result, camera, tools and versions");
-  if (!options_.is_deidentified) draw_stills_section(pages_, content_);
-  pictures(joint_view(), scene::ViewDirection::Lateral, true);
-  std::string legend = "Blue: as planned.";
-  if (!content_.achieved.empty() || !content_.earlier.empty())
-    legend += " Banded: as drilled, measured by navigation or, of a simulation, as it truly lies.";
-  if (!touched_points().empty()) legend += " Dots: where the probe touched the bone.";
-  pages_.sentence(legend, {.size_pt = 8, .ink = kGray});
+  if (content_.session) {
+    pages_.continue_as("Result, camera, tools and versions");
+    if (!options_.is_deidentified) draw_stills_section(pages_, content_);
+    const Result navigated = {navigated_tunnels(), touched_points()};
+    pictures(joint_view(), scene::ViewDirection::Lateral, navigated);
+    std::string legend = "Blue: as planned.";
+    if (!navigated.achieved.empty())
+      legend += " Banded: as drilled, measured by navigation or, of a simulation, as it truly lies.";
+    if (!navigated.touched_points_mm.empty()) legend += " Dots: where the probe touched the bone.";
+    pages_.sentence(legend, {.size_pt = 8, .ink = kGray});
+  }
+  const Result imaged = {tunnels_in_the_images(content_), {}};
+  if (!imaged.achieved.empty()) {
+    pictures(joint_view(), scene::ViewDirection::Lateral, imaged);
+    pages_.sentence(
+        "Blue: as planned. Banded: as the CT after the operation shows it, where that is reliable.",
+        {.size_pt = 8, .ink = kGray});
+  } else if (!content_.session) {
+    pictures(joint_view(), scene::ViewDirection::Medial);
+  }
 }
 
 Content reportable(const std::filesystem::path& case_folder, const ReportOptions& options) {

@@ -107,7 +107,7 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
   for (const char* const part :
        {"CT after the operation", "1.37 mm", "2.46 mm", "0.08", "8.4 mm; planned", "8.4 to 9.6 mm",
         "27.3 mm, a socket", "Which way", "deep to shallow", "Least wall", "0.21 mm", "37 %", "NOT RELIABLE",
-        "tibia: metal hides most of the wall"})
+        "tibia: metal hides most of the wall", "Banded: as the CT after the operation"})
     expect_contains(text, part);
   const auto json_file = pdf().parent_path() / "report.json";
   write_report(knee_folder(), json_file);
@@ -154,7 +154,9 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
   knee_.plan.put(moved, "");
   cases::save_case(knee_folder(), knee_);
   write_report(knee_folder(), pdf());
-  expect_contains(pdf_text(), "of an earlier plan");
+  text = pdf_text();
+  expect_contains(text, "of an earlier plan");
+  EXPECT_EQ(text.find("Banded: as the CT"), std::string::npos) << "drawn beside another plan";
   // Nothing was found: no number is shown.
   comparisons.at(bones::BoneKind::Femur).tunnel = {};
   postop::write_achieved_file(achieved_file, comparisons);
