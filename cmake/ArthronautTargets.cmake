@@ -109,6 +109,10 @@ function(arthronaut_check_layers name)
   endforeach()
 endfunction()
 
+# Half of what is compiled from nothing are test programs, and a third of that is to optimise what runs but once.
+# What is tested, and what is measured, keeps its own optimisation.
+set(ARTHRONAUT_TEST_OPTIMISATION $<$<BOOL:${CMAKE_UNITY_BUILD}>:-O1>)
+
 # arthronaut_test(navigation_camera SOURCES x_test.cpp ... LIBS libs...)
 # One test program a module; ctest runs each suite of it on its own, in one process: what is made ready once for all
 # cases of a suite is made once. BY_CASE: each case on its own, where cases are long and share nothing. APART as above.
@@ -126,6 +130,7 @@ function(arthronaut_test name)
     set(ARG_CASE_S 1)
   endif()
   add_executable(${name}_test ${ARG_SOURCES})
+  target_compile_options(${name}_test PRIVATE ${ARTHRONAUT_TEST_OPTIMISATION})
   arthronaut_let_ccache_see_precompiled(${name}_test)
   target_precompile_headers(${name}_test REUSE_FROM test_headers)
   arthronaut_compile_apart(${ARG_APART})
