@@ -91,6 +91,7 @@ inline constexpr std::string_view kDrilledEvent = "tunnel drilled";
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier
 inline constexpr std::string_view kSourceEndedEvent = "source ended";
 inline constexpr std::string_view kSourceTroubleEvent = "source trouble";    // text: what; empty: it is over
+inline constexpr std::string_view kCommandRefusedEvent = "command refused";  // text: which, and why
 inline constexpr std::string_view kTrackerTroubleEvent = "tracker trouble";  // of an outside one; likewise
 inline constexpr std::string_view kPicturesKeptEvent = "pictures recorded as";  // text: how, file, why so
 inline constexpr std::string_view kLatencyEvent = "latency";  // text: capture to guidance, of all frames

@@ -13,6 +13,20 @@ namespace arthronaut::theatre {
 
 using recording::KeepVideo;
 
+namespace {
+
+// A hand rests about as long before it presses, and pictures that come ten times a second are not as old.
+constexpr double kHandRests_ms = 300;
+
+bool is_of_this_moment(const operation::Command& command) {
+  const auto* const draw = std::get_if<operation::Draw>(&command);
+  return (draw != nullptr && draw->on) || std::holds_alternative<operation::TakeTouch>(command) ||
+         std::holds_alternative<operation::TouchControlPoint>(command) ||
+         std::holds_alternative<operation::CheckGuide>(command);
+}
+
+}  // namespace
+
 OperationRun::OperationRun(const operation::OperationSetup& setup,
                            std::unique_ptr<RegistrationService> registration,
                            MakeSessionFolder make_session_folder, std::unique_ptr<MediumLookService> looks)
@@ -176,6 +190,7 @@ void OperationRun::measure(const camera::Frame& frame, std::int64_t taken_ns) {
   newest.operation_ms = between_ms(taken_ns, ready_ns) - newest.tracking_ms;
   newest.guidance_ms = between_ms(frame.captured_ns, ready_ns);
   live_.meter.add(newest);
+  live_.captured_ns = frame.captured_ns;
 }
 
 // In the record and the log, when it begins, changes and ends.
@@ -190,7 +205,21 @@ void OperationRun::note_trouble() {
   });
 }
 
+double OperationRun::picture_age_ms() const {
+  if (theatre_source_.setup.kind != sources::SourceKind::Live || live_.captured_ns <= 0) return -1;
+  return static_cast<double>(sources::steady_now_ns() - live_.captured_ns) * 1e-6;
+}
+
 void OperationRun::apply(const operation::Command& command) {
+  if (const double age_ms = picture_age_ms(); age_ms > kHandRests_ms && is_of_this_moment(command)) {
+    const std::string text = files::format("%s: the newest picture is %.0f ms old",
+                                           std::string(operation::name_of(command)).c_str(), age_ms);
+    log::warning("refused: " + text);
+    write([&](recording::OperationRecord& record) {
+      record.add_event(recording::kCommandRefusedEvent, text, frame_state_->frame.timestamp_ns);
+    });
+    return;
+  }
   // The record of what follows goes on with that one's.
   const auto* const resume = std::get_if<operation::ResumeOperation>(&command);
   const bool had_resumed = resume != nullptr && operation_.state()->resumed != nullptr;

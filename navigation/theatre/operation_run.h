@@ -65,6 +65,9 @@ class OperationRun {
   // Ends the source and its record. A disk that fails is told by record_trouble().
   void end_source();
 
+  // What is of this moment (a stroke begins, a tip rests) is not done where the newest picture of a live
+  // source is older than a hand rests before it presses: it would be taken where the probe was, not where it
+  // is. That is recorded; what is wrong is told by watch().
   void apply(const operation::Command& command);
   // Takes in what the registration has found and what was seen of the medium meanwhile; true when the first
   // is something new. step() does it too.
@@ -100,6 +103,7 @@ class OperationRun {
   [[nodiscard]] const tracker::TrackerPoses* ask_tracker();
   void note_tracker();
   void measure(const camera::Frame& frame, std::int64_t taken_ns);
+  [[nodiscard]] double picture_age_ms() const;  // below 0 where nobody knows, or the source is not live
   void note_trouble();
   template <typename What>
   void write(const What& what);  // what(record), while there is one; its failure is told and ends it
@@ -130,6 +134,7 @@ class OperationRun {
     SourceWatch watch;
     LatencyMeter meter;
     FrameLatency newest;
+    std::int64_t captured_ns = 0;  // of the newest picture, on the steady clock; 0: nobody knows
   } live_;
 };
 

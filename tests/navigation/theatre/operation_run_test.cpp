@@ -35,10 +35,11 @@ class OperationRunTest : public ::testing::Test {
   operation::OperationSetup setup_ = test::phantom_setup();
 };
 
-// Pictures of a live source, each so old when it is given.
+// Pictures of a live source, each so old when it is received, the sixth older.
 class AgedSource : public test::PlainSource {
  public:
-  explicit AgedSource(std::int64_t count) : PlainSource(count, false) {}
+  explicit AgedSource(std::int64_t count, std::int64_t age_ms = 11, std::int64_t sixth_ms = 140)
+      : PlainSource(count, false), age_ns_(age_ms * 1'000'000), sixth_ns_(sixth_ms * 1'000'000) {}
   [[nodiscard]] camera::FramePtr next() override {
     const camera::FramePtr plain = PlainSource::next();
     if (plain == nullptr) return nullptr;
@@ -46,10 +47,50 @@ class AgedSource : public test::PlainSource {
         test::round_frame(plain->index, static_cast<std::uint8_t>(100 + plain->index)));
     frame->decoded_ns = sources::steady_now_ns();
     frame->received_ns = frame->decoded_ns - 7'000'000;
-    frame->captured_ns = frame->received_ns - (frame->index == 5 ? 140'000'000 : 11'000'000);
+    frame->captured_ns = frame->received_ns - (frame->index == 5 ? sixth_ns_ : age_ns_);
     return frame;
   }
+
+ private:
+  std::int64_t age_ns_, sixth_ns_;
 };
+
+// A pedal is pressed for where the probe is now; what comes two seconds late shows where it was.
+TEST_F(OperationRunTest, Hazard3NoTouchAndNoStrokeIsTakenOfAnOldPicture) {
+  const fs::path session = folder_ / "session";
+  fs::create_directory(session);
+  OperationRun run(setup_, test::at_once(setup_), [&] { return session; });
+  TheatreSource source = test::plain_source(0, false, sources::SourceKind::Live);
+  // The others are of a minute ahead: no busy machine makes them old.
+  source.open = [] { return std::make_unique<AgedSource>(8, -60'000, 2000); };
+  run.start(source);
+  const auto step_to = [&](std::int64_t index) {
+    while (run.step().picture->index < index) {
+    }
+  };
+  step_to(4);
+  run.apply(operation::TakeTouch{});
+  EXPECT_EQ(run.state()->touch_refusal, operation::TouchRefusal::TipUnknown) << "looked at, and no tip there";
+  run.apply(operation::ForgetTouches{});
+  step_to(5);
+  const auto before = run.state()->touch_asked_ns;
+  run.apply(operation::TakeTouch{});
+  run.apply(operation::TouchControlPoint{});
+  run.apply(operation::CheckGuide{});
+  run.apply(operation::Draw{true});
+  EXPECT_EQ(run.state()->touch_asked_ns, before);
+  EXPECT_FALSE(run.state()->draws);
+  step_to(6);
+  run.apply(operation::Draw{true});
+  EXPECT_TRUE(run.state()->draws);
+  (void)run_to_end(run);
+  std::vector<std::string> refused;
+  const recording::RecordedSession recorded(session);
+  for (const recording::SessionEvent& event : recorded.events())
+    if (event.kind == recording::kCommandRefusedEvent) refused.push_back(event.text);
+  ASSERT_EQ(refused.size(), 4U);
+  EXPECT_EQ(refused[0].find("touch: the newest picture is "), 0U) << refused[0];
+}
 
 // How long each picture of a live source took is in its record, stage by stage; that one was late is an
 // event.
