@@ -62,8 +62,7 @@ void PlanModel::use_landmarks(bones::BoneKind kind) {
   bone.axes = landmarks::anatomical_axes(kind, knee_.side, landmarks(kind), mesh);
   bone.joint_bounds = scene::joint_bounds(mesh, kind, bone.axes);
   bone.review = plan_review::review_bone(mesh, kind, knee_.side, landmarks(kind), bone.review.surface);
-  if (kind == bones::BoneKind::Femur)
-    knee_surroundings_ = tunnels::knee_surroundings_of(mesh, bone.review.surroundings);
+  plan_review::put_bone(knee_surroundings_, kind, bone.review);
 }
 
 const landmarks::Landmarks& PlanModel::landmarks(bones::BoneKind kind) const {

@@ -25,6 +25,18 @@ ReviewedBone review_bone(const geometry::TriangleMesh& mesh, BoneKind kind, bone
   return reviewed;
 }
 
+void put_bone(tunnels::KneeSurroundings& knee, BoneKind kind, const ReviewedBone& bone) {
+  if (kind == BoneKind::Femur) {
+    auto insertions_mm = std::move(knee.insertions_mm);
+    knee = tunnels::knee_surroundings_of(bone.surface->mesh(), bone.surroundings);
+    knee.insertions_mm = std::move(insertions_mm);
+  }
+  std::erase_if(knee.insertions_mm, [&](const auto& one) { return one.first.bone == kind; });
+  for (const auto& [bundle, footprint] : bone.footprints)
+    knee.insertions_mm[{kind, bundle}] = footprint.center_mm;
+  if (const auto& native = bone.surroundings.native_footprint_mm) knee.insertions_mm[kind] = *native;
+}
+
 const MeasuredTunnel* other_end(const tunnels::TunnelKey& key, const MeasuredPlan& plan) {
   const BoneKind other = key.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
   auto found = plan.find({other, key.bundle});
@@ -78,7 +90,7 @@ CaseReview::CaseReview(const cases::Case& knee) {
                                        marks == knee.landmarks.end() ? landmarks::Landmarks{} : marks->second,
                                        std::make_shared<const geometry::Surface>(bone.mesh)))
             .first->second;
-    if (kind == BoneKind::Femur) knee_ = tunnels::knee_surroundings_of(bone.mesh, reviewed.surroundings);
+    put_bone(knee_, kind, reviewed);
     for (const tunnels::TunnelKey& key : knee.plan.of(kind)) {
       const tunnels::Tunnel& tunnel = knee.plan.tunnels.at(key);
       planned_.emplace(key, MeasuredTunnel{tunnel, tunnels::measure(tunnel, *reviewed.surface)});

@@ -27,6 +27,10 @@ struct ReviewedBone {
                                        bones::Side side, const landmarks::Landmarks& landmarks,
                                        std::shared_ptr<const geometry::Surface> surface);
 
+// What a bone says of the whole knee takes the place of what it said before. The insertions are the expected
+// ones; of the whole ligament the native one where a landmark gives it.
+void put_bone(tunnels::KneeSurroundings& knee, bones::BoneKind kind, const ReviewedBone& bone);
+
 // As planned and as measured in its bone.
 struct MeasuredTunnel {
   tunnels::Tunnel tunnel;

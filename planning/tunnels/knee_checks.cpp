@@ -1,5 +1,7 @@
 #include "planning/tunnels/knee_checks.h"
 
+#include <cmath>
+
 #include "planning/files/format.h"
 #include "planning/graft/graft_course.h"
 #include "planning/graft/roof_clearance.h"
@@ -48,8 +50,18 @@ PlanCheck check_graft_length(const KneePlan& plan) {
       .unit = "mm"};
 }
 
-PlanCheck check_length_change(const graft::GraftCourse& course, const graft::FlexionAxis& axis,
-                              const PlanNorms& norms) {
+std::optional<graft::GraftCourse> course_of_insertions(norms::Bundle graft,
+                                                       const KneeSurroundings& surroundings) {
+  const auto& known = surroundings.insertions_mm;
+  const auto femoral = known.find({bones::BoneKind::Femur, graft});
+  const auto tibial = known.find({bones::BoneKind::Tibia, graft});
+  if (femoral == known.end() || tibial == known.end()) return std::nullopt;
+  return graft::graft_course({femoral->second}, {tibial->second}, *surroundings.axis);
+}
+
+PlanCheck check_length_change(const graft::GraftCourse& course,
+                              const std::optional<graft::GraftCourse>& of_insertions,
+                              const graft::FlexionAxis& axis, const PlanNorms& norms) {
   PlanCheck check{.verdict = Verdict::Fine,
                   .name = "Length over flexion",
                   .text = number_text(course.change_mm(), "mm") + " from 0 to 120 deg, longest at " +
@@ -59,7 +71,44 @@ PlanCheck check_length_change(const graft::GraftCourse& course, const graft::Fle
                   .value = course.change_mm(),
                   .unit = "mm",
                   .greatest = norms.isometric_change_mm};
-  if (course.change_mm() > norms.isometric_change_mm) {
+  if (course.change_mm() <= norms.isometric_change_mm) return check;
+  check.verdict = Verdict::Look;
+  check.text += ": more than the customary " + limit_text(norms.isometric_change_mm, "mm");
+  if (!of_insertions) return check;
+  const std::string in_hinge =
+      " between the insertions' middles in the same hinge: " + number_text(of_insertions->change_mm(), "mm");
+  const bool is_kept_there = of_insertions->change_mm() <= norms.isometric_change_mm;
+  check.text += is_kept_there ? ", other than" + in_hinge : ", as" + in_hinge;
+  // What the knee's own ligament does not keep in this model says nothing about a plan.
+  if (!is_kept_there) check.verdict = Verdict::Note;
+  return check;
+}
+
+PlanCheck check_against_insertions(const graft::GraftCourse& course,
+                                   const std::optional<graft::GraftCourse>& of_insertions,
+                                   const PlanNorms& norms) {
+  const char* name = "Against the insertions";
+  if (!of_insertions) return not_checked(name, "the grid of the femur or of the tibia");
+  double most_mm = 0, most_at_deg = 0;  // longer than between the insertions
+  for (std::size_t i = 0; i < course.states.size(); ++i) {
+    const double longer_mm = course.states[i].length_mm - course.states.front().length_mm -
+                             (of_insertions->states[i].length_mm - of_insertions->states.front().length_mm);
+    if (std::abs(longer_mm) <= std::abs(most_mm)) continue;
+    most_mm = longer_mm;
+    most_at_deg = course.states[i].flexion_deg;
+  }
+  PlanCheck check{
+      .verdict = Verdict::Fine,
+      .name = name,
+      .text = "up to " + number_text(std::abs(most_mm), "mm") +
+              (most_mm < 0 ? " slacker, at " : " tighter, at ") + number_text(most_at_deg, "deg"),
+      .source =
+          "how its length changes from extension on, beside a graft between the insertions' middles in "
+          "the same model; 3 mm is the custom for a change, taken for this difference by choice",
+      .value = std::abs(most_mm),
+      .unit = "mm",
+      .greatest = norms.isometric_change_mm};
+  if (std::abs(most_mm) > norms.isometric_change_mm) {
     check.verdict = Verdict::Look;
     check.text += ": more than " + limit_text(norms.isometric_change_mm, "mm");
   }
@@ -132,14 +181,17 @@ std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,
   if (!is_femur) checks.push_back(check_roof(plan, surroundings, norms));
   if (!missing.empty()) {
     if (is_femur)
-      checks = {not_checked("Graft length", missing), not_checked("Length over flexion", missing)};
+      checks = {not_checked("Graft length", missing), not_checked("Length over flexion", missing),
+                not_checked("Against the insertions", missing)};
     checks.push_back(not_checked(bend, missing));
     return checks;
   }
   if (is_femur) checks.push_back(check_graft_length(plan));
   if (!surroundings.axis) {
     const char* needed = "the flexion axis: two condyles' centres, their posterior points or the epicondyles";
-    if (is_femur) checks.push_back(not_checked("Length over flexion", needed));
+    if (is_femur)
+      for (const char* name : {"Length over flexion", "Against the insertions"})
+        checks.push_back(not_checked(name, needed));
     checks.push_back(not_checked(bend, needed));
     return checks;
   }
@@ -148,7 +200,9 @@ std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,
                           end_of(*plan.tibial, *plan.tibial_measured), *surroundings.axis);
   const graft::GraftState& extended = course.states.front();
   if (is_femur) {
-    checks.push_back(check_length_change(course, *surroundings.axis, norms));
+    const auto of_insertions = course_of_insertions(plan.graft, surroundings);
+    checks.push_back(check_length_change(course, of_insertions, *surroundings.axis, norms));
+    checks.push_back(check_against_insertions(course, of_insertions, norms));
     checks.push_back(note_bend(bend, extended.femoral_bend_deg, course.greatest_femoral_bend_deg));
   } else {
     checks.push_back(note_bend(bend, extended.tibial_bend_deg, course.greatest_tibial_bend_deg));

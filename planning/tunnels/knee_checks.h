@@ -3,6 +3,7 @@
 // by what models.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -16,7 +17,11 @@ struct KneeSurroundings {
   std::optional<graft::FlexionAxis> axis = {};
   std::optional<landmarks::AnatomicalAxes> femur_axes = {};
   landmarks::Landmarks femur_landmarks = {};
+  // Where the ligament and its bundles were attached, middles, as imaged: what a graft is compared with over
+  // flexion. A missing one is unknown.
+  std::map<TunnelKey, Eigen::Vector3d> insertions_mm = {};
 };
+// Without insertions, which come from norms.
 [[nodiscard]] KneeSurroundings knee_surroundings_of(const geometry::TriangleMesh& femur,
                                                     const PlanSurroundings& of_femur);
 
@@ -29,7 +34,9 @@ struct KneePlan {
   norms::Bundle graft = norms::Bundle::Whole;
 };
 
-// Femur: length of the graft in the joint and in all, its change over flexion, its bend at the femur. Tibia:
+// Femur: length of the graft in the joint and in all, its change over flexion, how that differs from a graft
+// between the insertions' middles, its bend at the femur. The change is judged by its customary limit only
+// where those insertions keep it themselves in the same model; else it is a note. Tibia:
 // the roof in extension, which asks for the tibial tunnel alone, the bend at the tibia. What lacks a tunnel,
 // an axis or Blumensaat's line is said to be not checked.
 [[nodiscard]] std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,

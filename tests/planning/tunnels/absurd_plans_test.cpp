@@ -206,7 +206,9 @@ TEST_P(AbsurdPlans, EveryCheckIsData) {
 TEST_P(AbsurdPlans, TheKneeIsCheckedAsAWhole) {
   const auto femoral = measure(knee_.femoral_tunnel, *femur_.surface),
              tibial = measure(knee_.tibial_tunnel, *tibia_.surface);
-  const auto knee = knee_surroundings_of(femur_.mesh, femur_.known);
+  auto knee = knee_surroundings_of(femur_.mesh, femur_.known);
+  knee.insertions_mm = {{BoneKind::Femur, knee_.femoral_tunnel.entry_mm},
+                        {BoneKind::Tibia, knee_.tibial_tunnel.entry_mm}};
   const KneePlan plan{&knee_.femoral_tunnel, &femoral, &knee_.tibial_tunnel, &tibial};
   for (const auto kind : {BoneKind::Femur, BoneKind::Tibia}) {
     for (const auto& check : check_knee(kind, plan, knee)) {
