@@ -61,13 +61,23 @@ std::string depth_text(const TunnelGeometry& geometry) {
   return "at " + number_text(geometry.thinnest_station_mm, "mm") + " of depth";
 }
 
-// "breaks out of the bone over 4.0 mm, from the mouth to 4.0 mm of depth".
+// "breaks out of the bone over 4.0 mm, from the mouth to 4.0 mm of depth"; of more than two places, as in
+// thin bone that was imaged coarsely, where they lie and how much they are together.
 std::string breach_text(const Tunnel& tunnel, const TunnelGeometry& geometry,
                         const geometry::Surface* surface) {
   constexpr double kAtMouth_mm = 0.05;
   std::string text;
   const auto breaches =
       surface != nullptr ? breaches_of(tunnel, geometry, *surface) : std::vector<DepthRange>{};
+  if (breaches.size() > 2) {
+    double together_mm = 0;
+    for (const DepthRange& breach : breaches)
+      together_mm += std::min(breach.to_mm, geometry.length_mm) - std::max(breach.from_mm, 0.0);
+    return "breaks out of the bone in " + std::to_string(breaches.size()) + " places, over " +
+           number_text(together_mm, "mm") + " in all, from " +
+           number_text(std::max(breaches.front().from_mm, 0.0), "mm") + " to " +
+           number_text(std::min(breaches.back().to_mm, geometry.length_mm), "mm") + " of depth";
+  }
   for (const DepthRange& breach : breaches) {
     const double from = std::max(breach.from_mm, 0.0), to = std::min(breach.to_mm, geometry.length_mm);
     const bool from_mouth = from < kAtMouth_mm;

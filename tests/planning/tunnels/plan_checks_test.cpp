@@ -85,6 +85,25 @@ TEST(PlanChecks, SaysOverHowMuchOfTheTunnelABreachGoes) {
       text_of({{3.5, 0}, {3.5, 5}, {5.5, 10}, {5.5, 25}, {3.5, 30}, {-40, 30}, {-40, 0}}),
       ::testing::EndsWith("over 7.5 mm, from the mouth to 7.5 mm of depth and over 2.5 mm, from 27.5 mm of "
                           "depth to the exit"));
+  // Three of 2 mm and their slants: nobody reads a list.
+  EXPECT_THAT(text_of({{3.5, 4},
+                       {3.5, 6},
+                       {5.5, 6.2},
+                       {5.5, 13.8},
+                       {3.5, 14},
+                       {3.5, 16},
+                       {5.5, 16.2},
+                       {5.5, 23.8},
+                       {3.5, 24},
+                       {3.5, 26},
+                       {5.5, 26.2},
+                       {5.5, 30},
+                       {-40, 30},
+                       {-40, 0},
+                       {5.5, 0},
+                       {5.5, 3.8}}),
+              ::testing::EndsWith(
+                  "breaks out of the bone in 3 places, over 6.6 mm in all, from 3.9 mm to 26.1 mm of depth"));
 }
 
 // The limits of the back wall are the femur's: a tibial tunnel thins out at its slanting exit.
