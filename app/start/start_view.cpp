@@ -92,7 +92,8 @@ void StartView::tick() {
   if (before == State::Running && now == State::Asking) {
     state_.side = work_.result().side;
     made_.show(work_.result());
-    state_.name = "Knee " + files::utc_now_as("%Y-%m-%d");
+    // One that no case of the day has: two of one name would be told apart by their folders alone.
+    state_.name = new_case_folder(cases_folder(), "Knee " + files::utc_now_as("%Y-%m-%d")).stem().string();
   }
   if (before == State::Running && asks_for_labels())
     state_.labels = importing::likely_labels(work_.refusal().labels);

@@ -12,7 +12,9 @@ std::vector<WhoseLine> whose_knee(const std::optional<cases::Identity>& identity
     if (!id.empty() || !born.empty())
       lines.push_back({id, (id.empty() || born.empty() ? "" : "  \u00B7  ") + born, true});
   }
-  lines.push_back({case_name, "  \u2013  " + std::string(bones::to_text(side)) + " knee", false});
+  const std::string knee = std::string(bones::to_text(side)) + " knee";
+  if (lines.empty()) return {{case_name, "", false}, {"", knee, false}};  // there is room for the whole name
+  lines.push_back({case_name, "  \u2013  " + knee, false});
   return lines;
 }
 

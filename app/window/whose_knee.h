@@ -16,7 +16,8 @@ struct WhoseLine {
   bool is_of_patient = false;
 };
 
-// The patient as far as known, the name of the case with its side. At most three lines.
+// The patient as far as known, the name of the case, its side. Two or three lines: of a case without a
+// patient its name has one to itself, which tells two of a day apart.
 [[nodiscard]] std::vector<WhoseLine> whose_knee(const std::optional<cases::Identity>& identity,
                                                 const std::string& case_name, bones::Side side);
 

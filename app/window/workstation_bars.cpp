@@ -53,7 +53,7 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
       const std::string words =
           widgets::fitting(font, line.may_be_cut, room - width_of(line.rest)) + line.rest;
       const ImVec2 at{right - width_of(words), y};
-      const bool is_quiet = !line.is_of_patient && lines.size() > 1;
+      const bool is_quiet = !line.is_of_patient && lines.front().is_of_patient;
       draw.AddText(font, row, at, is_quiet ? widgets::kQuietText : widgets::kText, words.c_str());
       ui.log.note("app.whose", at, {right, y + row});
       whole += (whole.empty() ? "" : " / ") + words;
@@ -73,7 +73,9 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
 std::pair<std::string, bool> WorkstationWindow::status_words() {
   const std::string standstill = heartbeat_.words();
   const std::string fault = fault_.words(widgets::GraphicsWindow::now_s());
-  const std::string notice = !failure_.empty()                ? failure_
+  const std::string untaken = untaken_.words(widgets::GraphicsWindow::now_s());
+  const std::string notice = !untaken.empty()                 ? untaken
+                             : !failure_.empty()              ? failure_
                              : !fault.empty()                 ? fault
                              : !standstill.empty()            ? standstill
                              : shows_start() || shows_paint() ? std::string()

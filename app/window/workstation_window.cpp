@@ -238,7 +238,10 @@ void WorkstationWindow::dispatch_keys() {
       shows_keys_ = false;
       continue;
     }
-    actions_.press(press, action_prefixes());
+    if (actions_.press(press, action_prefixes()))
+      untaken_.forget();
+    else if (!has_pedals || opening_ != nullptr)
+      untaken_.note(press, actions_, action_prefixes(), opening_ != nullptr, GraphicsWindow::now_s());
     // What is typed after the key that opens a text field is meant for the field.
     const bool awaits_text = shows_start()   ? start_.awaits_text()
                              : shows_paint() ? false
@@ -328,6 +331,7 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   log_.note_state("standstill", heartbeat_.words());
   log_.note_state("slow_screen", slow_.words());
   log_.note_state("screen_copy", copies_.words(ui.now_s));
+  log_.note_state("untaken_key", untaken_.words(ui.now_s));
   log_.note_state("frame_fault", fault_.words(ui.now_s));
   log_.note_state("mode", shown().title().name);
   if (options_.list_widgets)

@@ -19,6 +19,7 @@
 #include "app/window/draw_watch.h"
 #include "app/window/frame_fault.h"
 #include "app/window/room.h"
+#include "app/window/untaken_key.h"
 #include "app/window/workstation.h"
 #include "navigation/worker/letting_go.h"
 
@@ -101,6 +102,7 @@ class WorkstationWindow {
   widgets::SlowScreen slow_;
   DrawWatch watch_;
   FrameFault fault_;
+  UntakenKey untaken_;
   screen_copy::ScreenCopies copies_;
   start::StartView start_;
   paint::PaintView paint_;

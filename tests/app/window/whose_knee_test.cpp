@@ -25,7 +25,10 @@ TEST(WhoseKnee, NeitherBirthDateNorSideIsCutShort) {
 }
 
 TEST(WhoseKnee, OnlyWhatIsKnownHasALine) {
-  EXPECT_EQ(whose_knee(std::nullopt, "Knee", bones::Side::Right).size(), 1U);
+  const auto alone = whose_knee(std::nullopt, "Knee 2026-11-24 2", bones::Side::Right);
+  ASSERT_EQ(alone.size(), 2U);
+  EXPECT_EQ(alone[0].may_be_cut + "|" + alone[0].rest, "Knee 2026-11-24 2|");
+  EXPECT_EQ(alone[1].may_be_cut + "|" + alone[1].rest, "|right knee");
   const auto lines = whose_knee(cases::Identity{"", "", "19900131"}, "Knee", bones::Side::Right);
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[0].may_be_cut, "");

@@ -1,0 +1,37 @@
+#include "app/window/untaken_key.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+
+namespace arthronaut::window {
+
+namespace {
+
+constexpr double kSaid_s = 5;
+
+}  // namespace
+
+void UntakenKey::note(const widgets::KeyPress& press, const widgets::Actions& actions,
+                      const std::vector<std::string_view>& prefixes, bool is_opening, double now_s) {
+  const std::string name = widgets::key_name(press.key, press.mods);
+  if (press.is_repeat || name.empty()) return;
+  noted_at_s_ = now_s;
+  if (is_opening) {
+    words_ = name + " did nothing: the case is still being opened. Press it again then";
+    return;
+  }
+  if (press.key == GLFW_KEY_ESCAPE) return;
+  const auto its = std::ranges::find_if(actions.all(), [&](const widgets::Action& action) {
+    return action.key == press.key && action.mods == press.mods &&
+           std::ranges::any_of(prefixes,
+                               [&](std::string_view prefix) { return action.id.starts_with(prefix); });
+  });
+  if (its != actions.all().end()) words_ = name + " did nothing: " + its->label + " is not possible now";
+}
+
+std::string UntakenKey::words(double now_s) const {
+  return now_s - noted_at_s_ < kSaid_s ? words_ : std::string();
+}
+
+}  // namespace arthronaut::window

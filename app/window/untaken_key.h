@@ -1,0 +1,28 @@
+// A key that was pressed and did nothing, because a case is still being opened or because what it is for is
+// not possible now. Said for some seconds: no key is lost in silence.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/widgets/actions.h"
+
+namespace arthronaut::window {
+
+class UntakenKey {
+ public:
+  // Of every press that no action took; prefixes: of the actions in reach, as Actions::press() has them. A
+  // key that is for nothing here, held on, or a way out of what is not there (Esc) needs no words.
+  void note(const widgets::KeyPress& press, const widgets::Actions& actions,
+            const std::vector<std::string_view>& prefixes, bool is_opening, double now_s);
+  void forget() { words_.clear(); }  // a key was taken since
+  // "N did nothing: Default plan is not possible now"; empty while there is nothing to say.
+  [[nodiscard]] std::string words(double now_s) const;
+
+ private:
+  std::string words_;
+  double noted_at_s_ = 0;
+};
+
+}  // namespace arthronaut::window

@@ -1,0 +1,43 @@
+#include "app/window/untaken_key.h"
+
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+
+namespace arthronaut::window {
+namespace {
+
+class UntakenKeys : public ::testing::Test {
+ protected:
+  UntakenKeys() {
+    actions_.add({"plan.default", "Default plan", "", GLFW_KEY_N, 0, false, [] { return false; }});
+  }
+  std::string after(int key, bool is_opening = false) {
+    UntakenKey untaken;
+    untaken.note({key, 0, false}, actions_, {"app.", "plan."}, is_opening, 10);
+    EXPECT_EQ(untaken.words(100), "") << "long after";
+    return untaken.words(11);
+  }
+  widgets::Actions actions_;
+};
+
+// Whoever presses a key learns what became of it.
+TEST_F(UntakenKeys, AreSaidWithTheirReason) {
+  EXPECT_EQ(after(GLFW_KEY_N), "N did nothing: Default plan is not possible now");
+  EXPECT_EQ(after(GLFW_KEY_N, true), "N did nothing: the case is still being opened. Press it again then");
+}
+
+TEST_F(UntakenKeys, NeedNoWordsWhereTheyAreForNothing) {
+  EXPECT_EQ(after(GLFW_KEY_K), "");
+  EXPECT_EQ(after(GLFW_KEY_ESCAPE), "");
+  EXPECT_EQ(after(GLFW_KEY_LEFT_SHIFT, true), "");
+}
+
+TEST_F(UntakenKeys, AreForgottenWithTheNextThatIsTaken) {
+  UntakenKey untaken;
+  untaken.note({GLFW_KEY_N, 0, false}, actions_, {"plan."}, false, 10);
+  untaken.forget();
+  EXPECT_EQ(untaken.words(10), "");
+}
+
+}  // namespace
+}  // namespace arthronaut::window
