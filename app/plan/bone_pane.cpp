@@ -303,7 +303,7 @@ void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
     if (!is_one_of_many)
       ui.log.note("plan." + mark.id + "_handle", {at.x - r, at.y - r}, {at.x + r, at.y + r});
   }
-  if (under_mouse != nullptr) widgets::tooltip(ui.theme, under_mouse->tooltip);
+  if (under_mouse != nullptr) widgets::tooltip_at_mouse(ui, under_mouse->tooltip);
   draw.PopClipRect();
 }
 

@@ -75,9 +75,9 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
     ImFont* font = i == selected ? ui.theme.strong : ui.theme.body;
     draw.AddText(font, font->FontSize, {at.x + ui.theme.px(32), at.y + (height - font->FontSize) / 2},
                  widgets::kText, rows[i].title.c_str());
-    if (is_hovered) widgets::tooltip(ui.theme, rows[i].title + ": " + rows[i].meaning);
+    if (is_hovered) widgets::tooltip(ui, {at.x, at.y, width, height}, rows[i].title + ": " + rows[i].meaning);
     if (ImGui::IsRectVisible(at, {at.x + width, at.y + height}))
-      ui.log.note("plan.landmark." + rows[i].name, at, {at.x + width, at.y + height});
+      ui.log.note_button("plan.landmark." + rows[i].name, at, {at.x + width, at.y + height});
   }
   ImGui::EndChild();
   const char* word = row.state == LandmarkRow::State::Confirmed ? "confirmed"

@@ -79,7 +79,7 @@ void LateralView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
           percent_text(percent) +
           "\nYellow: where studies found it, mean and one standard deviation; no limits of safety.";
       for (const scene::NormEllipse& norm : norms_of(*model_, *quadrant)) words += "\n" + norm.words;
-      widgets::tooltip(ui.theme, words);
+      widgets::tooltip_at_mouse(ui, words);
     }
   }
 }

@@ -70,6 +70,16 @@ void draw_saved(const widgets::Ui& ui, const open_case::PlanStatus& status) {
   widgets::status_row(ui, severity_of_save(status.save), "Plan", status.text);
 }
 
+// What draw_saved() needs beyond its one line: a conflict and a failure have more words.
+float more_of_saved(const widgets::Ui& ui, const open_case::PlanStatus& status) {
+  const ImFont* font = ui.theme.body;
+  const float width = ImGui::GetContentRegionAvail().x - ui.theme.px(90);
+  const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, status.text.c_str()).x;
+  return wide <= width
+             ? 0
+             : font->CalcTextSizeA(font->FontSize, 1e9F, width + ui.theme.px(60), status.text.c_str()).y;
+}
+
 // What to do next, and the button that begins it.
 void draw_next(const widgets::Ui& ui, const NextStep& next) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -88,7 +98,7 @@ void draw_next(const widgets::Ui& ui, const NextStep& next) {
   ImGui::PushID("next");
   if (ImGui::InvisibleButton("do", {width, height})) ui.actions.run(next.action);
   ImGui::PopID();
-  ui.log.note("plan.next", at, {at.x + width, at.y + height});
+  ui.log.note_button("plan.next", at, {at.x + width, at.y + height});
 }
 
 // What spoke against the bone when it was made: all that follows from its shape is as doubtful.
@@ -122,7 +132,7 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
     ImGui::BeginGroup();
     widgets::status_row(ui, severity_of(check.verdict), check.name, check.text);
     ImGui::EndGroup();
-    if (ImGui::IsItemHovered() && !check.source.empty()) widgets::tooltip(ui.theme, check.source);
+    if (ImGui::IsItemHovered() && !check.source.empty()) widgets::tooltip(ui, check.source);
   }
   widgets::text_in(ui.theme.body, widgets::kQuietText,
                    "Customary values, not limits of safety. The surgeon decides.");
@@ -174,9 +184,9 @@ bool draw_row(const widgets::Ui& ui, const ListRow& row) {
                              : widgets::kQuietText,
                row.text.c_str());
   const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, row.text.c_str()).x;
-  if (ImGui::IsItemHovered() && wide > width - ui.theme.px(20)) widgets::tooltip(ui.theme, row.text);
+  if (ImGui::IsItemHovered() && wide > width - ui.theme.px(20)) widgets::tooltip(ui, row.text);
   if (ImGui::IsRectVisible(at, {at.x + width, at.y + height}))
-    ui.log.note("plan." + row.id, at, {at.x + width, at.y + height});
+    ui.log.note_button("plan." + row.id, at, {at.x + width, at.y + height});
   return is_clicked;
 }
 
@@ -241,10 +251,11 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
     ImGui::SameLine(0, ui.theme.px(6));
   }
   ImGui::NewLine();
+  const float more = more_of_saved(ui, panel.history.status());
   switch (panel.page) {
     case PanelPage::Checks:
       // The checks scroll; what is pressed stays in sight.
-      ImGui::BeginChild("checks", {0, ImGui::GetContentRegionAvail().y -
+      ImGui::BeginChild("checks", {0, ImGui::GetContentRegionAvail().y - more -
                                           ui.theme.px(panel.key.bundle == norms::Bundle::Whole ? 262 : 314)});
       draw_checks(ui, panel);
       ImGui::EndChild();
@@ -256,7 +267,7 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
       const bool has_roof =
           panel.key.bone == bones::BoneKind::Femur && panel.model.has_bone(bones::BoneKind::Femur);
       clicked.landmark = draw_landmark_list(ui, panel.model, panel.key.bone, panel.landmark,
-                                            ui.theme.px(has_roof ? 378 : 252));
+                                            ui.theme.px(has_roof ? 378 : 252) + more);
       if (has_roof) {
         widgets::text_in(ui.theme.body, widgets::kText, roof_line_in_words(panel.model));
         widgets::action_button(ui, "plan.roof", ImGui::GetContentRegionAvail().x);

@@ -104,9 +104,9 @@ void action_button(const Ui& ui, std::string_view action_id, float width, float 
   }
   draw.PopClipRect();
   if (hovered && !action->tooltip.empty())
-    tooltip(ui.theme, action->tooltip + (needs_hold ? ". Hold it down" : "") +
-                          (key_in_tooltip.empty() ? "" : " (" + key_in_tooltip + ")"));
-  ui.log.note(action->id, min, max);
+    tooltip(ui, action->tooltip + (needs_hold ? ". Hold it down" : "") +
+                    (key_in_tooltip.empty() ? "" : " (" + key_in_tooltip + ")"));
+  ui.log.note_button(action->id, min, max);
   ImGui::PopID();
 }
 

@@ -53,7 +53,7 @@ RowPress draw_row(const Ui& ui, const ListRow& row) {
   }
   std::string word = row.name;  // the list of widgets is one of words
   std::replace(word.begin(), word.end(), ' ', '_');
-  if (ImGui::IsRectVisible(at, to)) ui.log.note(word, at, to);
+  if (ImGui::IsRectVisible(at, to)) ui.log.note_button(word, at, to);
   ImGui::SetCursorScreenPos(at);
   ImGui::Dummy({width, row.height});
   return twice ? RowPress::Twice : once ? RowPress::Once : RowPress::None;

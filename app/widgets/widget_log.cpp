@@ -13,6 +13,11 @@ void WidgetLog::note(std::string_view name, const ImVec2& min, const ImVec2& max
   frame_ += "\n";
 }
 
+void WidgetLog::note_button(std::string_view name, const ImVec2& min, const ImVec2& max) {
+  next_buttons_.push_back({min.x, min.y, max.x - min.x, max.y - min.y});
+  note(name, min, max);
+}
+
 void WidgetLog::note_state(std::string_view key, std::string_view value) {
   if (!prints_) return;
   const auto known = states_.find(key);
@@ -31,6 +36,8 @@ void WidgetLog::add(std::string_view what, double amount) {
 }
 
 void WidgetLog::end_frame() {
+  buttons_.swap(next_buttons_);
+  next_buttons_.clear();
   if (!prints_) return;
   add("shown_s", std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count());
   if (frame_ != printed_) {

@@ -12,6 +12,9 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "app/widgets/layout.h"
 
 namespace arthronaut::widgets {
 
@@ -19,6 +22,10 @@ class WidgetLog {
  public:
   explicit WidgetLog(bool prints) : prints_(prints) {}
   void note(std::string_view name, const ImVec2& min, const ImVec2& max);
+  // The same of what can be clicked on.
+  void note_button(std::string_view name, const ImVec2& min, const ImVec2& max);
+  // Where these were in the last frame, whether or not any of it is printed.
+  [[nodiscard]] const std::vector<Rect>& buttons() const { return buttons_; }
   void note_state(std::string_view key, std::string_view value);
   // Adds to a number of this frame: a count, bytes, milliseconds.
   void add(std::string_view what, double amount);
@@ -44,6 +51,7 @@ class WidgetLog {
  private:
   bool prints_;
   std::string frame_, printed_, new_states_;
+  std::vector<Rect> buttons_, next_buttons_;
   std::map<std::string, std::string, std::less<>> states_;
   std::map<std::string, double, std::less<>> numbers_;
 };
