@@ -1,7 +1,7 @@
 #include "app/library/case_thumbnail.h"
 
 #include "app/scene/plan_picture.h"
-#include "planning/cases/case.h"
+#include "app/scene/scene_content.h"
 #include "planning/files/private_folder.h"
 
 namespace arthronaut::workstation_library {
@@ -21,8 +21,14 @@ bool has_thumbnail(const fs::path& case_folder) {
   return true;
 }
 
-void make_thumbnail(const fs::path& case_folder) {
-  const cases::Case knee = cases::load_case(case_folder);
+cases::Case load_for_thumbnail(const fs::path& case_folder) {
+  constexpr std::size_t kTriangles = 30'000;
+  cases::Case knee = cases::load_case(case_folder);
+  for (auto& [kind, bone] : knee.bones) bone.mesh = *scene::simplified(bone.mesh, kTriangles);
+  return knee;
+}
+
+void draw_thumbnail(const fs::path& case_folder, const cases::Case& knee) {
   const scene::Image picture = scene::render_plan_picture({.knee = &knee,
                                                            .only_bone = {},
                                                            .achieved = {},

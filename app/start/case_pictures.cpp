@@ -30,26 +30,42 @@ const widgets::VideoTexture* CasePictures::of(const fs::path& case_folder) {
 }
 
 void CasePictures::poll() {
-  if (making_.is_busy()) {
-    if (!making_.is_ready()) return;
-    const fs::path next = wanted_;
-    finish();
-    wanted_ = next;
+  std::erase_if(left_, [](const auto& one) { return one->is_ready(); });
+  if (making_->is_busy()) {
+    if (!making_->is_ready()) return;
+    take();
   }
   if (wanted_.empty()) return;
   made_ = std::exchange(wanted_, {});
-  making_.start([folder = made_] { workstation_library::make_thumbnail(folder); }, wake_);
+  making_->start(
+      [folder = made_, shared = shared_] {
+        const cases::Case knee = workstation_library::load_for_thumbnail(folder);
+        const std::scoped_lock lock(shared->drawing);
+        if (shared->is_wanted) workstation_library::draw_thumbnail(folder, knee);
+      },
+      wake_);
 }
 
-void CasePictures::finish() {
-  wanted_.clear();
-  if (!making_.is_busy()) return;
+void CasePictures::take() {
   try {
-    making_.take();
+    making_->take();
     if (!workstation_library::has_thumbnail(made_)) without_.insert(made_);
   } catch (const std::exception&) {  // as in of()
     without_.insert(made_);
   }
+  made_.clear();
+}
+
+void CasePictures::finish() {
+  wanted_.clear();
+  if (!making_->is_busy()) return;
+  if (making_->is_ready()) return take();
+  {
+    const std::scoped_lock lock(shared_->drawing);
+    shared_->is_wanted = false;
+  }
+  left_.push_back(std::exchange(making_, std::make_unique<worker::Awaited<void>>()));
+  shared_ = std::make_shared<Making>();
   made_.clear();
 }
 

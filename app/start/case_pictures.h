@@ -9,7 +9,9 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <set>
+#include <vector>
 
 #include "app/widgets/video_texture.h"
 #include "navigation/worker/awaited.h"
@@ -19,7 +21,7 @@ namespace arthronaut::start {
 class CasePictures {
  public:
   explicit CasePictures(std::function<void()> wake) : wake_(std::move(wake)) {}
-  ~CasePictures() { finish(); }
+  ~CasePictures() { finish(); }  // and waits for all that was begun
   CasePictures(const CasePictures&) = delete;
   CasePictures& operator=(const CasePictures&) = delete;
 
@@ -27,17 +29,28 @@ class CasePictures {
   // drawn stays without.
   [[nodiscard]] const widgets::VideoTexture* of(const std::filesystem::path& case_folder);
   void poll();
-  // Waits for the one that is being made; none is begun before another is asked for.
+  // From here on nothing is drawn off-screen until another picture is asked for: waits while one is drawn,
+  // not while its case is read, which goes on for itself and comes to nothing.
   void finish();
   void forget_all();  // what is on disk is looked at again
-  [[nodiscard]] bool is_busy() const { return making_.is_busy(); }
+  [[nodiscard]] bool is_busy() const { return making_->is_busy(); }
 
  private:
+  // What this thread and the one that makes a picture have in common.
+  struct Making {
+    std::mutex drawing;
+    bool is_wanted = true;  // under the lock
+  };
+
+  void take();  // what is ready
+
   std::function<void()> wake_;
   std::map<std::filesystem::path, std::unique_ptr<widgets::VideoTexture>> shown_;
   std::set<std::filesystem::path> without_;  // have none, and will have none until forget_all()
   std::filesystem::path wanted_, made_;      // next to be made; being made
-  worker::Awaited<void> making_;
+  std::shared_ptr<Making> shared_ = std::make_shared<Making>();                                // never null
+  std::unique_ptr<worker::Awaited<void>> making_ = std::make_unique<worker::Awaited<void>>();  // never null
+  std::vector<std::unique_ptr<worker::Awaited<void>>> left_;  // what nobody waits for
 };
 
 }  // namespace arthronaut::start
