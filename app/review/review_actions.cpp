@@ -282,20 +282,22 @@ void ReviewView::add_actions(widgets::Actions& actions) {
        "What today's program makes of the same pictures and commands, beside the screen; again to stop",
        GLFW_KEY_T, 0, false, [this] { return has_frames() && open_->pictures != nullptr; },
        [this] { return runs_today(); }, [this] { toggle_today(); }});
-  actions.add({"review.report", "Report",
-               "Writes the report of this session, or of a CT after the operation, as PDF into the folder "
-               "\"export\" of the case; it names nobody",
-               GLFW_KEY_R, 0, false,
-               [this] {
-                 const bool has_what_to_report =
-                     open_ ? !recording::is_exercise(open_->review.session->header) : postop_.has_any();
-                 return has_what_to_report && read_only_.empty() && !is_writing_report();
-               },
-               [this] { return is_writing_report(); },
-               [this] {
-                 report_ = std::make_unique<ReportRun>(
-                     case_folder_, open_ ? open_->review.folder.filename().string() : "", wake_);
-               }});
+  actions.add(
+      {"review.report", "Report",
+       "Writes the report of this session, or of a CT after the operation, or else of the plan, as PDF "
+       "into the folder \"export\" of the case; it names nobody",
+       GLFW_KEY_R, 0, false,
+       [this] {
+         const bool has_what_to_report =
+             open_ ? !recording::is_exercise(open_->review.session->header)
+                   : postop_.has_any() || (model_ != nullptr && !model_->knee().plan.tunnels.empty());
+         return has_what_to_report && read_only_.empty() && !is_writing_report();
+       },
+       [this] { return is_writing_report(); },
+       [this] {
+         report_ = std::make_unique<ReportRun>(case_folder_,
+                                               open_ ? open_->review.folder.filename().string() : "", wake_);
+       }});
   actions.add({"review.newer",
                "Newer",
                "The session after this one",

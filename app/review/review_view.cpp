@@ -144,7 +144,8 @@ void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (shows_postop_) return postop_.draw(ui, rest);
   if (!has_frames()) {
     const char* text = sessions_.folders().empty()
-                           ? "No session yet. Record one in Navigate, or compare a CT after the operation: P."
+                           ? "No session yet. Record one in Navigate, compare a CT after the operation (P), "
+                             "or write the report of the plan (R)."
                        : opening_.is_busy() ? "Opening the session"
                        : !notice_.empty()   ? "This session cannot be read. The reason stands below."
                        : open_              ? no_frames_words(open_->review)
