@@ -27,10 +27,10 @@ std::string place_line(const tunnels::TunnelKey& key, const postop::AchievedPlac
 std::string line_of(const tunnels::TunnelKey& key, const postop::AchievedTunnel& tunnel) {
   std::string line = tunnels::name_of(key) + ": ";
   if (!tunnel.is_found) return line + "no tunnel found";
-  line += files::format("entry %.1f mm off the plan, axis %.1f deg; diameter %.1f mm, length %.1f mm",
-                        tunnel.offset_mm, geometry::deg_from_rad(tunnel.angle_rad), tunnel.tunnel.diameter_mm,
-                        tunnel.length_mm);
-  if (!tunnel.comes_out) line += " (a socket)";
+  line +=
+      files::format("entry %.1f mm off the plan, axis %.1f deg; diameter %.1f mm, length ", tunnel.offset_mm,
+                    geometry::deg_from_rad(tunnel.angle_rad), tunnel.tunnel.diameter_mm) +
+      postop::length_in_words(tunnel);
   const auto widest =
       std::max_element(tunnel.widths.begin(), tunnel.widths.end(),
                        [](const auto& a, const auto& b) { return a.diameter_mm < b.diameter_mm; });

@@ -56,8 +56,7 @@ std::vector<std::string> column(const Content& content, const tunnels::TunnelKey
                          ? ""
                          : format("; planned %.1f mm", plan->second.diameter_mm)));
     cells.push_back(along_the_wall(found.widths));
-    cells.push_back(format("%.1f mm%s", found.length_mm, found.comes_out ? "" : ", a socket") +
-                    planned_length(content, key));
+    cells.push_back(postop::length_in_words(found) + planned_length(content, key));
     cells.push_back(told(postop::wall_in_words));
     cells.push_back(format("%.0f %%", 100 * found.metal_share));
   } else {

@@ -17,7 +17,7 @@ void fill_found(const postop::AchievedTunnel& found, AchievedRow& row) {
   row.angle = format("%.1f\u00B0 \u00B1 %.1f to the planned axis", geometry::deg_from_rad(found.angle_rad),
                      std::max(geometry::deg_from_rad(found.direction_sigma_rad), 0.1));
   row.diameter = format("%.1f mm", found.tunnel.diameter_mm);
-  row.length = format("%.1f mm%s", found.length_mm, found.comes_out ? "" : ", a socket");
+  row.length = postop::length_in_words(found);
   if (found.widths.empty()) return;
   const auto by_width = [](const postop::Width& a, const postop::Width& b) {
     return a.diameter_mm < b.diameter_mm;

@@ -106,4 +106,12 @@ std::string wall_in_words(const AchievedPlace& place) {
          (place.planned_wall_mm ? files::format("; planned %.1f mm", *place.planned_wall_mm) : "");
 }
 
+std::string length_in_words(const AchievedTunnel& achieved) {
+  std::string words = files::format("%.1f mm", achieved.length_mm);
+  if (achieved.comes_out) return words;
+  words += ", a socket";
+  if (achieved.beyond_mm > 0) words += files::format("; beyond it a bore of %.1f mm", achieved.beyond_mm);
+  return words;
+}
+
 }  // namespace arthronaut::postop

@@ -48,5 +48,7 @@ struct AchievedPlace {
 [[nodiscard]] std::string grid_in_words(const AchievedPlace& place);
 // "1.8 mm; planned 2.6 mm"; empty where the drilled one's is not known.
 [[nodiscard]] std::string wall_in_words(const AchievedPlace& place);
+// "27.3 mm"; "22.0 mm, a socket; beyond it a bore of 4.5 mm". Precondition: the tunnel was found.
+[[nodiscard]] std::string length_in_words(const AchievedTunnel& achieved);
 
 }  // namespace arthronaut::postop

@@ -41,8 +41,9 @@ struct Width {
 struct AchievedTunnel {
   bool is_found = false;      // false: the numbers are meaningless
   tunnels::Tunnel tunnel;     // the entry on the plan's bone, the direction in the plan's sense
-  double length_mm = 0;       // within the bone, to where it comes out or ends
+  double length_mm = 0;       // within the bone, to where it comes out, ends or goes on as a thinner bore
   bool comes_out = false;     // else it is a socket
+  double beyond_mm = 0;       // diameter of the thinner bore that goes on beyond a socket; 0: none is seen
   double offset_mm = 0;       // of the entry from the planned one
   double angle_rad = 0;       // between the axes
   double entry_sigma_mm = 0;  // one sigma, by the scatter of the grey and the bone's pose

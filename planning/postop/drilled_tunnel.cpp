@@ -6,6 +6,7 @@
 
 #include "planning/files/format.h"
 #include "planning/geometry/quantile.h"
+#include "planning/postop/fit_spread.h"
 #include "planning/postop/tunnel_search.h"
 
 namespace arthronaut::postop {
@@ -21,16 +22,20 @@ constexpr double kShortest_mm = 8;
 constexpr double kLeastDiameter_mm = 3.5, kMostDiameter_mm = 14;
 // Of the wall that must be seen; of the wall beside a screw.
 constexpr double kLeastSeen = 0.5;
-// Half of what is asked for: 0.3 mm and 0.5 deg, and where there is metal 0.6 mm and 1 deg.
-constexpr double kMostEntrySigma_mm = 0.15, kMostDirectionSigma_deg = 0.25, kMostDiameterSigma_mm = 0.15;
+// What is asked for, where there is metal, too, and how seldom either may be missed by what is called
+// reliable.
+constexpr double kAskedEntry_mm = 0.3, kAskedDirection_deg = 0.5, kAskedEntryByMetal_mm = 0.6,
+                 kAskedDirectionByMetal_deg = 1, kMostChance = 0.005;
+constexpr double kMostDiameterSigma_mm = 0.15;  // half of what is asked for
 // How wide a bore is is known through as much blur as this (sigma, voxel included): there is no trial beyond.
 constexpr double kMostBlur_mm = 1.0;
-constexpr double kMostEntrySigmaByMetal_mm = 0.3, kMostDirectionSigmaByMetal_deg = 0.5;
 constexpr double kSomeMetal = 0.01;
 // Pieces of the bore lie off its axis by no more than this.
 constexpr double kMostBend_mm = 0.6, kPiece_mm = 8, kPieceKnown_mm = 0.2;
 // Beyond the end of a socket there is no wall.
 constexpr double kBeyondFrom_mm = 2, kBeyondTo_mm = 10, kAsWide_mm = 1;
+// Nor is there as wide a one: of radii, and how much of it is to be seen for that.
+constexpr double kThinner_mm = 1, kLeastNarrow_mm = 4;
 constexpr double kMetalOfPiece = 0.05;
 constexpr double kPlugSeen = 0.3;  // of a stretch's wall, to be a plug's
 // Of a stretch, from which on it says nothing of the wall.
@@ -40,7 +45,7 @@ struct Candidate {
   TunnelFit fit;
   Passage passage{};
   SeenMouth mouth;
-  double length_mm = 0, seen_share = 0, metal_share = 0, clear_mm = 0, bend_mm = 0;
+  double length_mm = 0, beyond_mm = 0, seen_share = 0, metal_share = 0, clear_mm = 0, bend_mm = 0;
   bool comes_out = false, has_end = false, leaves_images = false, goes_on = false, is_by_screw = false;
   std::vector<std::string> doubts;
 
@@ -77,14 +82,16 @@ class Finder {
       return std::nullopt;
     // Once more, to where it ends.
     for (int round = 0; round < 2; ++round) {
-      find_end(candidate);
+      find_end(voxels, candidate);
       if (candidate.length_mm < kShortest_mm) return std::nullopt;
       const auto known = round > 0 ? std::optional(candidate.fit.profile) : std::nullopt;
       if (!fitted(voxels, bore_of(candidate.fit, candidate.passage), candidate.length_mm, known, candidate))
         return std::nullopt;
     }
-    find_end(candidate);
+    find_end(voxels, candidate);
     if (candidate.length_mm < kShortest_mm) return std::nullopt;
+    if (!candidate.comes_out && candidate.has_end)
+      candidate.beyond_mm = thinner_beyond_mm(voxels, candidate, candidate.length_mm);
     candidate.mouth = mouth_at(sampler_, postop_from_plan_, bone_, candidate.passage.entry_mm,
                                candidate.fit.direction, candidate.fit.radius_mm);
     candidate.bend_mm = bend(voxels, candidate);
@@ -124,7 +131,7 @@ class Finder {
     return fit.point_mm + (place - fit.point_mm).dot(fit.direction) * fit.direction;
   }
 
-  void find_end(Candidate& candidate) const {
+  void find_end(const std::vector<WallVoxel>& voxels, Candidate& candidate) const {
     const double whole_mm = candidate.passage.length_mm();
     candidate.length_mm = whole_mm;
     candidate.comes_out = mouth_at(sampler_, postop_from_plan_, bone_, candidate.passage.exit_mm,
@@ -132,14 +139,32 @@ class Finder {
                               .is_open();
     candidate.has_end = candidate.comes_out;
     candidate.leaves_images = !std::isfinite(sampler_.at(postop_from_plan_ * candidate.passage.exit_mm));
-    if (candidate.comes_out) return;
     std::vector<double> contrasts;
     for (const Stretch& stretch : candidate.fit.stretches)
       if (stretch.seen_share > kLeastSeen) contrasts.push_back(stretch.outside_hu - stretch.inside_hu);
     const auto end = blind_end_mm(sampler_, postop_from_plan_, candidate.passage, candidate.fit.radius_mm,
                                   geometry::median(std::move(contrasts), 0));
+    // What comes out may be a thinner bore beyond a socket, as for the loop of a button.
+    if (candidate.comes_out && !(end && thinner_beyond_mm(voxels, candidate, *end) > 0)) return;
+    candidate.comes_out = false;
     candidate.has_end = end.has_value();
     if (end) candidate.length_mm = *end;
+  }
+
+  // The diameter of the thinner bore that is seen beyond a place; 0: none is.
+  [[nodiscard]] static double thinner_beyond_mm(const std::vector<WallVoxel>& voxels,
+                                                const Candidate& candidate, double end_mm) {
+    const double from = end_mm + kBeyondFrom_mm,
+                 to = std::min(end_mm + kBeyondTo_mm, candidate.passage.length_mm());
+    if (to - from < kLeastNarrow_mm) return 0;
+    Bore thinner = bore_of(candidate.fit, candidate.passage);
+    thinner.radius_mm -= kThinner_mm;
+    const TunnelFit beyond = fit_tunnel(voxels, thinner, from, to, Wall::Clear, candidate.fit.profile);
+    const auto is_seen = [](const Stretch& stretch) { return stretch.seen_share > kLeastSeen; };
+    const bool is_thinner = beyond.is_fitted &&
+                            std::any_of(beyond.stretches.begin(), beyond.stretches.end(), is_seen) &&
+                            beyond.radius_mm < candidate.fit.radius_mm - kThinner_mm;
+    return is_thinner ? 2 * beyond.radius_mm : 0;
   }
 
   // How far pieces of the bore lie off its axis, at most.
@@ -198,8 +223,9 @@ class Finder {
     if (c.is_by_screw)
       doubts.emplace_back("only its screw is seen: the tunnel may be wider, and lie beside it");
     const bool by_metal = c.metal_share > kSomeMetal;
-    const double most_entry = by_metal ? kMostEntrySigmaByMetal_mm : kMostEntrySigma_mm,
-                 most_deg = by_metal ? kMostDirectionSigmaByMetal_deg : kMostDirectionSigma_deg,
+    const auto most_sigma = [&](double asked) { return largest_sigma(asked, kMostChance, c.fit.freedom); };
+    const double most_entry = most_sigma(by_metal ? kAskedEntryByMetal_mm : kAskedEntry_mm),
+                 most_deg = most_sigma(by_metal ? kAskedDirectionByMetal_deg : kAskedDirection_deg),
                  sigma_deg = geometry::deg_from_rad(c.fit.direction_sigma_rad);
     if (c.fit.entry_sigma_mm > most_entry)
       doubts.push_back(files::format("its entry is known to %.2f mm, %.2f mm are needed",
@@ -210,6 +236,11 @@ class Finder {
     if (c.fit.diameter_sigma_mm > kMostDiameterSigma_mm)
       doubts.push_back(files::format("its diameter is known to %.2f mm, %.2f mm are needed",
                                      c.fit.diameter_sigma_mm, kMostDiameterSigma_mm));
+    if (!c.is_by_screw && c.fit.profile.layer_mm > 0)
+      doubts.push_back(files::format(
+          "between it and the bone lies a layer of some %.1f mm that is less dense than the bone: "
+          "which of its sides was drilled is not seen, and its diameter is not known",
+          c.fit.profile.layer_mm));
     if (!c.is_by_screw && !c.fit.profile.has_rim() && c.fit.profile.plain_blur_mm > kMostBlur_mm)
       doubts.push_back(
           files::format("the images are blurred by %.2f mm (sigma), %.2f mm are borne: it may be "
@@ -257,6 +288,7 @@ DrilledTunnel told(const Candidate& candidate, const tunnels::Tunnel& plan) {
                     .bundle = plan.bundle};
   drilled.length_mm = candidate.length_mm;
   drilled.comes_out = candidate.comes_out;
+  drilled.beyond_mm = candidate.beyond_mm;
   drilled.entry_sigma_mm = candidate.fit.entry_sigma_mm;
   drilled.direction_sigma_rad = candidate.fit.direction_sigma_rad;
   drilled.seen_share = candidate.seen_share;

@@ -1,7 +1,9 @@
 #include "planning/postop/fit_spread.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 namespace arthronaut::postop {
 
@@ -12,22 +14,28 @@ constexpr double kUntold = 1.5;
 
 }  // namespace
 
-FitSpread spread_of(const Eigen::MatrixXd& normal, const Eigen::MatrixXd& by_part) {
-  double disagreement = 0, numbers = 0;
-  for (Eigen::Index n = 0; n < normal.rows(); ++n) {
-    const double of_number = by_part.row(n).squaredNorm();
-    if (!(of_number > 0)) continue;  // a stretch that nothing is seen of
-    disagreement += of_number / normal(n, n);
-    numbers += 1;
-  }
-  const auto parts = static_cast<double>((by_part.colwise().squaredNorm().array() > 0).count());
+FitSpread spread_of(const Eigen::MatrixXd& normal, const std::vector<PartOfFit>& parts) {
+  Eigen::VectorXd disagreement = Eigen::VectorXd::Zero(normal.rows());
   FitSpread spread;
-  spread.shared_voxels =
-      std::max(1.0, disagreement / std::max(1.0, numbers) * parts / std::max(1.0, parts - numbers));
-  const Eigen::MatrixXd inverse = normal.inverse();
-  spread.by_noise = kUntold * spread.shared_voxels * inverse;
-  spread.by_disagreement = inverse * by_part * by_part.transpose() * inverse;
+  spread.by_disagreement = Eigen::MatrixXd::Zero(normal.rows(), normal.cols());
+  double told = 0;
+  for (const PartOfFit& part : parts) {
+    if (!(part.right.squaredNorm() > 0)) continue;  // nothing is seen of it
+    told += 1;
+    disagreement += part.right.cwiseAbs2();
+    const Eigen::VectorXd moved = (normal - part.normal).ldlt().solve(part.right);
+    spread.by_disagreement += moved * moved.transpose();
+  }
+  const auto numbers = static_cast<double>((disagreement.array() > 0).count());
+  spread.freedom = std::max(1.0, told - numbers);
+  const double pooled = (disagreement.array() / normal.diagonal().array()).sum() / std::max(1.0, numbers);
+  spread.shared_voxels = std::max(1.0, pooled * told / spread.freedom);
+  spread.by_noise = kUntold * spread.shared_voxels * normal.inverse();
   return spread;
+}
+
+double largest_sigma(double limit, double chance, double freedom) {
+  return limit / std::sqrt(0.5 * freedom * (std::pow(chance, -2 / freedom) - 1));
 }
 
 }  // namespace arthronaut::postop

@@ -2,11 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
 #include "planning/geometry/quantile.h"
+#include "planning/postop/bore_frame.h"
 #include "planning/postop/fit_spread.h"
 #include "planning/postop/wall_levels.h"
 
@@ -21,47 +21,22 @@ constexpr double kStretch_mm = 4;
 constexpr double kBin_mm = 2;  // of the levels
 // From the wall inwards, and from it or from the rim about it outwards.
 constexpr double kInward_mm = 1.8, kOutward_mm = 1.2, kBesideWallFrom_mm = 0.6;
-// Of the profile that tells whether there is a rim.
+// Of the profile that tells whether there is a rim: as far inwards, for what was taken for the wall may be
+// the rim's outer side.
 constexpr double kProfileTo_mm = 3, kPoint_mm = 0.2;
 // Seen with so much blur at first, the wall is found from further off.
 constexpr double kFirstBlur_mm = 1.0;
 // A station with more metal than this inside the bore or beside its wall is passed over as a whole: what is
 // left of its wall is seen one-sidedly, and through the metal's blur.
 constexpr double kMetalOfBin = 0.02, kBesideWall_mm = 1.5;
-// Neighbouring voxels share their noise, in a level so much.
-constexpr double kCorrelated = 4;
 constexpr double kLeastNoise_hu = 6;
-// Differences that are no chance.
-constexpr double kSeenSigmas = 3, kSeen_hu = 15;
 // Radii of neighbouring stretches differ by this, one sigma.
 constexpr double kRadiusChange_mm = 0.4;
 constexpr double kHuber = 2.5;
 constexpr double kNoRim_hu = -1e4;  // less dense than anything: what is beyond the wall begins at it
 
-struct Axis {
-  Vector3d middle, direction, u, v;
-
-  void set_direction(const Vector3d& d) {
-    direction = d.normalized();
-    u = direction.unitOrthogonal();
-    v = direction.cross(u);
-  }
-};
-
-struct Placed {
-  double along, off;          // from the axis' middle; from the axis
-  double across_u, across_v;  // unit
-  std::size_t stretch, bin;
-
-  [[nodiscard]] std::size_t sector() const {
-    return static_cast<std::size_t>((std::atan2(across_v, across_u) / M_PI + 1) * 0.5 *
-                                    static_cast<double>(kSectors)) %
-           kSectors;
-  }
-};
-
 struct FittedVoxel {
-  Placed placed;
+  PlacedByBore placed;
   std::size_t sector;
   float hu;
 };
@@ -69,12 +44,11 @@ struct FittedVoxel {
 class Fit {
  public:
   Fit(const std::vector<WallVoxel>& voxels, const Bore& bore, double from_mm, double to_mm, Wall wall)
-      : voxels_(voxels), wall_(wall), half_mm_(0.5 * (to_mm - from_mm)) {
-    axis_.set_direction(bore.direction);
-    axis_.middle = bore.entry_mm + 0.5 * (from_mm + to_mm) * axis_.direction;
-    from_entry_mm_ = 0.5 * (from_mm + to_mm);
-    stretches_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(2 * half_mm_ / kStretch_mm)));
-    bins_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(2 * half_mm_ / kBin_mm)));
+      : voxels_(voxels),
+        wall_(wall),
+        frame_(bore.entry_mm, bore.direction, from_mm, to_mm),
+        stretches_(frame_.parts_of(kStretch_mm)),
+        bins_(frame_.parts_of(kBin_mm)) {
     radius_.assign(stretches_, bore.radius_mm);
   }
 
@@ -90,10 +64,12 @@ class Fit {
       const WallProfile seen = explain_wall(mean_profile(), noise_hu_, spread().shared_voxels);
       profile_.wall_sigma_mm = seen.wall_sigma_mm;
       profile_.plain_blur_mm = seen.plain_blur_mm;
+      profile_.layer_mm = seen.layer_mm;
       if (!seen.has_rim() && !had_rim) break;
-      profile_ = seen.has_rim()
-                     ? seen
-                     : WallProfile{.plain_blur_mm = seen.plain_blur_mm, .wall_sigma_mm = seen.wall_sigma_mm};
+      profile_ = seen.has_rim() ? seen
+                                : WallProfile{.plain_blur_mm = seen.plain_blur_mm,
+                                              .wall_sigma_mm = seen.wall_sigma_mm,
+                                              .layer_mm = seen.layer_mm};
       for (double& radius : radius_) radius += seen.wall_mm + seems_nearer_mm(radius);
       if (!settle(profile_.blur_mm)) return {};
     }
@@ -132,26 +108,13 @@ class Fit {
     return true;
   }
 
-  [[nodiscard]] bool counts(const WallVoxel& voxel, const Placed& placed) const {
+  [[nodiscard]] bool counts(const WallVoxel& voxel, const PlacedByBore& placed) const {
     if (wall_ == Wall::Screw) return true;
     return !voxel.is_metal && !voxel.is_by_metal && metal_of_bin_[placed.bin].mean() < kMetalOfBin;
   }
 
-  [[nodiscard]] std::optional<Placed> place(const Vector3d& p) const {
-    Placed placed{};
-    const Vector3d w = p - axis_.middle;
-    placed.along = w.dot(axis_.direction);
-    if (std::abs(placed.along) >= half_mm_) return std::nullopt;
-    const double a = w.dot(axis_.u), b = w.dot(axis_.v);
-    placed.off = std::sqrt(a * a + b * b);
-    const double share = (placed.along + half_mm_) / (2 * half_mm_);
-    placed.stretch = static_cast<std::size_t>(share * static_cast<double>(stretches_));
-    placed.bin = static_cast<std::size_t>(share * static_cast<double>(bins_));
-    if (placed.off > 1e-9) {
-      placed.across_u = a / placed.off;
-      placed.across_v = b / placed.off;
-    }
-    return placed;
+  [[nodiscard]] std::optional<PlacedByBore> place(const Vector3d& p) const {
+    return frame_.place(p, stretches_, bins_);
   }
 
   // Means well inside and well outside the wall, and the noise about what they predict.
@@ -176,7 +139,7 @@ class Fit {
       const WallGrey grey = grey_at(*placed, profile_.blur_mm);
       if (off < -kBesideWallFrom_mm) levels.add_inside(voxels_[i].hu, grey);
       if (off <= -kInward_mm) continue;
-      const std::size_t sector = placed->sector();
+      const std::size_t sector = placed->sector(kSectors);
       if (beyond > kBesideWallFrom_mm) levels.add_outside(sector, voxels_[i].hu, grey);
       if (off > 0 && beyond < 0) levels.add_rim(sector, voxels_[i].hu);
       placed_.push_back({*placed, sector, voxels_[i].hu});
@@ -193,7 +156,8 @@ class Fit {
     double value, slope;  // slope: by the distance from the axis
     double variance;      // of what the levels are made of: beside a cortex that slants there is no one level
   };
-  [[nodiscard]] std::optional<Model> model_at(const Placed& placed, std::size_t sector, double blur) const {
+  [[nodiscard]] std::optional<Model> model_at(const PlacedByBore& placed, std::size_t sector,
+                                              double blur) const {
     const WallLevels& levels = levels_[placed.bin];
     if (!levels.has_inside() || !levels.has_outside(sector)) return std::nullopt;
     const WallGrey grey = grey_at(placed, blur);
@@ -203,7 +167,7 @@ class Fit {
                  std::max(levels.inside().variance(), levels.outside(sector).variance())};
   }
 
-  [[nodiscard]] WallGrey grey_at(const Placed& placed, double blur) const {
+  [[nodiscard]] WallGrey grey_at(const PlacedByBore& placed, double blur) const {
     const double radius = radius_[placed.stretch];
     return wall_grey(placed.off - radius + seems_nearer_mm(radius), profile_.rim_mm, blur);
   }
@@ -232,32 +196,33 @@ class Fit {
     const double full = 0.5 * geometry::median(std::move(sizes), 0), grey = geometry::median(greys, 0);
     for (const double one : greys) off_greys.push_back(std::abs(one - grey));
     const double far_off = std::max(50.0, 3 * geometry::median(std::move(off_greys), 0));
-    std::vector<Level> means(static_cast<std::size_t>(std::lround((kInward_mm + kProfileTo_mm) / kPoint_mm)));
+    std::vector<Level> means(static_cast<std::size_t>(std::lround(2 * kProfileTo_mm / kPoint_mm)));
     for (const WallVoxel& voxel : voxels_) {
       const auto placed = place(voxel.p_mm);
       if (!placed || !counts(voxel, *placed)) continue;
-      const Level& out = levels_[placed->bin].outside(placed->sector());
+      const Level& out = levels_[placed->bin].outside(placed->sector(kSectors));
       if (!levels_[placed->bin].has_inside() || out.count < full || std::abs(out.mean() - grey) > far_off)
         continue;
-      const double at = (placed->off - radius_[placed->stretch] + kInward_mm) / kPoint_mm;
+      const double at = (placed->off - radius_[placed->stretch] + kProfileTo_mm) / kPoint_mm;
       if (at < 0 || at >= static_cast<double>(means.size())) continue;
       means[static_cast<std::size_t>(at)].add(voxel.hu);
     }
     std::vector<WallPoint> points;
     for (std::size_t i = 0; i < means.size(); ++i)
       if (means[i].count > 0)
-        points.push_back({kPoint_mm * (static_cast<double>(i) + 0.5) - kInward_mm, means[i].mean(),
+        points.push_back({kPoint_mm * (static_cast<double>(i) + 0.5) - kProfileTo_mm, means[i].mean(),
                           static_cast<double>(means[i].count)});
     return points;
   }
 
-  // `by_eighth`: what each eighth of each stretch alone puts into `right`, as columns.
+  // `by_eighth`: what each eighth of each stretch alone puts into both.
   void assemble(double blur, Eigen::MatrixXd& normal, Eigen::VectorXd& right,
-                Eigen::MatrixXd* by_eighth = nullptr) const {
+                std::vector<PartOfFit>* by_eighth = nullptr) const {
     const auto n = static_cast<Eigen::Index>(4 + stretches_);
     normal = Eigen::MatrixXd::Zero(n, n);
     right = Eigen::VectorXd::Zero(n);
-    if (by_eighth) *by_eighth = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(stretches_ * kSectors));
+    if (by_eighth)
+      by_eighth->assign(stretches_ * kSectors, {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
     for (const auto& [placed, sector, hu] : placed_) {
       const auto model = model_at(placed, sector, blur);
       if (!model) continue;
@@ -267,22 +232,28 @@ class Fit {
                        std::min(1.0, kHuber * sigma / std::max(1e-9, std::abs(residual))) / (sigma * sigma);
       // The distance from the axis falls when the axis comes nearer.
       Eigen::Matrix<double, 5, 1> row;
-      row << -placed.across_u, -placed.across_v, -placed.along * placed.across_u / half_mm_,
-          -placed.along * placed.across_v / half_mm_, -1;
+      row << -placed.across_u, -placed.across_v, -placed.along * placed.across_u / frame_.half_mm(),
+          -placed.along * placed.across_v / frame_.half_mm(), -1;
       row *= model->slope;
       const auto r = static_cast<Eigen::Index>(4 + placed.stretch);
-      normal.topLeftCorner<4, 4>() += weight * row.head<4>() * row.head<4>().transpose();
-      normal.block<4, 1>(0, r) += weight * row[4] * row.head<4>();
-      normal(r, r) += weight * row[4] * row[4];
-      right.head<4>() += weight * residual * row.head<4>();
-      right[r] += weight * residual * row[4];
-      if (by_eighth) {
-        const auto eighth = static_cast<Eigen::Index>(placed.stretch * kSectors + sector);
-        by_eighth->col(eighth).head<4>() += weight * residual * row.head<4>();
-        (*by_eighth)(r, eighth) += weight * residual * row[4];
-      }
+      const auto add = [&](Eigen::MatrixXd& to_normal, Eigen::VectorXd& to_right) {
+        to_normal.topLeftCorner<4, 4>() += weight * row.head<4>() * row.head<4>().transpose();
+        to_normal.block<4, 1>(0, r) += weight * row[4] * row.head<4>();
+        to_normal(r, r) += weight * row[4] * row[4];
+        to_right.head<4>() += weight * residual * row.head<4>();
+        to_right[r] += weight * residual * row[4];
+      };
+      add(normal, right);
+      if (!by_eighth) continue;
+      PartOfFit& eighth = (*by_eighth)[placed.stretch * kSectors + sector];
+      add(eighth.normal, eighth.right);
     }
-    normal.bottomLeftCorner(n - 4, 4) = normal.topRightCorner(4, n - 4).transpose();
+    const auto mirror = [n](Eigen::MatrixXd& of) {
+      of.bottomLeftCorner(n - 4, 4) = of.topRightCorner(4, n - 4).transpose();
+    };
+    mirror(normal);
+    if (by_eighth)
+      for (PartOfFit& eighth : *by_eighth) mirror(eighth.normal);
     const double stiff = 1 / (kRadiusChange_mm * kRadiusChange_mm);
     for (Eigen::Index s = 4; s + 1 < n; ++s) {
       const double change =
@@ -313,8 +284,7 @@ class Fit {
     const double most = change.cwiseAbs().maxCoeff();
     if (!std::isfinite(most)) return std::numeric_limits<double>::infinity();
     if (most > kMost_mm) change *= kMost_mm / most;
-    axis_.middle += change[0] * axis_.u + change[1] * axis_.v;
-    axis_.set_direction(axis_.direction + (change[2] * axis_.u + change[3] * axis_.v) / half_mm_);
+    frame_.move(change.head<4>());
     for (std::size_t s = 0; s < stretches_; ++s)
       radius_[s] = std::clamp(radius_[s] + change[static_cast<Eigen::Index>(4 + s)], 1.0, 10.0);
     return change.cwiseAbs().maxCoeff();
@@ -322,55 +292,27 @@ class Fit {
 
   [[nodiscard]] std::vector<Stretch> described(const Eigen::MatrixXd& covariance) const {
     std::vector<Stretch> result(stretches_);
-    std::vector<double> seen(stretches_, 0), darker(stretches_, 0), all(stretches_, 0), in(stretches_, 0),
-        out(stretches_, 0);
-    std::vector<Level> within(stretches_), beside(stretches_ * kSectors), beyond(stretches_ * kSectors);
-    for (std::size_t bin = 0; bin < bins_; ++bin) {
-      const std::size_t s = std::min(stretches_ - 1, (2 * bin + 1) * stretches_ / (2 * bins_));
-      within[s].add(levels_[bin].inside());
-      for (std::size_t sector = 0; sector < kSectors; ++sector) {
-        // A wall with a rim is seen where the rim is.
-        const std::size_t to = s * kSectors + sector;
-        const Level& outside = levels_[bin].outside(sector);
-        beside[to].add(profile_.has_rim() ? levels_[bin].rim(sector) : outside);
-        beyond[to].add(outside);
-      }
-    }
-    for (std::size_t s = 0; s < stretches_; ++s) {
-      const Level& a = within[s];
-      for (std::size_t sector = 0; sector < kSectors; ++sector) {
-        const Level& b = beside[s * kSectors + sector];
-        if (b.count < 4) continue;
-        const double weight = b.count;
-        all[s] += weight;
-        if (a.count < 8) continue;
-        const double contrast = std::abs(b.mean() - a.mean()),
-                     sigma = std::sqrt(kCorrelated * (a.variance() / a.count + b.variance() / b.count));
-        if (contrast < std::max(kSeen_hu, kSeenSigmas * sigma)) continue;
-        seen[s] += weight;
-        darker[s] += b.mean() > a.mean() ? weight : -weight;
-        in[s] += weight * a.mean();
-        out[s] += weight * beyond[s * kSectors + sector].mean();
-      }
-    }
+    const std::vector<SeenWall> seen = seen_walls(levels_, stretches_, profile_.has_rim());
     for (std::size_t s = 0; s < stretches_; ++s) {
       Stretch& stretch = result[s];
-      stretch.from_entry_mm = from_entry_mm_ - half_mm_ +
-                              (static_cast<double>(s) + 0.5) * 2 * half_mm_ / static_cast<double>(stretches_);
+      stretch.from_entry_mm =
+          frame_.middle_from_entry_mm() - frame_.half_mm() +
+          (static_cast<double>(s) + 0.5) * 2 * frame_.half_mm() / static_cast<double>(stretches_);
       stretch.diameter_mm = 2 * radius_[s];
       const auto r = static_cast<Eigen::Index>(4 + s);
       stretch.sigma_mm = 2 * std::sqrt(std::max(0.0, covariance(r, r)));
-      stretch.seen_share = all[s] > 0 ? std::abs(darker[s]) / all[s] : 0;
+      stretch.seen_share = seen[s].share;
       stretch.metal_share = metal_[s].mean();
-      stretch.inside_hu = seen[s] > 0 ? in[s] / seen[s] : 0;
-      stretch.outside_hu = seen[s] > 0 ? out[s] / seen[s] : 0;
+      stretch.inside_hu = seen[s].inside_hu;
+      stretch.outside_hu = seen[s].outside_hu;
     }
     return result;
   }
 
   [[nodiscard]] FitSpread spread() const {
-    Eigen::MatrixXd normal, by_eighth;
+    Eigen::MatrixXd normal;
     Eigen::VectorXd right;
+    std::vector<PartOfFit> by_eighth;
     assemble(profile_.blur_mm, normal, right, &by_eighth);
     return spread_of(normal, by_eighth);
   }
@@ -380,11 +322,12 @@ class Fit {
     const FitSpread known = spread();
     if (!known.by_noise.allFinite() || !known.by_disagreement.allFinite()) return fit;
     fit.is_fitted = true;
-    fit.point_mm = axis_.middle;
-    fit.direction = axis_.direction;
+    fit.freedom = known.freedom;
+    fit.point_mm = frame_.middle();
+    fit.direction = frame_.direction();
     Eigen::Matrix<double, 2, 4> at_entry = Eigen::Matrix<double, 2, 4>::Zero();
     at_entry(0, 0) = at_entry(1, 1) = 1;
-    at_entry(0, 2) = at_entry(1, 3) = -from_entry_mm_ / half_mm_;
+    at_entry(0, 2) = at_entry(1, 3) = -frame_.middle_from_entry_mm() / frame_.half_mm();
     const auto the_larger = [&](const auto& sigma_of) {
       return std::max(sigma_of(known.by_noise), sigma_of(known.by_disagreement));
     };
@@ -392,7 +335,7 @@ class Fit {
       return std::sqrt((at_entry * covariance.topLeftCorner<4, 4>() * at_entry.transpose()).trace());
     });
     fit.direction_sigma_rad = the_larger([&](const Eigen::MatrixXd& covariance) {
-      return std::sqrt(covariance(2, 2) + covariance(3, 3)) / half_mm_;
+      return std::sqrt(covariance(2, 2) + covariance(3, 3)) / frame_.half_mm();
     });
     fit.stretches = described(known.by_noise);
     std::vector<double> radii;
@@ -416,9 +359,8 @@ class Fit {
 
   const std::vector<WallVoxel>& voxels_;
   Wall wall_;
-  double half_mm_, from_entry_mm_ = 0;
-  Axis axis_{};
-  std::size_t stretches_ = 1, bins_ = 1;
+  BoreFrame frame_;
+  std::size_t stretches_, bins_;
   std::vector<double> radius_;
   std::vector<WallLevels> levels_;  // by bins
   std::vector<Level> metal_, metal_of_bin_;

@@ -35,6 +35,7 @@ struct TunnelFit {
   // axis at the entry, across it, and of its direction.
   double entry_sigma_mm = std::numeric_limits<double>::infinity();
   double direction_sigma_rad = std::numeric_limits<double>::infinity();
+  double freedom = 1;  // how many eighths more than numbers tell of these sigmas
   // Of the mean diameter; by whether there is a rim, too.
   double diameter_sigma_mm = std::numeric_limits<double>::infinity();
   WallProfile profile;

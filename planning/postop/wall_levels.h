@@ -71,4 +71,17 @@ class WallLevels {
   std::vector<Level> rim_ = std::vector<Level>(kSectors);
 };
 
+// Of a stretch of the bore.
+struct SeenWall {
+  // Of its wall: grey differs across it, the same way all around. What differs the other way is taken off.
+  double share = 0;
+  // Of what is seen, HU; 0 where nothing is.
+  double inside_hu = 0, outside_hu = 0;
+};
+
+// The steps are parted into so many stretches. by_rim: the wall is seen where its rim is, and `outside_hu` is
+// beyond that.
+[[nodiscard]] std::vector<SeenWall> seen_walls(const std::vector<WallLevels>& steps, std::size_t stretches,
+                                               bool by_rim);
+
 }  // namespace arthronaut::postop

@@ -12,12 +12,15 @@ namespace {
 constexpr std::size_t kLeastPoints = 10;
 constexpr double kFirstBlur_mm = 0.45;
 constexpr double kLeastBlur_mm = 0.2, kMostBlur_mm = 1.0, kMostPlainBlur_mm = 1.3, kLeastRim_mm = 0.3,
-                 kMostRim_mm = 2, kMostOff_mm = 1.4;
+                 kLeastLayer_mm = 0.5, kMostRim_mm = 2, kMostOff_mm = 2;
 // Points nearer than this tell the same.
 constexpr double kApart_mm = 0.25;
 // A rim stands out from both sides by so much, and is no denser than cortex. One thinner than the least
 // leaves nothing of its own in the picture.
 constexpr double kRimStep_hu = 30, kMostRim_hu = 1200;
+// Of the step from inside to beyond, that a layer between the two is off either.
+constexpr double kLayerStep = 0.15;
+enum class Between { Rim, Layer };
 
 double cumulated(double z) { return 0.5 * std::erfc(-z * M_SQRT1_2); }
 double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI); }
@@ -25,6 +28,7 @@ double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI); 
 struct Shape {
   double wall_mm, blur_mm, rim_mm;
   bool is_sloping = false;  // what is beyond the wall changes evenly with the distance from it
+  Between between = Between::Rim;
 };
 
 struct Explained {
@@ -47,10 +51,18 @@ class Explanation {
   [[nodiscard]] Explained with_rim(double rim_mm) const {
     Explained best = descended({0, kFirstBlur_mm, rim_mm});
     if (rim_mm == 0) return best;
-    for (const double blur_mm : {0.25, 0.7})
-      if (const Explained tried = descended({0.3, blur_mm, rim_mm}); tried.unexplained < best.unexplained)
-        best = tried;
+    // What was taken for the wall may be the rim's outer side, too.
+    for (const Shape& from :
+         {Shape{0.3, 0.25, rim_mm}, Shape{0.3, 0.7, rim_mm}, Shape{-rim_mm, kFirstBlur_mm, rim_mm}})
+      if (const Explained tried = descended(from); tried.unexplained < best.unexplained) best = tried;
     return best;
+  }
+
+  // A layer as thick, of a density between those on its sides.
+  [[nodiscard]] Explained with_layer(double layer_mm) const {
+    Explained best = descended({0, kFirstBlur_mm, layer_mm, false, Between::Layer});
+    const Explained tried = descended({-layer_mm, kFirstBlur_mm, layer_mm, false, Between::Layer});
+    return tried.unexplained < best.unexplained ? tried : best;
   }
 
   // A wall without a rim.
@@ -74,7 +86,10 @@ class Explanation {
     const Eigen::Vector3d levels = normal.ldlt().solve(right);
     Explained explained{shape, levels, std::max(0.0, squares - right.dot(levels)) + floor_};
     const bool is_rim = levels[1] > std::max(levels[0], levels[2]) + kRimStep_hu && levels[1] < kMostRim_hu;
-    if (shape.rim_mm > 0 && !is_rim) explained.unexplained = std::numeric_limits<double>::infinity();
+    const double up = (levels[1] - levels[0]) / (levels[2] - levels[0]);
+    const bool is_layer = up > kLayerStep && up < 1 - kLayerStep;
+    if (shape.rim_mm > 0 && !(shape.between == Between::Rim ? is_rim : is_layer))
+      explained.unexplained = std::numeric_limits<double>::infinity();
     return explained;
   }
 
@@ -156,10 +171,20 @@ WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu, 
       has_rim ? *std::min_element(rimmed.begin(), rimmed.end(),
                                   [&](const auto& a, const auto& b) { return off_mean(a) < off_mean(b); })
               : plain;
+  const Explained sloping = explanation.sloping();
   WallProfile profile{.wall_mm = taken.shape.wall_mm,
                       .blur_mm = taken.shape.blur_mm,
-                      .plain_blur_mm = explanation.sloping().shape.blur_mm,
+                      .plain_blur_mm = sloping.shape.blur_mm,
                       .wall_sigma_mm = std::hypot(std::sqrt(variance), taken.shape.wall_mm - mean_mm)};
+  // A layer takes one number more than marrow that changes, two more than an even one.
+  double least = std::min(sloping.unexplained, taken.unexplained);
+  for (double layer_mm = kLeastLayer_mm; layer_mm < kMostRim_mm + 0.01; layer_mm += 0.25) {
+    const Explained layered = explanation.with_layer(layer_mm);
+    if (!(told * std::log(least / layered.unexplained) > (profile.layer_mm > 0 ? 0 : 2) * std::log(told)))
+      continue;
+    least = layered.unexplained;
+    profile.layer_mm = layer_mm;
+  }
   if (has_rim) {
     profile.rim_mm = taken.shape.rim_mm;
     profile.rim_hu = taken.levels[1];

@@ -22,6 +22,9 @@ struct WallProfile {
   double plain_blur_mm = 0;
   // One sigma of `wall_mm`, by that rims of other thicknesses, or none, explain the same as well or nearly.
   double wall_sigma_mm = 0;
+  // Thickness of a layer, of a density between those on its sides, that explains the points clearly better
+  // than all of the above; 0: none. Which of its sides was drilled the picture does not tell.
+  double layer_mm = 0;
 
   [[nodiscard]] bool has_rim() const { return rim_mm > 0; }
 };

@@ -32,6 +32,7 @@ Comparisons some() {
   tunnel.entry_sigma_mm = 0.21;
   tunnel.direction_sigma_rad = geometry::rad_from_deg(0.3);
   tunnel.metal_share = 0.25;
+  tunnel.beyond_mm = 4.5;
   tunnel.widths = {{2, 9.0}, {10, 9.9}, {20, 9.2}};
   postop::Comparison tibia;
   tibia.bone.reasons = {"the bone was not found in the images"};
@@ -121,6 +122,7 @@ TEST(AchievedFile, IsReadBack) {
   EXPECT_NEAR(b.tunnel.entry_sigma_mm, a.tunnel.entry_sigma_mm, 1e-12);
   EXPECT_NEAR(b.tunnel.direction_sigma_rad, a.tunnel.direction_sigma_rad, 1e-12);
   EXPECT_EQ(b.tunnel.comes_out, a.tunnel.comes_out);
+  EXPECT_EQ(b.tunnel.beyond_mm, a.tunnel.beyond_mm);
   ASSERT_EQ(b.tunnel.widths.size(), a.tunnel.widths.size());
   EXPECT_NEAR(b.tunnel.widths[1].diameter_mm, 9.9, 1e-12);
   EXPECT_NEAR((b.bone.plan_from_postop.translation_mm - a.bone.plan_from_postop.translation_mm).norm(), 0,

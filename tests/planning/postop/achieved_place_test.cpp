@@ -98,6 +98,17 @@ TEST_F(AchievedPlaceTest, SaysHowMuchBoneIsLeftBesideIt) {
   EXPECT_EQ(wall_in_words({.planned_wall_mm = 2.61, .wall_mm = 1.84}), "1.8 mm; planned 2.6 mm");
 }
 
+TEST(AchievedLength, SaysWhatGoesOnBeyondASocket) {
+  AchievedTunnel achieved;
+  achieved.length_mm = 22;
+  achieved.comes_out = true;
+  EXPECT_EQ(length_in_words(achieved), "22.0 mm");
+  achieved.comes_out = false;
+  EXPECT_EQ(length_in_words(achieved), "22.0 mm, a socket");
+  achieved.beyond_mm = 4.5;
+  EXPECT_EQ(length_in_words(achieved), "22.0 mm, a socket; beyond it a bore of 4.5 mm");
+}
+
 // Without landmarks there is no grid, and axes come from the bone's shape.
 TEST_F(AchievedPlaceTest, SaysNothingOfAGridThatIsNotThere) {
   const auto shape_alone = around(knee_.femur, {});

@@ -89,6 +89,23 @@ TEST_F(Achieved, ASocketEndsWhereItWasDrilledTo) {
   EXPECT_NEAR(found.length_mm, 22, 0.5);
 }
 
+// Beyond the socket a thinner bore leaves the bone, for the loop of a button: what was said to be as wide as
+// the socket was 15 mm too long.
+TEST_F(Achieved, ASocketEndsWhereTheBoreGetsThinner) {
+  const Tunnel tunnel = moved(BoneKind::Femur, {2, 2}, {4, -3});
+  const auto found = compared(BoneKind::Femur, ct(BoneKind::Femur, {{.tunnel = tunnel,
+                                                                     .narrow_from_mm = 22,
+                                                                     .screw_diameter_mm = 4,
+                                                                     .screw_from_mm = 33,
+                                                                     .screw_to_mm = 60}}))
+                         .tunnel;
+  EXPECT_TRUE(found.reliable) << testing::PrintToString(found.reasons);
+  expect_near(found, tunnel, 0.3, 0.5, 0.3);
+  EXPECT_FALSE(found.comes_out);
+  EXPECT_NEAR(found.length_mm, 22, 1);
+  EXPECT_NEAR(found.beyond_mm, 4.5, 0.5);
+}
+
 // A screw of metal over half of the tunnel, beside its axis: the rest tells, at the price of a longer way to
 // the entry.
 TEST_F(Achieved, AScrewIsPassedOver) {
