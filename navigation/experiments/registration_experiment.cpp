@@ -129,15 +129,17 @@ RegistrationExperimentResult run_registration_experiment(const geometry::Triangl
 
 void write_verdict_evidence(const std::filesystem::path& file, const RegistrationExperimentResult& result) {
   std::string text =
-      "trial,reliable,has_pose,target_error_mm,predicted_error_mm,stroke_length_mm,white_noise_mm,"
-      "excess_misfit_mm,bearable_excess_mm,lead,lead_needed\n";
+      "trial,reliable,has_pose,target_error_mm,predicted_error_mm,length_in_use_mm,white_noise_mm,"
+      "excess_misfit_mm,bearable_excess_mm,lead,side_lead,log_odds,needed_log_odds\n";
   for (std::size_t i = 0; i < result.trials.size(); ++i) {
     const TrialOutcome& trial = result.trials[i];
     const registration::VerdictEvidence& e = trial.evidence;
     const std::string error = result.is_on_own_bone ? files::format("%.4f", trial.target_error_mm) : "";
-    text += files::format("%zu,%d,%d,%s,%.4f,%.1f,%.4f,%.4f,%.4f,%.3f,%.3f\n", i, trial.reliable ? 1 : 0,
-                          trial.has_pose ? 1 : 0, error.c_str(), trial.predicted_error_mm, e.stroke_length_mm,
-                          e.white_noise_mm, e.excess_misfit_mm, e.bearable_excess_mm, e.lead, e.lead_needed);
+    const std::string side_lead = e.side_lead ? files::format("%.3f", *e.side_lead) : "";
+    text += files::format("%zu,%d,%d,%s,%.4f,%.1f,%.4f,%.4f,%.4f,%.3f,%s,%.3f,%.3f\n", i,
+                          trial.reliable ? 1 : 0, trial.has_pose ? 1 : 0, error.c_str(),
+                          trial.predicted_error_mm, e.length_in_use_mm, e.white_noise_mm, e.excess_misfit_mm,
+                          e.bearable_excess_mm, e.lead, side_lead.c_str(), e.log_odds, e.needed_log_odds);
   }
   files::write_atomically(file, text);
 }

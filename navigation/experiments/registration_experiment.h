@@ -58,8 +58,9 @@ struct RegistrationExperimentResult {
     const std::function<void(int)>& progress = {});
 
 // One row a trial: what its verdict rested on. CSV: trial, reliable, has_pose, target_error_mm (empty on
-// another bone), predicted_error_mm, stroke_length_mm, white_noise_mm, excess_misfit_mm, bearable_excess_mm,
-// lead, lead_needed. "-" is standard output. Throws IoError.
+// another bone), predicted_error_mm, length_in_use_mm, white_noise_mm, excess_misfit_mm, bearable_excess_mm,
+// lead, side_lead (empty where the mirror image was not asked), log_odds, needed_log_odds. "-" is standard
+// output. Throws IoError.
 void write_verdict_evidence(const std::filesystem::path& file, const RegistrationExperimentResult& result);
 
 // The paper's plot: spread and error at each control point. PNG. Throws IoError.

@@ -76,7 +76,7 @@ std::vector<geometry::SurfacePoint> walk(const geometry::Surface& surface, const
   do {
     here = surface.closest_point(center_mm + random.uniform(0, setting.area_radius_mm) * random.direction());
   } while ((here.point_mm - center_mm).norm() > 0.9 * setting.area_radius_mm);
-  const auto count = static_cast<std::size_t>(setting.stroke_length_mm / setting.step_mm) + 1;
+  const auto count = static_cast<std::size_t>(setting.length_of_each_mm / setting.step_mm) + 1;
   std::vector<geometry::SurfacePoint> path;
   Eigen::Vector3d heading = random.direction();
   while (path.size() < count) {
@@ -144,7 +144,7 @@ TrialSetting setting_of(TrialNoise noise) {
     setting.soft_share = 0.15;
   } else if (noise == TrialNoise::Hard) {
     setting.stroke_count = 4;
-    setting.stroke_length_mm = 72;
+    setting.length_of_each_mm = 72;
     setting.area_radius_mm = 12;
     setting.white_mm = 0.25;
     setting.slow_mm = 0.3;

@@ -20,7 +20,7 @@ enum class TrialNoise { Dry, ExVivo, Hard };
 
 struct TrialSetting {
   int stroke_count = 6;
-  double stroke_length_mm = 90;
+  double length_of_each_mm = 90;
   double area_radius_mm = 16;  // strokes stay so near the middle of the area
   double white_mm = 0.1;       // error of each sample, each coordinate
   double slow_mm = 0.1;        // error that varies over 12 to 40 mm of path

@@ -166,7 +166,7 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
   }
   const double misfit_share =
       outcome.summary.has_pose ? share_of_bearable_misfit(outcome.summary, white_noise_mm) : 1e9;
-  constexpr double kManyMeasurements = 60, kSmallShare = 0.8, kAmpleLead = 20;
+  constexpr double kManyMeasurements = 60, kSmallShare = 0.7, kAmpleLead = 20;
   outcome.fits = misfit_share <= 1;
   // A thickness that is free, or points that are left out, let other shapes fit well too.
   outcome.fits_amply = !setting.cartilage && misfit_share < kSmallShare &&
@@ -190,10 +190,10 @@ std::string_view reason_against(SideVerdict verdict) {
 
 SideJudgement judge_side(const SearchSetting& setting, const strokes::Curves& curves,
                          const SearchOutcome& found, bool more_may_come) {
-  // A few strokes can't give a clear lead: there, less of one is telling enough. The own side has to lead by
-  // more, since a bone that is much like its mirror image fits the wrong way round by chance.
-  constexpr double kOtherLead = 3, kOtherLeadOfEach = 0.05;
-  constexpr double kOwnLead = 8, kOwnLeadOfEach = 0.055, kOwnLeadOfEachWhileDrawing = 0.1;
+  // A few strokes can't give a clear lead: there, less of one is telling enough. While drawing, the own side
+  // has to lead by more, since a bone that is much like its mirror image fits the wrong way round by chance.
+  constexpr double kSideLead = 3, kSideLeadOfEach = 0.05;
+  constexpr double kOwnLeadWhileDrawing = 8, kOwnLeadOfEachWhileDrawing = 0.1;
   // To name the right reason is worth a little more, above all where the search has no marker to go by or a
   // thickness is free.
   constexpr int kRounds = 3, kRoundsToName = 4;
@@ -201,10 +201,11 @@ SideJudgement judge_side(const SearchSetting& setting, const strokes::Curves& cu
   const int rounds = found.summary.reliable ? kRounds : is_easy ? kRoundsToName : kMaxRounds;
   const SearchOutcome image = search_and_summarise(setting, mirrored(curves), rounds);
   const double image_lead = (found.cost - image.cost) * image.measurements;
-  const double other_lead = std::min(kOtherLead, kOtherLeadOfEach * image.measurements);
+  const double other_lead = std::min(kSideLead, kSideLeadOfEach * image.measurements);
   if (image.fits && image_lead > other_lead) return {SideVerdict::Other, -image_lead};
-  const double of_each = more_may_come ? kOwnLeadOfEachWhileDrawing : kOwnLeadOfEach;
-  const double own_lead = std::min(kOwnLead, of_each * image.measurements);
+  const double own_lead =
+      more_may_come ? std::min(kOwnLeadWhileDrawing, kOwnLeadOfEachWhileDrawing * image.measurements)
+                    : other_lead;
   return {image_lead > -own_lead ? SideVerdict::Unclear : SideVerdict::Own, -image_lead};
 }
 
@@ -220,7 +221,7 @@ RegistrationSummary register_curves(const SurfaceIndex& prepared, const strokes:
   SearchOutcome found = search_and_summarise(setting, curves, kMaxRounds);
   if (!found.summary.has_pose || found.fits_amply) return found.summary;
   const auto [side, side_lead] = judge_side(setting, curves, found);
-  found.summary.evidence.side_lead = side_lead;
+  judge_with_side_lead(found.summary, side_lead);
   if (side == SideVerdict::Own) return found.summary;
   found.summary.reliable = false;
   // What misses its own surface may be anybody's bone, whatever its mirror image does.

@@ -59,17 +59,26 @@ struct RegistrationOptions {
 // What a registration made of the cartilage. None: without one, or it was taken to lie on the mesh.
 enum class CartilageUse { None, Solved, LeftOut };
 
+// A pose that is predicted to be off by more at the target is not relied on.
+inline constexpr double kMaxError_mm = 1.2;
+// RegistrationSummary::runner_up_ratio: below the first two poses fit alike, and while drawing neither is a
+// candidate; the second, and no more, is said where none comes near.
+inline constexpr double kAlikeRatio = 1.15, kNoRivalRatio = 10;
+
 // What the verdict on a pose rests on besides the error at the target, for experiments that set its
 // thresholds.
 struct VerdictEvidence {
-  double stroke_length_mm = 0;  // less what lies on cartilage that was left out
+  double length_in_use_mm = 0;  // of the strokes, smoothed; less what lies on cartilage that was left out
   double white_noise_mm = 0;    // of the tip, one coordinate
   // By how much the points miss the surface beyond what such noise explains, and how much is borne.
   double excess_misfit_mm = 0, bearable_excess_mm = 0;
-  // Over the next pose, in independent measurements' log likelihood; and what this pose needs.
-  double lead = 0, lead_needed = 0;
+  // Over the next pose, in independent measurements' log likelihood.
+  double lead = 0;
   // Over the strokes' best pose on the mirror image of the bone, likewise; empty where that was not tried.
   std::optional<double> side_lead = std::nullopt;
+  // That the pose is the right one, by all of these and the predicted error; and how much it takes to rely on
+  // it.
+  double log_odds = 0, needed_log_odds = 0;
 };
 
 struct RegistrationSummary {
@@ -90,7 +99,8 @@ struct RegistrationSummary {
   // cartilage whose thickness was solved, to a surface that far off the mesh. On cartilage that was left out,
   // to the mesh.
   std::vector<double> point_residuals_mm;
-  // How near the best different solution came: its robust cost over the best one's; large is good.
+  // How near the best different solution came: e to the power of its robust cost less the best one's (cost:
+  // negative log likelihood, the mean of the points). Large is good: 1 fits alike, kNoRivalRatio is the most.
   double runner_up_ratio = 0;
   // What the residuals hold beyond the tip's own white noise, root mean square: slow errors of tracking, and
   // above all a bone that is another one than the mesh's. Judged inside the bone, where lifting and soft

@@ -71,8 +71,8 @@ void add(Row& row, const registration::RegistrationSummary& found, const experim
   }
   const registration::VerdictEvidence& e = found.evidence;
   std::fprintf(rows, "%s,%d,%d,%.3f,%.3f,%.1f,%.4f,%.4f,%.3f,%.3f,%.3f\n", row.name, is_right ? 1 : 0,
-               found.reliable ? 1 : 0, is_own ? error_mm : -1.0, found.predicted_tre_mm, e.stroke_length_mm,
-               e.white_noise_mm, e.excess_misfit_mm, e.lead, e.lead_needed, e.side_lead.value_or(1e3));
+               found.reliable ? 1 : 0, is_own ? error_mm : -1.0, found.predicted_tre_mm, e.length_in_use_mm,
+               e.white_noise_mm, e.excess_misfit_mm, e.lead, e.log_odds, e.side_lead.value_or(1e3));
 }
 
 void run(const std::vector<std::unique_ptr<Femur>>& femora, experiments::TrialNoise noise, int trial_count,
@@ -132,7 +132,7 @@ int main(int argc, char** argv) {
     if (!rows) throw std::runtime_error(std::string(argv[4]) + ": cannot be written");
     std::fprintf(rows.get(),
                  "bone,right,reliable,error_mm,predicted_mm,length_mm,white_noise_mm,excess_misfit_mm,lead,"
-                 "lead_needed,side_lead\n");
+                 "log_odds,side_lead\n");
     run(femora, experiments::trial_noise_from_text(argv[1]), std::atoi(argv[2]),
         std::string(argv[3]) == "odd" ? 1 : 0, is_one_row ? argv[6] : "", rows.get());
   } catch (const std::exception& error) {

@@ -105,7 +105,7 @@ struct OnlineRegistration::State {
   double cover_tried_mm = 0;  // the stroke length when all thicknesses were tried the last time
   double solved_length_mm = 0;
   bool is_changed = false;                // strokes were excluded, undone or cleared since the last solution
-  SideVerdict side = SideVerdict::Own;    // as the last check, before a confirmation, told
+  SideJudgement side;                     // as the last check, before a confirmation, told
   double side_checked_mm = 0;             // the stroke length then; 0 when there was none
   bool judges_all = false;                // the next update is to
   std::vector<RigidTransform> solutions;  // marker_from_bone, each with new stroke, newest last
@@ -208,34 +208,34 @@ int OnlineRegistration::State::agreement_count() const {
   return count;
 }
 
-// Which side's bone it is shows late: with few strokes the wrong one fits too. So it is asked once when all
-// else would confirm, and again when half as much again was drawn.
+// Which side's bone it is shows late: with few strokes the wrong one fits too. So it is asked when all else
+// would confirm, until something is confirmed, and again when half as much again was drawn.
 void OnlineRegistration::State::check_side() {
   const bool is_due = side_checked_mm == 0 || judges_all || result.length_mm > 1.5 * side_checked_mm ||
-                      side != SideVerdict::Own;
+                      result.state != OnlineState::Confirmed;
   if (is_due && agreement_count() >= kAgreeingSolutions && result.registration.reliable) {
     // Costs compare only between searches of the same kind, over the same points.
     constexpr int kRounds = 2;
     const strokes::Curves curves = strokes.curves_in_use();
     const SearchOutcome own = search_and_summarise(setting, curves, kRounds);
-    const SideJudgement judged = judge_side(setting, curves, own, !judges_all);
-    side = judged.verdict;
-    result.registration.evidence.side_lead = judged.lead;
+    side = judge_side(setting, curves, own, !judges_all);
     side_checked_mm = result.length_mm;
   }
-  if (side == SideVerdict::Own || !result.registration.has_pose) return;
+  if (!result.registration.has_pose) return;
+  if (side_checked_mm > 0) judge_with_side_lead(result.registration, side.lead);
+  if (side.verdict == SideVerdict::Own) return;
   result.bone_is_in_doubt = true;
   result.registration.reliable = false;
-  result.registration.reasons.insert(result.registration.reasons.begin(), std::string(reason_against(side)));
+  result.registration.reasons.insert(result.registration.reasons.begin(),
+                                     std::string(reason_against(side.verdict)));
 }
 
 void OnlineRegistration::State::judge_state() {
-  constexpr double kCandidateRatio = 1.15, kCandidateInliers = 0.5;
+  constexpr double kCandidateInliers = 0.5;
   const RegistrationSummary& registration = result.registration;
   result.state = OnlineState::Collecting;
   if (!registration.has_pose) return;
-  if (registration.runner_up_ratio < kCandidateRatio || registration.inlier_fraction < kCandidateInliers)
-    return;
+  if (registration.runner_up_ratio < kAlikeRatio || registration.inlier_fraction < kCandidateInliers) return;
   const bool is_confirmed = registration.reliable && agreement_count() >= kAgreeingSolutions;
   result.state = is_confirmed ? OnlineState::Confirmed : OnlineState::Candidate;
 }
@@ -295,7 +295,7 @@ void OnlineRegistration::clear() {
   state_->solutions.clear();
   state_->pool.clear();
   if (state_->fitter) state_->fitter->forget();
-  state_->side = SideVerdict::Own;
+  state_->side = {};
   state_->forget_what_was_judged();
 }
 

@@ -98,40 +98,41 @@ double excess_misfit_mm(const RegistrationSummary& summary, double white_noise_m
 constexpr double kExcess_mm = 0.32, kExcessOfNoise = 0.8;
 double max_excess_mm(double white_noise_mm) { return kExcess_mm + kExcessOfNoise * white_noise_mm; }
 
-// The lead over the next pose that a pose needs, in independent measurements' log likelihood. One that few
-// strokes hold loosely, or that misses them, leads by chance: on another person's femur too. Right poses and
-// wrong ones part at a surface in log(1 + lead), log(error / noise) and misfit / noise that logistic
-// regression found (docs/thresholds.md). Fitted to 290 mm of strokes and more, half of them off the bone;
-// with less, another person's bone has less to differ by.
-constexpr double kClearLead = 5;
-constexpr double kLeadAlone = 25;  // that no other pose was found, or none near, says no more
-double lead_needed(double excess_misfit_mm, double predicted_error_mm, double white_noise_mm,
-                   double length_mm) {
-  constexpr double kAtNoise = 0.0198, kMisfitOfNoise = 0.83, kPower = 3.4, kLength_mm = 350, kShorter = 2;
+// The log odds that a pose is the right one, by logistic regression of right poses against wrong ones
+// (docs/thresholds.md). One that few strokes hold loosely, or that misses them, leads by chance: on another
+// person's femur too. Fitted to 290 mm of strokes and more, half of them off the bone; with less, another
+// person's bone has less to differ by.
+constexpr double kClearLead = 2;
+constexpr double kLeadAlone = 25;      // that no other pose was found, or none near, says no more
+constexpr double kSideLeadAlone = 20;  // nor that the mirror image comes nowhere near, or needn't be asked
+constexpr double kNeededLogOdds = 4;
+double log_odds_of(const RegistrationSummary& summary, double predicted_error_mm) {
+  constexpr double kOfLead = 0.308, kOfError = 4.415, kOfMisfit = 2.505, kOfSideLead = 0.369, kAlways = 9.31;
+  constexpr double kLength_mm = 350, kOfShortness = 2.2;
   constexpr double kLeastNoise_mm = 0.05;  // no mesh is truer to its bone
-  const double noise_mm = std::max(white_noise_mm, kLeastNoise_mm);
-  const double needed = kAtNoise * std::exp(excess_misfit_mm / (kMisfitOfNoise * noise_mm)) *
-                            std::pow(predicted_error_mm / noise_mm, kPower) *
-                            std::pow(std::max(1.0, kLength_mm / length_mm), kShorter) -
-                        1;
-  return std::max(kClearLead, needed);
+  const VerdictEvidence& evidence = summary.evidence;
+  const double noise_mm = std::max(evidence.white_noise_mm, kLeastNoise_mm);
+  return kAlways + kOfLead * std::log1p(std::clamp(evidence.lead, 0.0, kLeadAlone)) -
+         kOfError * std::log(predicted_error_mm / noise_mm) -
+         kOfMisfit * evidence.excess_misfit_mm / noise_mm +
+         kOfSideLead * std::min(evidence.side_lead.value_or(kSideLeadAlone), kSideLeadAlone) -
+         kOfShortness * std::log(std::max(1.0, kLength_mm / evidence.length_in_use_mm));
 }
 
 VerdictEvidence evidence_for(const RegistrationSummary& summary, const TouchedCurves& touched, double lead) {
   VerdictEvidence evidence;
-  evidence.stroke_length_mm = touched.length_mm;
+  evidence.length_in_use_mm = touched.length_mm;
   evidence.white_noise_mm = touched.white_noise_mm;
   evidence.excess_misfit_mm = excess_misfit_mm(summary, touched.white_noise_mm);
   evidence.bearable_excess_mm = max_excess_mm(touched.white_noise_mm);
   evidence.lead = lead;
-  evidence.lead_needed = lead_needed(evidence.excess_misfit_mm, summary.predicted_tre_mm,
-                                     touched.white_noise_mm, touched.length_mm);
+  evidence.needed_log_odds = kNeededLogOdds;
   return evidence;
 }
 
 // How the pose stands at the middle of the strokes, where it is known best, and how far off the target lies.
 struct AtStrokes {
-  double predicted_error_mm, lead_needed, target_off_mm;
+  double predicted_error_mm, log_odds, target_off_mm;
 };
 
 std::vector<std::string> doubts(const RegistrationSummary& summary, const TouchedCurves& touched,
@@ -150,22 +151,21 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, const Touche
         summary.misfit_mm, touched.white_noise_mm));
   }
   if (summary.inlier_fraction < kMinInliers) reasons.push_back("too few of the points lie on this bone");
-  const double lead = std::min(evidence.lead, kLeadAlone);
   const bool is_held = summary.predicted_tre_mm <= kMaxError_mm,
              is_held_at_strokes = at_strokes.predicted_error_mm <= kMaxError_mm,
-             leads_enough = lead >= evidence.lead_needed,
-             leads_enough_at_strokes = lead >= at_strokes.lead_needed;
+             is_likely = evidence.log_odds >= evidence.needed_log_odds,
+             is_likely_at_strokes = at_strokes.log_odds >= evidence.needed_log_odds;
   if (!is_held && !is_held_at_strokes)
     reasons.push_back("the touched patch does not hold the bone fast: touch other faces of the notch too");
   if (evidence.lead < kClearLead) {
     reasons.push_back("two poses fit almost alike: touch other faces of the notch too");
-  } else if (!leads_enough && !leads_enough_at_strokes) {
+  } else if (!is_likely && !is_likely_at_strokes) {
     reasons.push_back(
         files::format("strokes that miss the surface by %.2f mm fit another bone too: draw more of them, "
                       "on other faces of the notch too",
                       summary.misfit_mm));
   }
-  if ((!is_held && is_held_at_strokes) || (!leads_enough && leads_enough_at_strokes))
+  if ((!is_held && is_held_at_strokes) || (!is_likely && is_likely_at_strokes))
     reasons.push_back(
         files::format("the target lies %.0f mm from the middle of the strokes, %.2f mm is its predicted "
                       "error: touch nearer to it",
@@ -244,9 +244,9 @@ RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& po
       touched.drift * touched.drift.transpose();
   const Eigen::Vector3d target = options.target_in_bone_mm.value_or(pivot);
   summary.predicted_tre_mm = predicted_error_mm(summary, target);
-  constexpr double kNoRival = 10;
-  summary.runner_up_ratio =
-      pool.runner_up() ? std::min(kNoRival, std::exp(pool.runner_up()->cost - best.cost)) : kNoRival;
+  summary.runner_up_ratio = pool.runner_up()
+                                ? std::min(kNoRivalRatio, std::exp(pool.runner_up()->cost - best.cost))
+                                : kNoRivalRatio;
   measure_inliers(best, touched.points, summary);
   for (std::size_t i = 0; i < touched.curves.size(); ++i) {
     const Eigen::Vector3d p = best.bone_from_marker * touched.curves[i].position_mm;
@@ -261,12 +261,11 @@ RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& po
   const double lead =
       pool.runner_up() ? lead_of(best.cost, pool.runner_up()->cost, touched.points) : kLeadAlone;
   summary.evidence = evidence_for(summary, touched, lead);
+  summary.evidence.log_odds = log_odds_of(summary, summary.predicted_tre_mm);
   const double error_at_strokes_mm = predicted_error_mm(summary, pivot);
-  summary.reasons = doubts(summary, touched,
-                           {error_at_strokes_mm,
-                            lead_needed(summary.evidence.excess_misfit_mm, error_at_strokes_mm,
-                                        touched.white_noise_mm, touched.length_mm),
-                            (target - pivot).norm()});
+  summary.reasons =
+      doubts(summary, touched,
+             {error_at_strokes_mm, log_odds_of(summary, error_at_strokes_mm), (target - pivot).norm()});
   if (!ShaftCollision(bone, touched.points)
            .is_possible(best.bone_from_marker.matrix().cast<float>(),
                         best.bone_from_marker.translation_mm.cast<float>())) {
@@ -275,6 +274,19 @@ RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& po
   }
   summary.reliable = summary.reasons.empty();
   return summary;
+}
+
+void judge_with_side_lead(RegistrationSummary& summary, double side_lead) {
+  VerdictEvidence& evidence = summary.evidence;
+  const bool was_likely = evidence.log_odds >= evidence.needed_log_odds;
+  evidence.side_lead = side_lead;
+  evidence.log_odds = log_odds_of(summary, summary.predicted_tre_mm);
+  if (!was_likely || evidence.log_odds >= evidence.needed_log_odds) return;
+  summary.reliable = false;
+  summary.reasons.push_back(
+      files::format("the mirror image of this bone fits too nearly for strokes that miss the surface by %.2f "
+                    "mm: draw more of them, on other faces of the notch too",
+                    summary.misfit_mm));
 }
 
 }  // namespace arthronaut::registration

@@ -8,8 +8,8 @@
 
 namespace arthronaut::registration {
 
-// A pose of less stroke, or predicted to be off by more, is not to be relied on.
-inline constexpr double kMinLength_mm = 100, kMaxError_mm = 1.2;
+// A pose of less stroke is not to be relied on.
+inline constexpr double kMinLength_mm = 100;
 
 // The strokes that a pose is judged against.
 struct TouchedCurves {
@@ -26,9 +26,14 @@ struct TouchedCurves {
 };
 [[nodiscard]] double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented);
 
-// The best pose of the pool with all that can be said about it. An empty pool gives a summary without a pose.
+// The best pose of the pool with all that can be said about it, as if the bone's mirror image came nowhere
+// near: judge_with_side_lead says the rest. An empty pool gives a summary without a pose.
 [[nodiscard]] RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& pool,
                                             const TouchedCurves& touched, const RegistrationOptions& options);
+
+// The verdict once it is known how far the pose leads over the best one on the mirror image: a pose that
+// misses its strokes and is held loosely needs more of that lead. Can only add a doubt.
+void judge_with_side_lead(RegistrationSummary& summary, double side_lead);
 
 // By how much the points miss the surface, over what a good tracker's errors make of this white noise at
 // most. Above 1 it is another bone's surface.

@@ -23,15 +23,15 @@ class RegistrationExperimentTest : public testing::Test {
 
 }  // namespace
 
-// A verdict is what its evidence says: who is relied on has the lead that was needed and no more misfit than
+// A verdict is what its evidence says: who is relied on has the odds that were needed and no more misfit than
 // is borne.
 TEST_F(RegistrationExperimentTest, EvidenceBearsTheVerdictOut) {
   const auto result = run_registration_experiment(knee_.femur.mesh, options_);
   EXPECT_EQ(result.reliable_count, 2);
   EXPECT_EQ(result.success_count, 2);
   for (const TrialOutcome& trial : result.trials) {
-    EXPECT_GT(trial.evidence.stroke_length_mm, 100);
-    EXPECT_GE(trial.evidence.lead, trial.evidence.lead_needed);
+    EXPECT_GT(trial.evidence.length_in_use_mm, 100);
+    EXPECT_GE(trial.evidence.log_odds, trial.evidence.needed_log_odds);
     EXPECT_LE(trial.evidence.excess_misfit_mm, trial.evidence.bearable_excess_mm);
   }
 }
@@ -51,8 +51,8 @@ TEST_F(RegistrationExperimentTest, NothingIsRightOnAnotherBone) {
   EXPECT_EQ(result.reliable_but_wrong_count, result.reliable_count);
   const test::TemporaryFolder folder;
   write_verdict_evidence(folder / "evidence.csv", result);
-  const auto table =
-      files::CsvTable::read(folder / "evidence.csv", {"trial", "reliable", "lead", "lead_needed"});
+  const auto table = files::CsvTable::read(folder / "evidence.csv",
+                                           {"trial", "reliable", "lead", "log_odds", "needed_log_odds"});
   ASSERT_EQ(table.row_count(), 2U);
   EXPECT_EQ(table.integer(1, "reliable") == 1, result.trials[1].reliable);
   EXPECT_NEAR(table.number(1, "lead"), result.trials[1].evidence.lead, 1e-3);

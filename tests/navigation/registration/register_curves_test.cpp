@@ -165,6 +165,23 @@ TEST(RegisterCurves, RefusesTheOtherSidesBone) {
   }
 }
 
+// Strokes that miss the mirror image by nearly as much as such noise may, and lead there by far over the next
+// pose: it shows alone when the other side is asked.
+TEST(RegisterCurves, RefusesTheOtherSidesBoneWhereItFitsFairly) {
+  const PhantomBone& bone = phantom_bone();
+  const auto wall_mm = experiments::find_lateral_notch_wall(bone.mesh, *bone.surface, bones::Side::Right);
+  ASSERT_TRUE(wall_mm);
+  for (const std::uint64_t seed : {8'000'027, 8'000'033, 8'000'036}) {
+    strokes::Curves curves = experiments::make_trial(bone.mesh, *bone.surface, *wall_mm,
+                                                     experiments::setting_of(TrialNoise::ExVivo), seed)
+                                 .curves;
+    for (auto& point : curves) point.position_mm.x() = -point.position_mm.x();
+    const auto found = register_curves(*bone.prepared, curves, {seed, true, *wall_mm});
+    EXPECT_FALSE(found.reliable) << "seed " << seed;
+    EXPECT_THAT(found.reasons, Contains(HasSubstr("mirror image"))) << "seed " << seed;
+  }
+}
+
 // Many points are no trouble, and weigh no more than the path they lie on.
 TEST(RegisterCurves, TakesTwentyThousandPoints) {
   const PhantomBone& bone = phantom_bone();
@@ -268,7 +285,7 @@ TEST(RegisterCurves, DoesNotCountStrokesThatAreLeftOut) {
   const PhantomBone& bone = phantom_bone();
   experiments::TrialSetting setting = experiments::setting_of(TrialNoise::Dry);
   setting.stroke_count = 2;
-  setting.stroke_length_mm = 46;
+  setting.length_of_each_mm = 46;
   for (const std::uint64_t seed : {2u, 8u}) {
     const CartilageTrial laid = cartilage_trial(bone, bone.trial(setting, seed), -2, 14);
     ASSERT_GT(strokes::smoothed_length_mm(laid.trial.curves), 100);

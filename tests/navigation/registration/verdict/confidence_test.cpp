@@ -40,18 +40,44 @@ TEST(Confidence, JudgesByWhatTheCartilageLeavesUncertainToo) {
   EXPECT_THAT(doubted.reasons, testing::Contains(testing::HasSubstr("does not hold the bone fast")));
   EXPECT_NEAR(doubted.predicted_tre_mm, std::hypot(sure.predicted_tre_mm, kShift_mm), 1e-9);
   EXPECT_NEAR(doubted.covariance(1, 1) - sure.covariance(1, 1), kShift_mm * kShift_mm, 1e-9);
-  EXPECT_GT(doubted.evidence.lead_needed, sure.evidence.lead_needed);
+  EXPECT_LT(doubted.evidence.log_odds, sure.evidence.log_odds);
 }
 
 // What is wrong with a target far along the shaft is not the strokes: they hold the bone, but not there.
 TEST(Confidence, SaysThatTheTargetIsFarFromTheStrokes) {
-  for (const double off_mm : {200.0, 1000.0}) {
+  for (const double off_mm : {400.0, 1000.0}) {
     const RegistrationSummary far = judged(geometry::Vector6d::Zero(), off_mm);
+    EXPECT_GT(far.predicted_tre_mm, kMaxError_mm) << off_mm;
     EXPECT_FALSE(far.reliable) << off_mm;
     EXPECT_THAT(far.reasons, testing::ElementsAre(testing::AllOf(testing::HasSubstr("the target lies"),
                                                                  testing::HasSubstr("touch nearer to it"))))
         << off_mm;
   }
+}
+
+// A loosely held pose is relied on where the mirror image fits far worse, and doubted where it nearly fits;
+// one that is held fast is not. No lead over it mends a doubt that was there before.
+TEST(Confidence, ALoosePoseNeedsALeadOverTheMirrorImage) {
+  constexpr double kAmple = 18, kLittle = 3.5;
+  RegistrationSummary fast = judged(geometry::Vector6d::Zero());
+  judge_with_side_lead(fast, kLittle);
+  EXPECT_TRUE(fast.reliable) << testing::PrintToString(fast.reasons);
+
+  const RegistrationSummary loose = judged(0.8 * geometry::Vector6d::Unit(1));
+  ASSERT_TRUE(loose.reliable) << testing::PrintToString(loose.reasons);
+  RegistrationSummary ample = loose, little = loose;
+  judge_with_side_lead(ample, kAmple);
+  judge_with_side_lead(little, kLittle);
+  EXPECT_TRUE(ample.reliable) << testing::PrintToString(ample.reasons);
+  EXPECT_FALSE(little.reliable);
+  EXPECT_THAT(little.reasons, testing::ElementsAre(testing::HasSubstr("the mirror image")));
+  EXPECT_LT(little.evidence.log_odds, ample.evidence.log_odds);
+
+  RegistrationSummary doubted = judged(1.5 * geometry::Vector6d::Unit(1));
+  const std::vector<std::string> reasons = doubted.reasons;
+  judge_with_side_lead(doubted, kAmple);
+  EXPECT_FALSE(doubted.reliable);
+  EXPECT_EQ(doubted.reasons, reasons);
 }
 
 }  // namespace arthronaut::registration
