@@ -222,7 +222,7 @@ class Demo {
       context_.say(format(
           "          strokes of %.0f mm; rms %.2f mm, predicted error at the entry %.2f mm, true error %.2f "
           "mm",
-          summary.stroke_length_mm, summary.registration->rms_mm, summary.registration->predicted_tre_mm,
+          summary.drawn_length_mm, summary.registration->rms_mm, summary.registration->predicted_tre_mm,
           (summary.registration->marker_from_bone * entry - true_marker_from_bone_ * entry).norm()));
     }
     if (!summary.reasons.empty()) context_.say_unreliable("the registration", summary.reasons);

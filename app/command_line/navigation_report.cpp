@@ -78,7 +78,7 @@ void say_navigation(const Context& context, const theatre::NavigationSummary& su
   if (!summary.ending.empty()) context.say("the source ended: " + summary.ending);
   say_source(context, summary);
   say_statistics(context, summary.statistics);
-  context.say(format("strokes: %.0f mm in %zu points", summary.stroke_length_mm, summary.curves.size()));
+  context.say(format("strokes: %.0f mm in %zu points", summary.drawn_length_mm, summary.curves.size()));
   say_registration(context, summary);
   say_contour(context, summary);
   say_guidance(context, summary);

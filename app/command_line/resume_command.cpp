@@ -37,7 +37,7 @@ nlohmann::ordered_json json_of(const std::optional<recording::Resumable>& resuma
   }
   json["refusal"] = found.refusal;
   json["strokes"] = was.stroke_count;
-  json["stroke_length_mm"] = found.stroke_length_mm;
+  json["stroke_length_mm"] = found.drawn_length_mm;
   json["touches"] = was.touches_mm.size();
   json["control_point"] = was.control_point_mm.has_value();
   json["has_plan"] = was.plan.has_value();
@@ -60,7 +60,7 @@ void say(const Context& context, const recording::Resumable& found) {
                               was.registration->predicted_tre_mm,
                               found.was_verified ? ", was verified" : ""));
   context.say(files::format("history: %d strokes (%.0f mm), %zu touches%s", was.stroke_count,
-                            found.stroke_length_mm, was.touches_mm.size(),
+                            found.drawn_length_mm, was.touches_mm.size(),
                             was.control_point_mm ? ", the control point" : ""));
   context.say(was.plan ? files::format("plan in force: %s tunnel, %.1f mm wide, %.1f mm long",
                                        tunnels::name_of(was.plan->tunnel.key()).c_str(),

@@ -98,7 +98,7 @@ Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedT
   card.lines.push_back(registration_line(found));
   card.lines.push_back({Severity::Quiet, "Kept as history",
                         count_of(static_cast<std::size_t>(was.stroke_count), "stroke") +
-                            files::format(" (%.0f mm), ", found.stroke_length_mm) +
+                            files::format(" (%.0f mm), ", found.drawn_length_mm) +
                             count_of(was.touches_mm.size(), "touch") +
                             (was.control_point_mm ? ", the control point" : "")});
   const bool is_same_plan = was.plan == plan;

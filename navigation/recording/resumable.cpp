@@ -166,7 +166,7 @@ std::optional<Resumable> resumable_from(const RecordedSession& newest) {
     found.was_verified = last.was_verified();
   }
   const strokes::Curves strokes = rerun.operation().strokes_in_use();
-  found.stroke_length_mm = strokes::length_mm(strokes);
+  found.drawn_length_mm = strokes::length_mm(strokes);
   // After an alarm nobody knows how the marker sits to what was drawn and touched under it.
   if (last.alarm().empty()) {
     resume.drawn = joined(state->resumed.get(), *state->registration->drawn);

@@ -18,8 +18,8 @@ struct Resumable {
   // Why no registration is brought back: "it was in doubt at the end: ...", "nothing was registered". Empty
   // when one is.
   std::string refusal;
-  bool was_verified = false;    // the registration, by touches; one touch has to confirm it all the same
-  double stroke_length_mm = 0;  // of the strokes that were drawn
+  bool was_verified = false;   // the registration, by touches; one touch has to confirm it all the same
+  double drawn_length_mm = 0;  // of all strokes, along their samples
   // Of two bundles' tunnels those that the surgeon said he had drilled, AM before PL.
   std::vector<tunnels::TunnelKey> drilled;
   SessionHeader header;                                // of the newest session of it

@@ -115,7 +115,7 @@ class Navigation {
     summary_.record_trouble = run_.record_trouble();
     summary_.latency = run_.latency().report();
     summary_.curves = run_.operation().strokes_in_use();
-    summary_.stroke_length_mm = strokes::length_mm(summary_.curves);
+    summary_.drawn_length_mm = strokes::length_mm(summary_.curves);
     summary_.drilled = state->drilled;
     const operation::RegistrationState& known = *state->registration;
     summary_.standing = known.in_force.standing;

@@ -50,7 +50,7 @@ struct NavigationObserver {
 struct NavigationSummary {
   pipeline::ViewStatistics statistics;
   strokes::Curves curves;
-  double stroke_length_mm = 0;
+  double drawn_length_mm = 0;  // of the curves, along their samples
   // The one that is in force at the end; none when nothing was found or given.
   std::optional<registration::RegistrationSummary> registration;
   operation::Standing standing = operation::Standing::None;

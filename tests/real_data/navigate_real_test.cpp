@@ -68,7 +68,7 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
       "probe_wet: %ld frames, tip in %ld, strokes %.0f mm; registration rms %.3f mm, error at the target "
       "%.3f mm "
       "(predicted %.3f), rotation %.3f deg, %s\n",
-      scratched.statistics.frame_count, scratched.frames_with_tip, scratched.stroke_length_mm,
+      scratched.statistics.frame_count, scratched.frames_with_tip, scratched.drawn_length_mm,
       scratched.registration->rms_mm, target_error_mm, scratched.registration->predicted_tre_mm,
       rotation_error_deg, scratched.registration->reliable ? "reliable" : "not reliable");
   EXPECT_EQ(scratched.statistics.frame_count, 240);

@@ -63,7 +63,7 @@ LeftBehind left_behind() {
   was.stroke_count = 12;
   was.touches_mm = {Eigen::Vector3d::Zero()};
   was.control_point_mm = Eigen::Vector3d::Zero();
-  left.found.stroke_length_mm = 412.3;
+  left.found.drawn_length_mm = 412.3;
   left.found.was_verified = true;
   left.found.header.source_kind = "live";
   left.found.header.source = "Scope 30";

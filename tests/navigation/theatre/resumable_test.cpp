@@ -134,7 +134,7 @@ TEST_F(ResumableTest, Hazard12IsTheLastStateOfTheOperation) {
   for (std::size_t i = 0; i < left->operation.drawn.size(); ++i)
     EXPECT_EQ(left->operation.drawn[i].position_mm, (*before->registration->drawn)[i].position_mm);
   EXPECT_GT(left->operation.stroke_count, 0);
-  EXPECT_DOUBLE_EQ(left->stroke_length_mm, strokes::length_mm(run.operation().strokes_in_use()));
+  EXPECT_DOUBLE_EQ(left->drawn_length_mm, strokes::length_mm(run.operation().strokes_in_use()));
 }
 
 // After an alarm nothing that rests on the marker is brought back, neither what guided last nor what an older
@@ -228,7 +228,7 @@ TEST_F(ResumableTest, GoesBackOverTheSessionsOfTheOperation) {
   end(run);
   const auto left = found();
   ASSERT_TRUE(left);
-  EXPECT_DOUBLE_EQ(left->stroke_length_mm, length_mm);
+  EXPECT_DOUBLE_EQ(left->drawn_length_mm, length_mm);
   EXPECT_EQ(left->operation.touches_mm.size(), 2U);
   EXPECT_TRUE(left->operation.registration);
 }
