@@ -17,8 +17,8 @@ using widgets::Severity;
 
 // Strokes shorter than this are crumbs that nobody looks for.
 constexpr double kShownLength_mm = 2;
-// online_registration.cpp takes poses below the first for alike; the second is confidence.cpp's kNoRival.
-constexpr double kRivalRatio = 1.15, kNoRivalRatio = 10;
+// A next best pose that fits less than so many times worse is worth a look.
+constexpr double kClearRatio = 2;
 
 // Whose figures may be shown; null: nobody's.
 const registration::RegistrationSummary* pose_of(const operation::RegistrationState& state) {
@@ -133,22 +133,19 @@ std::vector<SeverityText> numbers_of(const operation::RegistrationState& state) 
   const Severity good = is_candidate ? Severity::Caution : Severity::Good;
   std::vector<SeverityText> rows;
   rows.push_back(
-      {error_mm < 1     ? good
-       : error_mm < 1.5 ? Severity::Caution
-                        : Severity::Bad,
-       "At the tunnel",
+      {error_mm <= registration::kMaxError_mm ? good : Severity::Bad, "At the tunnel",
        widgets::plus_minus(error_mm) + " mm" +
            (is_candidate ? ", " + widgets::plus_minus(state.online->predicted_angle_deg) + "\u00B0" : "")});
   const double ratio = pose->runner_up_ratio;
-  if (ratio >= kNoRivalRatio)
+  if (ratio >= registration::kNoRivalRatio) {
     rows.push_back({good, "No other pose", "comes near"});
-  else
-    rows.push_back(
-        {ratio < kRivalRatio ? Severity::Bad
-         : ratio < 2         ? Severity::Caution
-                             : good,
-         "Next best pose",
-         ratio < kRivalRatio ? "fits almost alike" : "fits " + widgets::fixed(ratio, 1) + " times worse"});
+  } else if (ratio < registration::kAlikeRatio) {
+    // Many measurements tell poses apart that each of them hardly does: what stands is not called bad.
+    rows.push_back({is_candidate ? Severity::Bad : Severity::Caution, "Next best pose", "fits almost alike"});
+  } else {
+    rows.push_back({ratio < kClearRatio ? Severity::Caution : good, "Next best pose",
+                    "fits " + widgets::fixed(ratio, 1) + " times worse"});
+  }
   return rows;
 }
 

@@ -100,6 +100,34 @@ TEST(RegistrationWords, ShowsTheFiguresOfWhatStands) {
   EXPECT_EQ(words.strokes.at(0).text.severity, Severity::Good);
 }
 
+// Words and colours follow the verdict's own limits: what it relies on is not called bad, and what it would
+// not is.
+TEST(RegistrationWords, ColoursFollowTheVerdict) {
+  const auto numbers = [](Standing standing, double error_mm, double ratio) {
+    Known known;
+    auto found = std::make_shared<registration::RegistrationSummary>(*known.history[0].registration);
+    found->predicted_tre_mm = error_mm;
+    found->runner_up_ratio = ratio;
+    known.history[0].registration = found;
+    auto online = std::make_shared<registration::OnlineResult>(*known.registration.online);
+    online->registration = *found;
+    known.registration.online = online;
+    known.stand(standing);
+    return known.words().numbers;
+  };
+  constexpr double kLittle = 1e-6;
+  const double most_mm = registration::kMaxError_mm, alike = registration::kAlikeRatio;
+  EXPECT_EQ(numbers(Standing::Stands, most_mm, 20).at(0).severity, Severity::Good);
+  EXPECT_EQ(numbers(Standing::Stands, most_mm + kLittle, 20).at(0).severity, Severity::Bad);
+  EXPECT_EQ(numbers(Standing::None, most_mm, 20).at(0).severity, Severity::Caution);
+  EXPECT_EQ(numbers(Standing::None, most_mm + kLittle, 20).at(0).severity, Severity::Bad);
+  EXPECT_EQ(numbers(Standing::None, 0.5, alike - kLittle).at(1).severity, Severity::Bad);
+  EXPECT_EQ(numbers(Standing::Stands, 0.5, alike - kLittle).at(1).severity, Severity::Caution);
+  EXPECT_EQ(numbers(Standing::Stands, 0.5, alike - kLittle).at(1).text, "fits almost alike");
+  EXPECT_EQ(numbers(Standing::Stands, 0.5, alike).at(1).text, "fits 1.1 times worse");
+  EXPECT_EQ(numbers(Standing::Stands, 0.5, registration::kNoRivalRatio).at(1).text, "comes near");
+}
+
 // What must not guide has no figures, whatever runs along.
 TEST(RegistrationWords, WhatDoesNotStandHasNoFigures) {
   for (const Standing standing :
