@@ -74,10 +74,11 @@ std::pair<std::string, bool> WorkstationWindow::status_words() {
   const std::string standstill = heartbeat_.words();
   const std::string fault = fault_.words(widgets::GraphicsWindow::now_s());
   const std::string untaken = untaken_.words(widgets::GraphicsWindow::now_s());
-  const std::string notice = !untaken.empty()                 ? untaken
-                             : !failure_.empty()              ? failure_
+  // What threatens comes before what was asked for in vain.
+  const std::string notice = !failure_.empty()                ? failure_
                              : !fault.empty()                 ? fault
                              : !standstill.empty()            ? standstill
+                             : !untaken.empty()               ? untaken
                              : shows_start() || shows_paint() ? std::string()
                              : !shown().notice().empty()      ? shown().notice()
                                                               : slow_.words();
