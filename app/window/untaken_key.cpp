@@ -8,7 +8,7 @@ namespace arthronaut::window {
 
 namespace {
 
-constexpr double kSaid_s = 5;
+constexpr double kUntakenSaid_s = 5;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void UntakenKey::note(const widgets::KeyPress& press, const widgets::Actions& ac
 }
 
 std::string UntakenKey::words(double now_s) const {
-  return now_s - noted_at_s_ < kSaid_s ? words_ : std::string();
+  return now_s - noted_at_s_ < kUntakenSaid_s ? words_ : std::string();
 }
 
 }  // namespace arthronaut::window

@@ -9,7 +9,7 @@ namespace {
 class UntakenKeys : public ::testing::Test {
  protected:
   UntakenKeys() {
-    actions_.add({"plan.default", "Default plan", "", GLFW_KEY_N, 0, false, [] { return false; }});
+    actions_.add({"plan.default", "Default plan", "", GLFW_KEY_N, 0, false, [] { return false; }, {}, {}});
   }
   std::string after(int key, bool is_opening = false) {
     UntakenKey untaken;
