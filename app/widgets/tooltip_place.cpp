@@ -38,6 +38,7 @@ ImVec2 tooltip_place(const Rect& about, const ImVec2& size, const Rect& screen, 
                        std::clamp(at_y, screen.y, std::max(screen.y, screen.max().y - size.y)), size.x,
                        size.y};
       const float distance = apart(place, about);
+      if (least_covered == 0 && distance >= least_apart) continue;
       float area = 0;
       for (const Rect& other : taken) area += covered(place, other);
       if (area > least_covered || (area == least_covered && distance >= least_apart)) continue;
