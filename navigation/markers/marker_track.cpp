@@ -1,6 +1,5 @@
 #include "navigation/markers/marker_track.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -12,12 +11,12 @@ namespace {
 using geometry::RigidTransform;
 using geometry::Vector6d;
 
-// A smear up to which edges go on by themselves, with so much less trust, where no direct fit confirms them.
+// A smear up to which edges go on by themselves from where the marker stood, with so much less trust, where
+// no direct fit confirms them.
 constexpr double kLittleSmearPx = 8, kUnconfirmed = 10;
 constexpr int kMaxPasses = 4;
 // Through so much of a cell the edges of what turns back pass for sharp ones elsewhere.
 constexpr double kTurnsBackCells = 0.6;
-constexpr double kMaxNewMotionPx = 5;
 // Two starts that lead so near to each other lead to the same.
 constexpr double kSameEdgesPx = 0.1, kSameMotionPx = 0.5;
 // A search's start whose edges are not found by so much, along x and y together, leads nowhere.
@@ -25,10 +24,6 @@ constexpr double kMinStartShare = 1;
 // Of small direct fits: what it costs to look at its edges.
 constexpr int kEdgesAsFits = 2;
 constexpr double kSoft = 1.4;
-// A pose tilted the other way whose edges scatter by less than this share of the fit's is the right one.
-constexpr double kMuchBetter = 0.5;
-
-double misfit_of(const EdgePose& fit) { return std::max(1.0, fit.scale) / (fit.share[0] + fit.share[1]); }
 
 }  // namespace
 
@@ -75,7 +70,11 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
       return false;
     }
   }
-  if (measure_from_edges(frame, start, is_found, fit, picture, trend, observation)) return true;
+  if (measure_from_edges(frame, start, is_found, fit, picture, trend, observation)) {
+    // No hand turns it there: another tilt that the picture allows.
+    if (!stood_lately(frame) || goes_on_from_published(frame, observation.camera_from_marker)) return true;
+    observation.state = MarkerState::Doubtful;
+  }
   if (is_found) refused_[refused_count_++ % refused_.size()] = Refused{fit, picture.motion, observation};
   return false;
 }
@@ -172,7 +171,8 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
       // Edges that the direct fit does not confirm are good enough to go on from, not to stand for.
       report_edges(frame, fit, picture, is_found, observation);
       if (!observation.is_tracked()) return false;
-      if (is_motion_known && moved_px(picture.motion, px_per_mm) < kLittleSmearPx) {
+      if (is_motion_known && moved_px(picture.motion, px_per_mm) < kLittleSmearPx &&
+          goes_on_from_published(frame, fit.camera_from_marker)) {
         observation.covariance *= kUnconfirmed;
         return true;
       }
@@ -203,21 +203,6 @@ void MarkerTrack::look_at_edges(const TrackedFrame& frame, const RigidTransform&
                 measurements_, trend);
   if (const auto center = frame.camera.project(pose.translation_mm))
     correct_rows(frame.smear.rows, center->y(), frame.image.view().height, picture.sigma_px, measurements_);
-}
-
-void MarkerTrack::doubt_rows(const TrackedFrame& frame, const RowTrend& trend,
-                             MarkerObservation& observation) const {
-  const RowTiming& rows = frame.smear.rows;
-  const auto& twists = trend.twist_by_delays;
-  observation.covariance += twists * rows.uncertainty() * twists.transpose();
-  const RigidTransform& pose = observation.camera_from_marker;
-  const auto change = motion_.change_to(pose, frame.timestamp_ns, frame.interval_ns);
-  const double px_per_mm = cell_px(frame, pose) * cells_ / marker_.size_mm;
-  const double comb_px = rows.comb_px(px_per_mm * interval_motion(frame, pose).head<3>().norm(),
-                                      change ? px_per_mm * change->head<3>().norm() : 0);
-  if (!(comb_px > 0)) return;
-  if (const auto square = refine_square_pose(frame.camera, observation.corners_px, marker_.size_mm, pose))
-    observation.covariance += square_covariance(*square, comb_px);
 }
 
 EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform& start, bool is_found,
@@ -270,134 +255,6 @@ DirectPose MarkerTrack::fit_directly(const TrackedFrame& frame, const RigidTrans
   }
   return frame.direct->refine(frame.image.view(), frame.camera, code_, samples_, marker_.size_mm, from,
                               options);
-}
-
-void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit,
-                                std::optional<double> max_rms_px, MarkerObservation& observation) {
-  observation.camera_from_marker = fit.pose.camera_from_marker;
-  observation.covariance = fit.covariance;
-  // The motion is not followed in all six directions: what is left out changes about as much as what is seen.
-  const double ratio = fit.pose.change.head<2>().norm() / std::max(1e-6, fit.pose.velocity.head<2>().norm());
-  const Vector6d left_out = std::clamp(ratio, 0.4, 4.0) / 24 * fit.pose.velocity;
-  observation.covariance.diagonal() += left_out.cwiseAbs2();
-  // The corners as the edges by themselves would have them.
-  SmearTrend ignored;
-  look_at_edges(frame, fit.pose.camera_from_marker, {frame.smear.sigma_px, fit.pose.velocity}, {}, ignored);
-  is_inlier_.resize(measurements_.size());
-  for (std::size_t i = 0; i < measurements_.size(); ++i)
-    is_inlier_[i] =
-        measurements_[i].state == EdgeState::Found && std::abs(measurements_[i].offset_px) < kMaxEdgeRmsPx;
-  EdgePose edges;
-  edges.camera_from_marker = fit.pose.camera_from_marker;
-  edges.bloom_px = frame.smear.bloom.mean_px;
-  const MeasuredCorners corners =
-      measured_corners(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, edges);
-  observation.corners_px = corners.corners_px;
-  observation.rms_px = corners.rms_px;
-  observation.ambiguity_ratio = kNoOtherPose;
-  if (!max_rms_px) {
-    const double px_per_mm = cell_px(frame, fit.pose.camera_from_marker) * cells_ / marker_.size_mm;
-    const double unfollowed_px = options_.unfollowed_share * moved_px(fit.pose.velocity, px_per_mm);
-    if (const auto square = refine_square_pose(frame.camera, corners.corners_px, marker_.size_mm,
-                                               fit.pose.camera_from_marker))
-      observation.covariance += square_covariance(*square, unfollowed_px);
-    observation.rms_px = std::max(observation.rms_px, unfollowed_px);
-  }
-  observation.state = judge(fit, max_rms_px, observation);
-  if (observation.is_tracked() && explained_ && are_unlike(*explained_, fit.pose.camera_from_marker))
-    observation.state = MarkerState::Doubtful;
-  if (!observation.is_tracked() && fit.explains_picture()) explained_ = fit.pose.camera_from_marker;
-  // The other pose that has nearly these corners must be told apart by how the picture looks there.
-  Corners exact;
-  const auto corners_mm = square_corners_mm(marker_.size_mm);
-  for (int k = 0; k < 4; ++k) {
-    const auto corner = frame.camera.project(fit.pose.camera_from_marker * corners_mm[k]);
-    if (!corner) return;
-    exact[k] = *corner;
-  }
-  const auto poses = solve_square(frame.camera, exact, marker_.size_mm);
-  if (!observation.is_tracked() || !poses || !poses->other) return;
-  const double corner_px = std::hypot(
-      options_.corner_sigma_px, std::sqrt((poses->best.information * observation.covariance).trace() / 8));
-  observation.ambiguity_ratio = std::min(kNoOtherPose, poses->other->rms_px / corner_px);
-  if (observation.ambiguity_ratio >= options_.clear_ratio) return;
-  // Where nothing was known before, the motion is this fit's, and the other pose has its own.
-  const bool goes_on = goes_on_from_published(frame, fit.pose.camera_from_marker);
-  const DirectPose other = fit_directly(frame, poses->other->camera_from_marker, fit.pose.velocity,
-                                        goes_on ? options_.direct : unsure(options_.direct));
-  if (!other.is_usable() || other.noise_grey > options_.other_noise * fit.noise_grey) return;
-  if (are_unlike(fit.pose.camera_from_marker, other.pose.camera_from_marker))
-    observation.state = MarkerState::Ambiguous;
-}
-
-RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture,
-                                   bool is_found, MarkerObservation& observation) {
-  observation.camera_from_marker = fit.camera_from_marker;
-  observation.covariance = fit.covariance;
-  const MeasuredCorners corners =
-      measured_corners(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, fit);
-  observation.corners_px = corners.corners_px;
-  observation.rms_px = corners.rms_px;
-  const RowTrend rows = row_trend(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, fit);
-  doubt_rows(frame, rows, observation);
-  std::optional<SquarePose> other;
-  std::optional<RigidTransform> by_corners;  // where that is another tilt
-  observation.ambiguity_ratio = kNoOtherPose;
-  if (const auto poses = solve_square(frame.camera, corners.corners_px, marker_.size_mm)) {
-    other = poses->other;
-    if (are_unlike(fit.camera_from_marker, poses->best.camera_from_marker))
-      by_corners = poses->best.camera_from_marker;
-    if (other) {
-      observation.ambiguity_ratio =
-          std::min(kNoOtherPose, other->rms_px / std::max(observation.rms_px, options_.corner_sigma_px));
-    }
-    // After a guess as little is known of the motion as at first sight; and where the sides of
-    // a marker that moves do not meet in the pose's corners, it moves in a way that is not known.
-    const double moved_px =
-        picture.motion.head<3>().norm() * cell_px(frame, fit.camera_from_marker) * cells_ / marker_.size_mm;
-    const bool tells_by_corners = moved_px > 0.5 * options_.smeared_px &&
-                                  std::min(fit.share[0], fit.share[1]) > options_.nearly_whole_share;
-    const double sigma_px =
-        std::hypot(is_found || is_motion_guessed_ ? options_.found_corner_sigma_px : 0,
-                   tells_by_corners ? 2 * std::max(0.0, corners.rms_px - options_.usual_corner_rms_px) : 0);
-    observation.covariance += square_covariance(poses->best, sigma_px);
-  }
-  if (const auto change = motion_.change_to(fit.camera_from_marker, frame.timestamp_ns, frame.interval_ns)) {
-    const double share = options_.change_share * std::pow(frame.smear.exposure_share, 2);
-    observation.covariance += share * share * *change * change->transpose();
-  }
-  observation.state = judge(fit, observation, other, is_found);
-  // Seen in part for the first time: what its cells say takes the place of the edges that are missing.
-  if (is_found && observation.state == MarkerState::Covered &&
-      is_confirmed_by_code(frame, fit.camera_from_marker))
-    observation.state = judge(fit, observation, other, false);
-  // The edges settled on one tilt, the corners that they make speak for another one, and from there the edges
-  // do not come back: corners that glow or dirt moved are unlike the edges, too, where tilt is seen badly.
-  if (observation.is_tracked() && by_corners) {
-    const EdgePose there = fit_edge_pose(frame.camera, marker_.size_mm, samples_, measurements_, *by_corners,
-                                         frame.smear.bloom, is_inlier_);
-    if (!there.converged || are_unlike(fit.camera_from_marker, there.camera_from_marker))
-      observation.state = MarkerState::Doubtful;
-  }
-  if (observation.is_tracked()) {
-    const auto rival = rival_tilt(frame.camera, marker_.size_mm, samples_, measurements_, fit,
-                                  corners.corners_px, frame.smear.bloom, is_inlier_);
-    if (rival) observation.state = MarkerState::Ambiguous;
-    if (rival && rival->scale < kMuchBetter * fit.scale) {
-      observation.state = MarkerState::Doubtful;  // what is ambiguous is gone on from
-      go_on_from(rival->camera_from_marker, misfit_of(*rival));
-    }
-  }
-  const double cell = cell_px(frame, fit.camera_from_marker);
-  if (observation.state == MarkerState::Covered)
-    observation.state = reason_of_loss(fit.camera_from_marker, measurements_, cell);
-  // A first sight through a strong smear is good enough to go on from, not to stand for.
-  if (is_found && observation.is_tracked() &&
-      picture.motion.head<3>().norm() * cell * cells_ > kMaxNewMotionPx * marker_.size_mm) {
-    observation.state = MarkerState::Blur;
-    go_on_from(fit.camera_from_marker, misfit_of(fit));
-  }
-  return rows;
 }
 
 }  // namespace arthronaut::markers

@@ -150,6 +150,7 @@ class MarkerTrack {
   // The cells at the pose, as far as they are seen, are this marker's.
   [[nodiscard]] bool is_confirmed_by_code(const TrackedFrame& frame,
                                           const geometry::RigidTransform& pose) const;
+  [[nodiscard]] bool stood_lately(const TrackedFrame& frame) const;  // a pose did, a short while ago
   // A pose stood a short while ago, and a hand may have turned the marker from there to this one.
   [[nodiscard]] bool goes_on_from_published(const TrackedFrame& frame,
                                             const geometry::RigidTransform& pose) const;

@@ -27,16 +27,19 @@ bool MarkerTrack::measure_recovered(const TrackedFrame& frame, const RigidTransf
   return false;
 }
 
+bool MarkerTrack::stood_lately(const TrackedFrame& frame) const {
+  constexpr std::int64_t kShortWhileNs = 70'000'000;
+  return published_ && frame.timestamp_ns - published_->timestamp_ns <= kShortWhileNs;
+}
+
 bool MarkerTrack::goes_on_from_published(const TrackedFrame& frame, const RigidTransform& pose) const {
-  constexpr double kShortWhile_s = 0.07;
-  if (!published_) return false;
+  if (!stood_lately(frame)) return false;
   const double passed_s = 1e-9 * static_cast<double>(frame.timestamp_ns - published_->timestamp_ns);
   // What turns about the line of sight is seen to do so, however fast.
   const Eigen::Quaterniond turn = pose.rotation * published_->camera_from_marker.rotation.conjugate();
   const double about_sight = turn.vec().dot(pose.translation_mm.normalized());
   const double turned_rad = 2 * std::acos(std::min(1.0, std::hypot(turn.w(), about_sight)));
-  return passed_s <= kShortWhile_s &&
-         turned_rad <= options_.turn_slack_rad + options_.max_turn_rad_s * passed_s;
+  return turned_rad <= options_.turn_slack_rad + options_.max_turn_rad_s * passed_s;
 }
 
 void MarkerTrack::go_on_from(const RigidTransform& pose, double misfit) {

@@ -1,6 +1,7 @@
 // Whether a measured pose stands, and what to say when it does not.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -19,6 +20,11 @@ inline constexpr double kMaxEdgeRmsPx = 1.2;  // how far an edge, or a corner, m
 
 // Whether a pose with this covariance of its body twist may stand: one sigma in all directions together.
 [[nodiscard]] bool is_known_well_enough(const geometry::Matrix6d& covariance);
+
+// How badly edges agree with their pose: their scatter over the share that is found.
+[[nodiscard]] inline double misfit_of(const EdgePose& fit) {
+  return std::max(1.0, fit.scale) / (fit.share[0] + fit.share[1]);
+}
 
 // What the edges say. The observation holds the corners that they make; `other` is the second pose that the
 // corners allow; `is_found`: nothing is known from frames before.

@@ -102,6 +102,29 @@ TEST_F(Reasons, Blur) {
   EXPECT_EQ(state, MarkerState::Blur) << to_text(state);
 }
 
+// No hand tilts it by 55 degrees from picture to picture: what looks like it does not stand for 70 ms.
+TEST_F(Reasons, DoubtfulWhereNoHandTurnsIt) {
+  for (int i = 0; i < 3; ++i)
+    ASSERT_EQ(show(picture(facing_pose(0.5, 0.3, 15, 30, 12, 25))), MarkerState::Tracked);
+  const RenderedPicture tilted = picture(facing_pose(0.5, 0.3, 15, -25, 12, 25));
+  for (int i = 0; i < 4; ++i) EXPECT_NE(show(tilted), MarkerState::Tracked) << "picture " << i;
+  EXPECT_EQ(show(tilted), MarkerState::Tracked);
+}
+
+// Something lies on its cells and leaves the outline, which may as well be that of something else.
+TEST_F(Reasons, CoveredWhereOnlyTheOutlineIsLeft) {
+  const RigidTransform pose = facing_pose(0, 0, 15, 12, 8, 0);
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(show(picture(pose)), MarkerState::Tracked);
+  auto shown = picture(pose);
+  const auto from = *camera_.project(pose * Eigen::Vector3d(-1.2, 1.2, 0)),
+             to = *camera_.project(pose * Eigen::Vector3d(1.2, -1.2, 0));
+  const auto [left, right] = std::minmax(from.x(), to.x());
+  const auto [top, bottom] = std::minmax(from.y(), to.y());
+  shown.cover(static_cast<int>(left), static_cast<int>(top), static_cast<int>(right),
+              static_cast<int>(bottom), 45);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(show(shown), MarkerState::Covered) << "picture " << i;
+}
+
 // Far and nearly head-on both planar poses explain what noise leaves of the corners: it may be refused as
 // ambiguous or doubtful, but ambiguity must be named, and no pose that stands may be flipped.
 TEST_F(Reasons, Ambiguous) {
