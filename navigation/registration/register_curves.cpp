@@ -221,7 +221,7 @@ RegistrationSummary register_curves(const SurfaceIndex& prepared, const strokes:
   SearchOutcome found = search_and_summarise(setting, curves, kMaxRounds);
   if (!found.summary.has_pose || found.fits_amply) return found.summary;
   const auto [side, side_lead] = judge_side(setting, curves, found);
-  judge_with_side_lead(found.summary, side_lead);
+  judge_odds(found.summary, side_lead, kNeededLogOdds);
   if (side == SideVerdict::Own) return found.summary;
   found.summary.reliable = false;
   // What misses its own surface may be anybody's bone, whatever its mirror image does.

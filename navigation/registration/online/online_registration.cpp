@@ -213,7 +213,10 @@ int OnlineRegistration::State::agreement_count() const {
 void OnlineRegistration::State::check_side() {
   const bool is_due = side_checked_mm == 0 || judges_all || result.length_mm > 1.5 * side_checked_mm ||
                       result.state != OnlineState::Confirmed;
-  if (is_due && agreement_count() >= kAgreeingSolutions && result.registration.reliable) {
+  const double needed_log_odds = judges_all ? kNeededLogOdds : kNeededLogOddsWhileDrawing;
+  const RegistrationSummary& found = result.registration;
+  if (is_due && agreement_count() >= kAgreeingSolutions && found.reliable &&
+      found.evidence.log_odds >= needed_log_odds) {
     // Costs compare only between searches of the same kind, over the same points.
     constexpr int kRounds = 2;
     const strokes::Curves curves = strokes.curves_in_use();
@@ -222,7 +225,8 @@ void OnlineRegistration::State::check_side() {
     side_checked_mm = result.length_mm;
   }
   if (!result.registration.has_pose) return;
-  if (side_checked_mm > 0) judge_with_side_lead(result.registration, side.lead);
+  judge_odds(result.registration, side_checked_mm > 0 ? std::optional(side.lead) : std::nullopt,
+             needed_log_odds);
   if (side.verdict == SideVerdict::Own) return;
   result.bone_is_in_doubt = true;
   result.registration.reliable = false;

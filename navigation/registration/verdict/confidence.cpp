@@ -105,7 +105,6 @@ double max_excess_mm(double white_noise_mm) { return kExcess_mm + kExcessOfNoise
 constexpr double kClearLead = 2;
 constexpr double kLeadAlone = 25;      // that no other pose was found, or none near, says no more
 constexpr double kSideLeadAlone = 20;  // nor that the mirror image comes nowhere near, or needn't be asked
-constexpr double kNeededLogOdds = 4;
 double log_odds_of(const RegistrationSummary& summary, double predicted_error_mm) {
   constexpr double kOfLead = 0.308, kOfError = 4.415, kOfMisfit = 2.505, kOfSideLead = 0.369, kAlways = 9.31;
   constexpr double kLength_mm = 350, kOfShortness = 2.2;
@@ -128,6 +127,13 @@ VerdictEvidence evidence_for(const RegistrationSummary& summary, const TouchedCu
   evidence.lead = lead;
   evidence.needed_log_odds = kNeededLogOdds;
   return evidence;
+}
+
+std::string reason_against_odds(const RegistrationSummary& summary) {
+  return files::format(
+      "strokes that miss the surface by %.2f mm fit another bone too: draw more of them, "
+      "on other faces of the notch too",
+      summary.misfit_mm);
 }
 
 // How the pose stands at the middle of the strokes, where it is known best, and how far off the target lies.
@@ -160,10 +166,7 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, const Touche
   if (evidence.lead < kClearLead) {
     reasons.push_back("two poses fit almost alike: touch other faces of the notch too");
   } else if (!is_likely && !is_likely_at_strokes) {
-    reasons.push_back(
-        files::format("strokes that miss the surface by %.2f mm fit another bone too: draw more of them, "
-                      "on other faces of the notch too",
-                      summary.misfit_mm));
+    reasons.push_back(reason_against_odds(summary));
   }
   if ((!is_held && is_held_at_strokes) || (!is_likely && is_likely_at_strokes))
     reasons.push_back(
@@ -276,17 +279,16 @@ RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& po
   return summary;
 }
 
-void judge_with_side_lead(RegistrationSummary& summary, double side_lead) {
+void judge_odds(RegistrationSummary& summary, const std::optional<double>& side_lead,
+                double needed_log_odds) {
   VerdictEvidence& evidence = summary.evidence;
   const bool was_likely = evidence.log_odds >= evidence.needed_log_odds;
   evidence.side_lead = side_lead;
+  evidence.needed_log_odds = needed_log_odds;
   evidence.log_odds = log_odds_of(summary, summary.predicted_tre_mm);
-  if (!was_likely || evidence.log_odds >= evidence.needed_log_odds) return;
+  if (!was_likely || evidence.log_odds >= needed_log_odds) return;
   summary.reliable = false;
-  summary.reasons.push_back(
-      files::format("the mirror image of this bone fits too nearly for strokes that miss the surface by %.2f "
-                    "mm: draw more of them, on other faces of the notch too",
-                    summary.misfit_mm));
+  summary.reasons.push_back(reason_against_odds(summary));
 }
 
 }  // namespace arthronaut::registration

@@ -3,13 +3,17 @@
 // correlate, and whether another pose fits as well.
 #pragma once
 
+#include <optional>
+
 #include "navigation/registration/bone/surface_index.h"
 #include "navigation/registration/search/pose_pool.h"
 
 namespace arthronaut::registration {
 
-// A pose of less stroke is not to be relied on.
+// A pose of less stroke, or of lower odds (VerdictEvidence::log_odds), is not to be relied on. While more may
+// be drawn, waiting costs little, and what fits another bone by chance is asked about again and again.
 inline constexpr double kMinLength_mm = 100;
+inline constexpr double kNeededLogOdds = 4, kNeededLogOddsWhileDrawing = 7;
 
 // The strokes that a pose is judged against.
 struct TouchedCurves {
@@ -27,13 +31,14 @@ struct TouchedCurves {
 [[nodiscard]] double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented);
 
 // The best pose of the pool with all that can be said about it, as if the bone's mirror image came nowhere
-// near: judge_with_side_lead says the rest. An empty pool gives a summary without a pose.
+// near: judge_odds says the rest. An empty pool gives a summary without a pose.
 [[nodiscard]] RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& pool,
                                             const TouchedCurves& touched, const RegistrationOptions& options);
 
-// The verdict once it is known how far the pose leads over the best one on the mirror image: a pose that
-// misses its strokes and is held loosely needs more of that lead. Can only add a doubt.
-void judge_with_side_lead(RegistrationSummary& summary, double side_lead);
+// The verdict once it is known how far the pose leads over the best one on the mirror image (nullopt: it was
+// not asked, as if that came nowhere near): one that misses its strokes and is held loosely needs more of
+// that lead. Can only add a doubt.
+void judge_odds(RegistrationSummary& summary, const std::optional<double>& side_lead, double needed_log_odds);
 
 // By how much the points miss the surface, over what a good tracker's errors make of this white noise at
 // most. Above 1 it is another bone's surface.

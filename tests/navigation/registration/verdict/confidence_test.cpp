@@ -60,22 +60,25 @@ TEST(Confidence, SaysThatTheTargetIsFarFromTheStrokes) {
 TEST(Confidence, ALoosePoseNeedsALeadOverTheMirrorImage) {
   constexpr double kAmple = 18, kLittle = 3.5;
   RegistrationSummary fast = judged(geometry::Vector6d::Zero());
-  judge_with_side_lead(fast, kLittle);
+  judge_odds(fast, kLittle, kNeededLogOdds);
   EXPECT_TRUE(fast.reliable) << testing::PrintToString(fast.reasons);
 
   const RegistrationSummary loose = judged(0.8 * geometry::Vector6d::Unit(1));
   ASSERT_TRUE(loose.reliable) << testing::PrintToString(loose.reasons);
   RegistrationSummary ample = loose, little = loose;
-  judge_with_side_lead(ample, kAmple);
-  judge_with_side_lead(little, kLittle);
+  judge_odds(ample, kAmple, kNeededLogOdds);
+  judge_odds(little, kLittle, kNeededLogOdds);
   EXPECT_TRUE(ample.reliable) << testing::PrintToString(ample.reasons);
   EXPECT_FALSE(little.reliable);
-  EXPECT_THAT(little.reasons, testing::ElementsAre(testing::HasSubstr("the mirror image")));
+  EXPECT_THAT(little.reasons, testing::ElementsAre(testing::HasSubstr("fit another bone too")));
   EXPECT_LT(little.evidence.log_odds, ample.evidence.log_odds);
+  RegistrationSummary drawn = loose;
+  judge_odds(drawn, kAmple, kNeededLogOddsWhileDrawing);
+  EXPECT_FALSE(drawn.reliable) << drawn.evidence.log_odds;
 
   RegistrationSummary doubted = judged(1.5 * geometry::Vector6d::Unit(1));
   const std::vector<std::string> reasons = doubted.reasons;
-  judge_with_side_lead(doubted, kAmple);
+  judge_odds(doubted, kAmple, kNeededLogOdds);
   EXPECT_FALSE(doubted.reliable);
   EXPECT_EQ(doubted.reasons, reasons);
 }
