@@ -25,7 +25,7 @@ constexpr double kLeastSeen = 0.5;
 // What is asked for, where there is metal, too, and how seldom either may be missed by what is called
 // reliable.
 constexpr double kAskedEntry_mm = 0.3, kAskedDirection_deg = 0.5, kAskedEntryByMetal_mm = 0.6,
-                 kAskedDirectionByMetal_deg = 1, kMostChance = 0.005;
+                 kAskedDirectionByMetal_deg = 1, kMostChance = 0.02;
 constexpr double kMostDiameterSigma_mm = 0.15;  // half of what is asked for
 // How wide a bore is is known through as much blur as this (sigma, voxel included): there is no trial beyond.
 constexpr double kMostBlur_mm = 1.0;
@@ -238,8 +238,8 @@ class Finder {
                                      c.fit.diameter_sigma_mm, kMostDiameterSigma_mm));
     if (!c.is_by_screw && c.fit.profile.layer_mm > 0)
       doubts.push_back(files::format(
-          "between it and the bone lies a layer of some %.1f mm that is less dense than the bone: "
-          "which of its sides was drilled is not seen, and its diameter is not known",
+          "the wall that is seen is the outer side of a layer of some %.1f mm that is less dense than "
+          "the bone: which of its sides was drilled is not seen, and its diameter is not known",
           c.fit.profile.layer_mm));
     if (!c.is_by_screw && !c.fit.profile.has_rim() && c.fit.profile.plain_blur_mm > kMostBlur_mm)
       doubts.push_back(

@@ -28,6 +28,9 @@ FitSpread spread_of(const Eigen::MatrixXd& normal, const std::vector<PartOfFit>&
   }
   const auto numbers = static_cast<double>((disagreement.array() > 0).count());
   spread.freedom = std::max(1.0, told - numbers);
+  // The others move by more when one is left out than all of them are off, as each takes its share of the
+  // numbers.
+  spread.by_disagreement *= spread.freedom / std::max(1.0, told);
   const double pooled = (disagreement.array() / normal.diagonal().array()).sum() / std::max(1.0, numbers);
   spread.shared_voxels = std::max(1.0, pooled * told / spread.freedom);
   spread.by_noise = kUntold * spread.shared_voxels * normal.inverse();

@@ -9,8 +9,8 @@ namespace arthronaut::postop {
 
 struct FitSpread {
   // Covariances of the numbers. By the noise, as much of it shared by neighbouring voxels as `shared_voxels`
-  // says; and by how far the numbers move when any one of the parts is left out (the jackknife), which is the
-  // surer the more parts there are.
+  // says; and by how far the numbers move when any one of the parts is left out (the jackknife, less what
+  // the others move by for their being fewer), which is the surer the more parts there are.
   Eigen::MatrixXd by_noise, by_disagreement;
   double shared_voxels = 1;  // at least 1
   double freedom = 1;        // parts less numbers, at least 1: how well either covariance is known

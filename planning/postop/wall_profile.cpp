@@ -20,6 +20,8 @@ constexpr double kApart_mm = 0.25;
 constexpr double kRimStep_hu = 30, kMostRim_hu = 1200;
 // Of the step from inside to beyond, that a layer between the two is off either.
 constexpr double kLayerStep = 0.15;
+// Of its inner side from what was taken for the wall: half of what is asked of a diameter.
+constexpr double kLeastOff_mm = 0.15;
 enum class Between { Rim, Layer };
 
 double cumulated(double z) { return 0.5 * std::erfc(-z * M_SQRT1_2); }
@@ -177,14 +179,17 @@ WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu, 
                       .plain_blur_mm = sloping.shape.blur_mm,
                       .wall_sigma_mm = std::hypot(std::sqrt(variance), taken.shape.wall_mm - mean_mm)};
   // A layer takes one number more than marrow that changes, two more than an even one.
-  double least = std::min(sloping.unexplained, taken.unexplained);
+  double least = std::min(sloping.unexplained, taken.unexplained), inner_mm = 0;
   for (double layer_mm = kLeastLayer_mm; layer_mm < kMostRim_mm + 0.01; layer_mm += 0.25) {
     const Explained layered = explanation.with_layer(layer_mm);
     if (!(told * std::log(least / layered.unexplained) > (profile.layer_mm > 0 ? 0 : 2) * std::log(told)))
       continue;
     least = layered.unexplained;
     profile.layer_mm = layer_mm;
+    inner_mm = layered.shape.wall_mm;
   }
+  // Where its inner side is what was taken for the wall, the layer is marrow, and what is beyond it cortex.
+  if (inner_mm > -kLeastOff_mm) profile.layer_mm = 0;
   if (has_rim) {
     profile.rim_mm = taken.shape.rim_mm;
     profile.rim_hu = taken.levels[1];

@@ -23,7 +23,8 @@ struct WallProfile {
   // One sigma of `wall_mm`, by that rims of other thicknesses, or none, explain the same as well or nearly.
   double wall_sigma_mm = 0;
   // Thickness of a layer, of a density between those on its sides, that explains the points clearly better
-  // than all of the above; 0: none. Which of its sides was drilled the picture does not tell.
+  // than all of the above, and the inner side of which is more than 0.15 mm within what was taken for the
+  // wall; 0: none. Which of its sides was drilled the picture does not tell.
   double layer_mm = 0;
 
   [[nodiscard]] bool has_rim() const { return rim_mm > 0; }
