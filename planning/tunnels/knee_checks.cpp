@@ -75,12 +75,10 @@ PlanCheck check_length_change(const graft::GraftCourse& course,
   check.verdict = Verdict::Look;
   check.text += ": more than the customary " + limit_text(norms.isometric_change_mm, "mm");
   if (!of_insertions) return check;
-  const std::string in_hinge =
-      " between the insertions' middles in the same hinge: " + number_text(of_insertions->change_mm(), "mm");
-  const bool is_kept_there = of_insertions->change_mm() <= norms.isometric_change_mm;
-  check.text += is_kept_there ? ", other than" + in_hinge : ", as" + in_hinge;
+  check.text +=
+      "; between the insertions' middles in the same hinge " + number_text(of_insertions->change_mm(), "mm");
   // What the knee's own ligament does not keep in this model says nothing about a plan.
-  if (!is_kept_there) check.verdict = Verdict::Note;
+  if (of_insertions->change_mm() > norms.isometric_change_mm) check.verdict = Verdict::Note;
   return check;
 }
 
@@ -100,8 +98,10 @@ PlanCheck check_against_insertions(const graft::GraftCourse& course,
   PlanCheck check{
       .verdict = Verdict::Fine,
       .name = name,
-      .text = "up to " + number_text(std::abs(most_mm), "mm") +
-              (most_mm < 0 ? " slacker, at " : " tighter, at ") + number_text(most_at_deg, "deg"),
+      .text = std::abs(most_mm) < 0.05
+                  ? "the same within 0.1 mm"
+                  : "up to " + number_text(std::abs(most_mm), "mm") +
+                        (most_mm < 0 ? " slacker, at " : " tighter, at ") + number_text(most_at_deg, "deg"),
       .source =
           "how its length changes from extension on, beside a graft between the insertions' middles in "
           "the same model; 3 mm is the custom for a change, taken for this difference by choice",
