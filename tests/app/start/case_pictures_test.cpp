@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/library/case_thumbnail.h"
+#include "planning/cases/case.h"
 #include "planning/phantom/phantom_case.h"
 #include "tests/temporary_folder.h"
 
@@ -14,7 +15,7 @@ namespace {
 TEST(CasePictures, AreNotWaitedForWhenTheListIsLeft) {
   const test::TemporaryFolder folder;
   const auto knee = folder.path() / "Knee.arthro";
-  cases::save_case(phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Knee"), knee);
+  cases::save_case(knee, phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Knee"));
   {
     CasePictures pictures([] {});
     EXPECT_EQ(pictures.of(knee), nullptr);
