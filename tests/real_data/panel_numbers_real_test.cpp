@@ -273,8 +273,8 @@ const std::map<std::string, OtherWay>& other_ways() {
   return ways;
 }
 
-// These are of the knee as a whole: roof_clearance_test, tunnel_pair_test and knee_checks_test have them another
-// way.
+// These are of the knee as a whole: roof_clearance_test, tunnel_pair_test and knee_checks_test have them
+// another way.
 const std::set<std::string> kElsewhere{"Roof", "Between the tunnels", "Against the insertions"};
 
 TEST(RealPanel, EveryNumberComesOutTheSameAnotherWay) {
