@@ -15,28 +15,42 @@ using images::VoxelMask;
 // of the bone's.
 constexpr double kDeepestNeck_mm = 4.5, kLeastAppendage_mm3 = 1000, kLargestAppendage_fraction = 0.35;
 
-// Voxels of the mask in its border face: axis, and whether the last or the first.
-template <typename Visit>
-void for_each_of_face(const VoxelMask& mask, int axis, bool is_last, const Visit& visit) {
-  Eigen::Vector3i at = Eigen::Vector3i::Zero();
-  at[axis] = is_last ? mask.size[axis] - 1 : 0;
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  for (at[v] = 0; at[v] < mask.size[v]; ++at[v]) {
-    for (at[u] = 0; at[u] < mask.size[u]; ++at[u]) visit(at);
+// Fills marrow that the end of the volume cuts open: what its faces show within the bone, over one or several
+// of them. Outside is what comes to a face of the box that is none of the volume's, where the bone is kept
+// off by a margin; where all faces are, the largest piece.
+void cap_ends(const Volume& volume, BoneSolid& solid) {
+  VoxelMask& mask = solid.mask;
+  const Eigen::Vector3i last = mask.size - Eigen::Vector3i::Ones();
+  VoxelMask open(mask.size);
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    Eigen::Vector3i at;
+    for (const int end : {0, last[axis]}) {
+      at[axis] = end;
+      for (at[v] = 0; at[v] <= last[v]; ++at[v]) {
+        for (at[u] = 0; at[u] <= last[u]; ++at[u]) {
+          const std::size_t voxel = mask.index(at.x(), at.y(), at.z());
+          open.inside[voxel] = mask.inside[voxel] == 0;
+        }
+      }
+    }
   }
-}
-
-// Fills what is enclosed within one border face: marrow that the end of the volume cuts open.
-void cap_face(VoxelMask& mask, int axis, bool is_last) {
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  VoxelMask face(Eigen::Vector3i(mask.size[u], mask.size[v], 1));
-  for_each_of_face(mask, axis, is_last, [&](const Eigen::Vector3i& at) {
-    face.inside[face.index(at[u], at[v], 0)] = mask.inside[mask.index(at.x(), at.y(), at.z())];
-  });
-  images::fill_enclosed(face, 2);
-  for_each_of_face(mask, axis, is_last, [&](const Eigen::Vector3i& at) {
-    mask.inside[mask.index(at.x(), at.y(), at.z())] = face.inside[face.index(at[u], at[v], 0)];
-  });
+  const auto is_within_volume = [&](std::size_t voxel) {
+    const auto nx = static_cast<std::size_t>(mask.size.x()), ny = static_cast<std::size_t>(mask.size.y());
+    const Eigen::Array3i at(static_cast<int>(voxel % nx), static_cast<int>(voxel / nx % ny),
+                            static_cast<int>(voxel / (nx * ny)));
+    const Eigen::Array3i in_volume = at + solid.box.first.array();
+    return (at == 0 && in_volume > 0).any() ||
+           (at == last.array() && in_volume < volume.size.array() - 1).any();
+  };
+  std::vector<images::VoxelPiece> pieces = images::connected_pieces(open, 1);
+  const auto comes_out = [&](const images::VoxelPiece& piece) {
+    return std::any_of(piece.voxels.begin(), piece.voxels.end(), is_within_volume);
+  };
+  const bool has_margin = std::any_of(pieces.begin(), pieces.end(), comes_out);
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    if (has_margin ? !comes_out(pieces[i]) : i > 0)
+      for (const std::size_t voxel : pieces[i].voxels) mask.inside[voxel] = 1;
 }
 
 Box padded(const Volume& volume, const Eigen::Vector3i& low, const Eigen::Vector3i& high, double margin_mm) {
@@ -50,10 +64,7 @@ Box padded(const Volume& volume, const Eigen::Vector3i& low, const Eigen::Vector
 
 void close_and_fill(const Volume& volume, BoneSolid& solid, double closing_radius_mm) {
   if (closing_radius_mm > 0) images::close_gaps(solid.mask, volume.spacing_mm(), closing_radius_mm);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (solid.box.first[axis] == 0) cap_face(solid.mask, axis, false);
-    if (solid.box.first[axis] + solid.box.size[axis] == volume.size[axis]) cap_face(solid.mask, axis, true);
-  }
+  cap_ends(volume, solid);
   images::fill_unreached(solid.mask);
 }
 

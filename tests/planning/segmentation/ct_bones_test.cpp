@@ -221,6 +221,43 @@ TEST(CtBones, OneBoneAloneIsWhatItIs) {
   EXPECT_FALSE(tibia.side_by_fibula.has_value());
 }
 
+// A small field of view ends in front within the shaft, and above: its marrow is open to both ends of the
+// volume at once, enclosed within neither.
+TEST(CtBones, MarrowThatTwoEndsOfTheVolumeOpenIsClosedOff) {
+  const TriangleMesh& truth = knee()[0];
+  const geometry::Bounds bounds = geometry::bounds_of(truth);
+  test::KnownCtOptions options;
+  options.spacing_mm = {0.8, 0.8, 1.0};
+  options.highest_mm = bounds.max_mm.z() - 15;
+  const images::Volume whole = test::known_ct({truth}, options);
+  double shaft_y_mm = 0, count = 0;
+  for (const Eigen::Vector3d& p : truth.vertices_mm) {
+    if (p.z() < options.highest_mm - 10 || p.z() > options.highest_mm) continue;
+    shaft_y_mm += p.y();
+    count += 1;
+  }
+  shaft_y_mm /= count;
+  images::Volume cut = whole;
+  const int first =
+      static_cast<int>((whole.lps_from_index.inverse() * Eigen::Vector3d(0, shaft_y_mm, 0)).y());
+  cut.size.y() -= first;
+  cut.lps_from_index.translate(Eigen::Vector3d(0, first, 0));
+  cut.values.clear();
+  for (int k = 0; k < cut.size.z(); ++k)
+    for (int j = 0; j < cut.size.y(); ++j)
+      for (int i = 0; i < cut.size.x(); ++i) cut.values.push_back(whole.at(i, j + first, k));
+  const CtBones found = bones_of_ct(cut);
+  ASSERT_EQ(found.bones.size(), 1U);
+  const geometry::Surface surface(bones::mend_mesh(found.bones[0].mesh).mesh), exact(truth);
+  int within = 0;
+  for (const Eigen::Vector3d& p : surface.mesh().vertices_mm) {
+    const bool is_at_an_end = p.y() < shaft_y_mm + 2 || p.z() > options.highest_mm - 3;
+    within += !is_at_an_end && (exact.closest_point(p).point_mm - p).norm() > 0.8;
+  }
+  EXPECT_LT(within, 0.01 * static_cast<double>(surface.mesh().vertices_mm.size()))
+      << "on the cortex's inner face";
+}
+
 // As in a scan that begins within the condyles: what is there of a femur is no femur to plan on.
 TEST(CtBones, TheEndOfAFemurIsDoubted) {
   const auto truth = knee();
