@@ -206,7 +206,8 @@ void OperationRun::note_trouble() {
 }
 
 double OperationRun::picture_age_ms() const {
-  if (theatre_source_.setup.kind != sources::SourceKind::Live || live_.captured_ns <= 0) return -1;
+  const bool is_live = has_source() && theatre_source_.setup.kind == sources::SourceKind::Live;
+  if (!is_live || live_.captured_ns <= 0) return -1;
   return static_cast<double>(sources::steady_now_ns() - live_.captured_ns) * 1e-6;
 }
 

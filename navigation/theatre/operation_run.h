@@ -103,7 +103,7 @@ class OperationRun {
   [[nodiscard]] const tracker::TrackerPoses* ask_tracker();
   void note_tracker();
   void measure(const camera::Frame& frame, std::int64_t taken_ns);
-  [[nodiscard]] double picture_age_ms() const;  // below 0 where nobody knows, or the source is not live
+  [[nodiscard]] double picture_age_ms() const;  // below 0 where nobody knows, or no live source runs
   void note_trouble();
   template <typename What>
   void write(const What& what);  // what(record), while there is one; its failure is told and ends it

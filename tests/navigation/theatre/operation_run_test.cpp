@@ -92,6 +92,17 @@ TEST_F(OperationRunTest, Hazard3NoTouchAndNoStrokeIsTakenOfAnOldPicture) {
   EXPECT_EQ(refused[0].find("touch: the newest picture is "), 0U) << refused[0];
 }
 
+// Once the source has ended, that there is none is the reason, not how old its last picture is.
+TEST_F(OperationRunTest, AfterALiveSourceATouchIsRefusedForWantOfOne) {
+  OperationRun run(setup_, test::at_once(setup_), {});
+  TheatreSource source = test::plain_source(0, false, sources::SourceKind::Live);
+  source.open = [] { return std::make_unique<AgedSource>(3, 2000, 2000); };
+  run.start(source);
+  (void)run_to_end(run);
+  run.apply(operation::TakeTouch{});
+  EXPECT_EQ(run.state()->touch_refusal, operation::TouchRefusal::NoSource);
+}
+
 // How long each picture of a live source took is in its record, stage by stage; that one was late is an
 // event.
 TEST_F(OperationRunTest, Hazard3LatencyAndLatePicturesAreInTheRecord) {
