@@ -1,5 +1,6 @@
 # Read by ctest, once for every test program, with its name, program and so on set (see arthronaut_test): one test of
-# ctest for every suite that the program lists, or for every case.
+# ctest for every suite that the program lists, or for every case. ./test sets ARTHRONAUT_WHOLE_PROGRAMS: one for every
+# program that is not a long one, whose suites then share its start and what they are made ready with.
 if(NOT EXISTS ${program})
   add_test(${name}_NOT_BUILT ${name}_NOT_BUILT)
   return()
@@ -17,13 +18,25 @@ endif()
 # Skipped is what ran no case of which any failed; GoogleTest then says nothing after the list of the skipped.
 set(all_were_skipped "\\[  PASSED  \\] 0 tests\\.\n(\\[  SKIPPED \\][^\n]*\n)+$")
 macro(add_filtered filter shown cases)
-  add_test("${name}.${shown}" ${program} "--gtest_filter=${filter}")
+  add_test("${shown}" ${program} "--gtest_filter=${filter}")
   math(EXPR cost "${cases} * ${case_s}")
-  set_tests_properties("${name}.${shown}" PROPERTIES WORKING_DIRECTORY ${working_directory} TIMEOUT ${timeout_s}
+  set_tests_properties("${shown}" PROPERTIES WORKING_DIRECTORY ${working_directory} TIMEOUT ${timeout_s}
     COST ${cost} RUN_SERIAL ${is_alone} SKIP_REGULAR_EXPRESSION "${all_were_skipped}" LABELS "${labels}")
 endmacro()
 
 file(STRINGS ${list} lines)
+if(DEFINED ENV{ARTHRONAUT_WHOLE_PROGRAMS} AND NOT by_case)
+  set(every_case ${lines})
+  list(FILTER every_case INCLUDE REGEX "^  ")
+  list(FILTER every_case EXCLUDE REGEX "^  DISABLED_")
+  list(LENGTH every_case cases)
+  math(EXPR whole_s "${cases} * ${case_s}")
+  set(longest_whole_s 215)  # beside two others, of what takes a quarter of an hour in all
+  if(whole_s LESS longest_whole_s)
+    add_filtered("*" "${name}" ${cases})
+    return()
+  endif()
+endif()
 set(suite)
 set(cases 0)
 foreach(line IN LISTS lines ITEMS end.)
@@ -31,14 +44,14 @@ foreach(line IN LISTS lines ITEMS end.)
     set(case ${CMAKE_MATCH_1})
     if(case MATCHES "^DISABLED_")
     elseif(by_case)
-      add_filtered("${suite}.${case}" "${suite}.${case}" 1)
+      add_filtered("${suite}.${case}" "${name}.${suite}.${case}" 1)
     else()
       math(EXPR cases "${cases} + 1")
     endif()
   elseif(line MATCHES "^([^ ]+)\\.( |$)")
     set(next ${CMAKE_MATCH_1})
     if(cases GREATER 0)
-      add_filtered("${suite}.*" "${suite}" ${cases})
+      add_filtered("${suite}.*" "${name}.${suite}" ${cases})
     endif()
     set(suite ${next})
     set(cases 0)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tests/app/window/built_in_case.h"
 #include "tests/app/window/display.h"
 #include "tests/temporary_folder.h"
 
@@ -13,6 +14,7 @@ class WorkstationHazards : public ::testing::Test {
  protected:
   void SetUp() override {
     if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
+    put_built_in_case(folder_ / "arthronaut" / "Phantom.arthro");
   }
   // Navigate shows the pictures of the simulated operation.
   static void start_operation(const RunningWorkstation& app) {

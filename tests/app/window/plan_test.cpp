@@ -237,8 +237,7 @@ TEST_F(PlanWindow, ImagesTakeTheBonesPlaceByAKey) {
 // one is a step that is on disk.
 TEST_F(PlanWindow, DefaultPlanAndLandmarksByKeys) {
   // A case that nobody has put a landmark in: all of them are proposed.
-  const phantom::PhantomKnee made = phantom::make_phantom_knee();
-  cases::Case knee = phantom::case_of(made, "Phantom");
+  cases::Case knee = cases::load_case(case_folder());
   knee.landmarks.clear();
   cases::save_case(case_folder(), knee);
   const VirtualDisplay display(1280, 720);
@@ -305,7 +304,6 @@ TEST_F(PlanWindow, AVersionIsKeptAndTakenAgain) {
 // Hazard 46: what spoke against the femur is said on its page, not on the tibia's; and in the radiograph,
 // where no entry can be placed, P goes back to the bones.
 TEST_F(PlanWindow, Hazard46WhatSpokeAgainstTheBoneStandsByItsChecks) {
-  cases::save_case(case_folder(), phantom::case_of(phantom::make_phantom_knee(), "Phantom knee"));
   cases::save_bone_doubts(case_folder(), {{bones::BoneKind::Femur, {"the images end within it"}}});
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_.path());

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "planning/cases/case.h"
+#include "tests/app/window/built_in_case.h"
 #include "tests/app/window/display.h"
 #include "tests/temporary_folder.h"
 
@@ -17,6 +18,7 @@ class PlanWindow : public ::testing::Test {
  protected:
   void SetUp() override {
     if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
+    put_built_in_case(case_folder());
   }
   [[nodiscard]] std::filesystem::path case_folder() const {
     return folder_.path() / "arthronaut" / "Phantom.arthro";

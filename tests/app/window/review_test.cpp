@@ -8,7 +8,7 @@
 
 #include "navigation/recording/session_marks.h"
 #include "planning/cases/case.h"
-#include "planning/phantom/phantom_case.h"
+#include "tests/app/window/built_in_case.h"
 #include "tests/app/window/display.h"
 #include "tests/navigation/recording/recorded_frames.h"
 #include "tests/planning/images/dicom_series_form.h"
@@ -27,7 +27,7 @@ class ReviewWindow : public ::testing::Test {
   void SetUp() override {
     if (const std::string missing = test::missing_for_window_tests(); !missing.empty())
       GTEST_SKIP() << missing;
-    cases::save_case(case_folder_, phantom::case_of(phantom::make_phantom_knee(), "Phantom"));
+    test::put_built_in_case(case_folder_);
     session_ = cases::create_session_folder(case_folder_);
     recording::SessionRecorder recorder(session_, test::session_header(), test::scripted_options());
     for (int i = 0; i < kFrames; ++i) {

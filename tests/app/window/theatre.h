@@ -15,6 +15,7 @@
 #include "navigation/tools/tool_set.h"
 #include "planning/cases/case.h"
 #include "planning/phantom/phantom_case.h"
+#include "tests/app/window/built_in_case.h"
 #include "tests/app/window/display.h"
 #include "tests/temporary_folder.h"
 
@@ -24,7 +25,7 @@ class Theatre : public ::testing::Test {
  protected:
   void SetUp() override {
     if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
-    cases::save_case(case_folder(), phantom::case_of(knee_, "Phantom"));
+    put_built_in_case(case_folder());
   }
   // Where the workstation looks for the built-in case.
   [[nodiscard]] std::filesystem::path case_folder() const {
@@ -41,10 +42,10 @@ class Theatre : public ::testing::Test {
   // The first pictures of the scripted surgeon, as a file that nobody can tell from a recording.
   void write_clip(int frame_count) const {
     simulator::SimulationOptions options;
-    options.knee = knee_;
+    options.knee = phantom::knee_of(cases::load_case(case_folder()));
     options.camera = simulator::standard_camera();
     options.tools = tools::standard_tools();
-    options.plan = knee_.femoral_tunnel;
+    options.plan = options.knee.femoral_tunnel;
     simulator::SimulatedOperation operation(options, simulator::Phase::Scratch);
     recording::VideoEncoder clip(case_folder() / "clip.mkv", 1920, 1080, 30);
     for (int i = 0; i < frame_count; ++i) clip.encode(*operation.next());
@@ -77,7 +78,6 @@ class Theatre : public ::testing::Test {
     EXPECT_GT(compared, 0);
     EXPECT_EQ(equal, compared) << output;
   }
-  const phantom::PhantomKnee knee_ = phantom::make_phantom_knee({});
   const TemporaryFolder folder_;
 };
 

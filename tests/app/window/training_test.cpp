@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "tests/app/window/built_in_case.h"
 #include "tests/app/window/display.h"
 #include "tests/temporary_folder.h"
 
@@ -18,6 +19,7 @@ class WorkstationTraining : public ::testing::Test {
  protected:
   void SetUp() override {
     if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
+    put_built_in_case(folder_ / "arthronaut" / "Phantom.arthro");
   }
   // The list of exercises, with the case's bones ready.
   static void open_list(RunningWorkstation& app) {
