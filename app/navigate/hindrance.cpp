@@ -112,6 +112,8 @@ std::string hindrance_of(const operation::OperationState& state, theatre::Source
   std::string words = words_of_setup(state, needs);
   if (words.empty()) words = words_of_picture(state.frame, options.tools.tracker.has_value());
   if (words.empty() && trouble == theatre::SourceTrouble::Late) words = "the pictures are late";
+  if (words.empty() && trouble == theatre::SourceTrouble::Slow && needs == Needs::Guide)
+    words = "the pictures come too slowly";
   if (const auto* const marker = options.tools.find_world_marker(options.bone);
       marker != nullptr && words.empty())
     words = why_not_tracked(state.frame, marker->marker_id, "bone marker");

@@ -131,10 +131,9 @@ bool must_place_anew(const operation::RegistrationState& registration) {
 
 std::string place_anew_words() { return "check, then place the marker anew"; }
 
-std::string touch_notice(const operation::OperationState& state) {
-  constexpr std::int64_t kReadable_ns = 8'000'000'000;
-  if (state.frame.timestamp_ns - state.touch_asked_ns > kReadable_ns) return "";
-  // The last picture's time stands still when its source has ended: what was refused then is no news.
+namespace {
+std::string why_no_touch(const operation::OperationState& state) {
+  // What was refused of a source that has ended since is no news.
   if (!state.has_source && state.touch_refusal != operation::TouchRefusal::NoSource) return "";
   switch (state.touch_refusal) {
     case operation::TouchRefusal::None:
@@ -151,6 +150,15 @@ std::string touch_notice(const operation::OperationState& state) {
       return "the probe moves: hold its tip still";
   }
   return "";
+}
+}  // namespace
+
+std::string refusal_notice(const theatre::LiveState& live, double now_s) {
+  constexpr double kReadable_s = 8;
+  if (now_s - live.refused_s > kReadable_s) return "";
+  if (!live.refusal.words.empty()) return live.refusal.words;
+  const std::string why = why_no_touch(*live.operation);
+  return why.empty() ? "" : "touch not taken: " + why;
 }
 
 Trouble trouble_of(const operation::RegistrationState& registration) {

@@ -23,9 +23,9 @@ namespace arthronaut::navigate {
 // where that is no hindrance.
 [[nodiscard]] std::string words_without_pictures(theatre::SourceTrouble trouble,
                                                  operation::NextAction action);
-// Why a touch was not taken a moment ago; empty when it was, or when that is longer ago than it takes to
-// read.
-[[nodiscard]] std::string touch_notice(const operation::OperationState& state);
+// What was asked for a moment ago and not done, with why: "touch not taken: the picture was 0.6 s old". Empty
+// once it was done, or when that is longer ago than it takes to read.
+[[nodiscard]] std::string refusal_notice(const theatre::LiveState& live, double now_s);
 
 // What is wrong, in a few words, and what to do about it.
 struct Trouble {

@@ -246,7 +246,12 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
     return display;
   }
   display.age_s = now_s - live->captured_s;
-  if (display.age_s > live->stale_after_s) {
+  // Of a slow source each picture is too old to guide by before the next one: nothing of it guides, not even
+  // while it is young, so that nothing comes and goes ten times a second. That it has stopped is told by
+  // trouble.
+  const bool is_slow = live->trouble == theatre::SourceTrouble::Slow;
+  constexpr double kSlowPicture_s = 1;
+  if (display.age_s > (is_slow ? kSlowPicture_s : live->stale_after_s)) {
     const bool is_short = display.age_s < 1;
     // What is wrong with the source comes first; what lasts stays said while a busy machine is late with one.
     const bool is_late_alone =
@@ -271,7 +276,8 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   display.overlay_is_valid =
       result.camera_from_world.is_valid && result.intrinsics_are_known && !result.is_frozen && !is_revoked;
   // What was not confirmed may be of another knee: no number, and none of the plan's lines.
-  const bool may_guide = standing == operation::Standing::Stands && state.time_out != operation::TimeOut::Due;
+  const bool may_guide =
+      standing == operation::Standing::Stands && state.time_out != operation::TimeOut::Due && !is_slow;
   display.plan_is_valid = display.overlay_is_valid && may_guide;
   // An outside tracker's numbers hang on no picture, and nothing of theirs lies over one.
   display.world_is_placed =
@@ -284,8 +290,8 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
     display.drill = result.guidance.drill;
   if (display.guidance_is_valid)
     display.guidance = result.guidance;
-  else
-    (void)explain(display, *live);
+  else if (!explain(display, *live) && is_slow && standing == operation::Standing::Stands)
+    tell(display, {"Pictures come too slowly", live->trouble_words});
   return display;
 }
 

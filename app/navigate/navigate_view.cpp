@@ -115,6 +115,7 @@ void NavigateView::take_other_bone() {
   choices_.take_other_bone();
   cameras_.close();
   notice_.clear();
+  heard_ = {};
   part_.reset();
   depth_ = {};
   read_live();  // what is asked next is asked of this bone
@@ -310,7 +311,10 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
     for (RailStep& step : screen.rail)
       if (step.state == StepState::Now) step.state = StepState::Open;
   screen.looked_at = choices_.looked_at;
-  screen.missing = choices_.missing.follow(missing_now(screen.rail), now_s);
+  // What was pressed and not done is said at once.
+  const std::string& missing = choices_.missing.follow(missing_now(screen.rail), now_s);
+  screen.missing = refusal_notice(*live_, now_s);
+  if (screen.missing.empty()) screen.missing = missing;
   screen.patient = patient_;
   follow_reached(display, now_s);
   screen.reached_for_s = choices_.reached.since(now_s);
@@ -334,7 +338,8 @@ void NavigateView::sound(double now_s) {
                                       .reached = runs && choices_.reached.since(now_s).has_value(),
                                       .breaks_out = runs && breaks_out(display),
                                       .runs = runs,
-                                      .end_was_asked = end_was_asked_},
+                                      .end_was_asked = end_was_asked_,
+                                      .refusals = live_->refusal.count},
                                      now_s))
     player_.play(*due);
 }

@@ -40,8 +40,7 @@ void draw_state(const widgets::Ui& ui, const RegistrationWords& words) {
   for (const SeverityText& row : words.numbers) widgets::status_row(ui, row.severity, row.name, row.text);
 }
 
-void draw_touch(const widgets::Ui& ui, const std::optional<TouchText>& touch, const std::string& notice) {
-  if (!notice.empty()) widgets::status_row(ui, widgets::Severity::Caution, "No touch taken", notice);
+void draw_touch(const widgets::Ui& ui, const std::optional<TouchText>& touch) {
   if (!touch) return;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.F);
@@ -124,7 +123,7 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
     const bool is_quiet = row.severity == widgets::Severity::Quiet;
     put(row.severity, is_quiet ? widgets::kText : widgets::color_of(row.severity), row.name + " " + row.text);
   };
-  // A picture that is not of now, or a touch that was not taken, comes before everything else.
+  // A picture that is not of now comes before everything else.
   const bool is_told = !screen.display.is_live || !screen.display.world_is_placed;
   if (is_told) {
     const bool is_amiss = screen.display.has_picture;  // before there is one nothing is
@@ -133,9 +132,6 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
     put(widgets::Severity::Quiet, widgets::kText, screen.display.detail);
     (void)rest.cut_top(ui.theme.px(12));
   }
-  if (const std::string notice = screen.has_source() ? touch_notice(*screen.live->operation) : "";
-      !notice.empty())
-    put(widgets::Severity::Caution, widgets::kCaution, "No touch taken: " + notice);
   const SeverityText& state = words.state;
   // That strokes are collected is no word to put behind why none can be.
   if (!is_told || state.severity != widgets::Severity::Quiet)
@@ -163,7 +159,7 @@ void draw_registration_details(const widgets::Ui& ui, const widgets::Rect& area,
   widgets::begin_panel(ui, "navigate.details", area);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui.theme.px(8), ui.theme.px(7)});
   draw_state(ui, screen.words);
-  draw_touch(ui, screen.words.touch, screen.has_source() ? touch_notice(*screen.live->operation) : "");
+  draw_touch(ui, screen.words.touch);
   draw_lists(ui, screen);
   ImGui::PopStyleVar();
   widgets::end_panel();

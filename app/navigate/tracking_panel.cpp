@@ -154,10 +154,7 @@ void draw_guide_check(const widgets::Ui& ui, const operation::GuideCheckState& g
 // The last touch, where the large number of the registration panel is not shown.
 void draw_touch_row(const widgets::Ui& ui, const NavigateScreen& screen) {
   if (screen.layout == NavigateLayout::Register) return;
-  const std::string notice = touch_notice(*screen.live->operation);
-  if (!notice.empty())
-    widgets::status_row(ui, Severity::Caution, "No touch taken", notice);
-  else if (const auto& touch = screen.words.touch)
+  if (const auto& touch = screen.words.touch)
     widgets::status_row(ui, touch->number.severity, touch->number.name, touch->number.text);
 }
 

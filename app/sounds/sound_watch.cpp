@@ -1,5 +1,7 @@
 #include "app/sounds/sound_watch.h"
 
+#include <utility>
+
 namespace arthronaut::sounds {
 
 std::optional<Sound> SoundWatch::due(Sound sound, double now_s) {
@@ -10,8 +12,17 @@ std::optional<Sound> SoundWatch::due(Sound sound, double now_s) {
 }
 
 std::optional<Sound> SoundWatch::follow(const Shown& shown, double now_s) {
+  const int refusals_before = std::exchange(refusals_, shown.refusals).value_or(shown.refusals);
+  const auto of_guidance = follow_guidance(shown, now_s);
+  if (of_guidance || shown.refusals <= refusals_before) return of_guidance;
+  return due(Sound::Refused, now_s);
+}
+
+std::optional<Sound> SoundWatch::follow_guidance(const Shown& shown, double now_s) {
   if (!shown.runs && (shown.end_was_asked || !did_guide_)) {
-    *this = {};
+    before_ = {};
+    guides_since_s_ = gone_since_s_ = std::nullopt;
+    did_guide_ = false;
     return std::nullopt;
   }
   const Shown before = before_;

@@ -15,6 +15,8 @@ std::string_view to_text(Sound sound) {
       return "reached";
     case Sound::Breakout:
       return "breakout";
+    case Sound::Refused:
+      return "refused";
   }
   return "";
 }
@@ -29,6 +31,8 @@ std::vector<Beat> rhythm_of(Sound sound) {
       return {{0.10, 0.07, 659}, {0.36, 0.05, 880}};
     case Sound::Breakout:
       return {{0.26, 0.08, 988}, {0.26, 0.05, 988}};
+    case Sound::Refused:
+      return {{0.36, 0.05, 294}};
   }
   return {};
 }

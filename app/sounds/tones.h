@@ -1,10 +1,11 @@
-// The four sounds of the theatre, made by arithmetic: told apart by their rhythm, so that who hears no
+// The five sounds of the theatre, made by arithmetic: told apart by their rhythm, so that who hears no
 // pitch, or only half of it through the room, tells them apart all the same.
 //
 //   lost      three short, low            . . .
 //   doubtful  long, short, falling        - .
 //   reached   short, long, rising         . -
 //   breakout  two long, high              - -
+//   refused   one long, low               -
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,8 @@
 
 namespace arthronaut::sounds {
 
-enum class Sound { Lost, Doubtful, Reached, Breakout };
+enum class Sound { Lost, Doubtful, Reached, Breakout, Refused };
+inline constexpr int kSoundCount = 5;
 [[nodiscard]] std::string_view to_text(Sound sound);  // "lost", ...
 
 inline constexpr int kSampleRate = 48'000;

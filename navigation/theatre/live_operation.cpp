@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <optional>
+#include <utility>
 #include <variant>
 
+#include "navigation/sources/capture_time.h"
 #include "navigation/worker/recycler.h"
 #include "navigation/worker/worker.h"
 
@@ -65,7 +68,9 @@ class DisplayLatency {
   void shown(const LiveState& live, double now_s) {
     const std::lock_guard lock(mutex_);
     if (live.published_s <= last_published_s_) return;
+    if (last_published_s_ > 0) outlived_s_ = std::max(outlived_s_.value_or(0), now_s - last_captured_s_);
     last_published_s_ = live.published_s;
+    last_captured_s_ = live.captured_s;
     meter_.add(Stage::Display, 1000 * (now_s - live.published_s));
     meter_.add(Stage::ToScreen, 1000 * (now_s - live.captured_s));
   }
@@ -78,12 +83,21 @@ class DisplayLatency {
   void clear() {
     const std::lock_guard lock(mutex_);
     meter_.clear();
+    last_published_s_ = 0;
+    outlived_s_.reset();
+  }
+  // How old a picture was when the next one took its place on the screen: the oldest since this was asked
+  // last; empty: none was replaced.
+  [[nodiscard]] std::optional<double> take_outlived_s() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(outlived_s_, std::nullopt);
   }
 
  private:
   mutable std::mutex mutex_;
   LatencyMeter meter_;
-  double last_published_s_ = 0;
+  double last_published_s_ = 0, last_captured_s_ = 0;
+  std::optional<double> outlived_s_;
 };
 
 struct EndSource {};
@@ -125,6 +139,7 @@ class Loop {
   }
   void take(const TheatreSource& source) {
     live_ = {};
+    live_.refusal = run_.refusal();
     live_.phase = LiveState::Phase::Starting;
     pace_ = {};
     rate_ = {};
@@ -170,6 +185,8 @@ class Loop {
   }
 
   void take_frame() {
+    if (const auto outlived_s = display_.take_outlived_s())
+      run_.shown_until(1000 * *outlived_s, sources::steady_now_ns());
     OperationRun::Step step;
     try {  // a source that fails ends, and what was made stays
       step = run_.step();
@@ -216,6 +233,8 @@ class Loop {
     live_.session_folder = run_.session_folder();
     live_.keeps_video = run_.keeps_video();
     live_.record_trouble = run_.record_trouble();
+    if (run_.refusal().count != live_.refusal.count) live_.refused_s = seconds_of(Clock::now());
+    live_.refusal = run_.refusal();
     live_.tracker_trouble = run_.tracker_trouble();
     const auto published = published_.take();
     *published = live_;

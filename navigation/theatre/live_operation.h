@@ -42,6 +42,8 @@ struct LiveState {
   SourceTrouble trouble = SourceTrouble::None;
   std::string trouble_words;
   LatencyReport latency{};
+  OperationRun::Refusal refusal;  // of what was asked for last
+  double refused_s = 0;           // when refusal.count changed last, on the same clock
   std::string tracker_trouble;  // why the outside tracker gives nothing; empty while it does, and without one
   std::filesystem::path session_folder;  // of the record that is written, or was written last
   bool keeps_video = false;

@@ -18,11 +18,17 @@ namespace {
 // A hand rests about as long before it presses, and pictures that come ten times a second are not as old.
 constexpr double kHandRests_ms = 300;
 
-bool is_of_this_moment(const operation::Command& command) {
+bool begins_to_draw(const operation::Command& command) {
   const auto* const draw = std::get_if<operation::Draw>(&command);
-  return (draw != nullptr && draw->on) || std::holds_alternative<operation::TakeTouch>(command) ||
+  return draw != nullptr && draw->on;
+}
+bool is_touch(const operation::Command& command) {
+  return std::holds_alternative<operation::TakeTouch>(command) ||
          std::holds_alternative<operation::TouchControlPoint>(command) ||
          std::holds_alternative<operation::CheckGuide>(command);
+}
+bool is_of_this_moment(const operation::Command& command) {
+  return begins_to_draw(command) || is_touch(command);
 }
 
 }  // namespace
@@ -51,6 +57,7 @@ void OperationRun::start(const TheatreSource& source) {
   theatre_source_ = source;
   source_ = std::move(opened);
   live_ = Live();
+  refusal_.words.clear();
   if (source.setup.pipeline.tools.tracker) outside_.tracker = source.tracker();
   record_trouble_.clear();
   record_is_due_ = static_cast<bool>(make_session_folder_);
@@ -219,12 +226,19 @@ void OperationRun::apply(const operation::Command& command) {
     write([&](recording::OperationRecord& record) {
       record.add_event(recording::kCommandRefusedEvent, text, frame_state_->frame.timestamp_ns);
     });
+    ++refusal_.count;
+    refusal_.words =
+        files::format("%s: the picture was %.1f s old",
+                      begins_to_draw(command) ? "drawing not begun" : "touch not taken", age_ms / 1000);
     return;
   }
   // The record of what follows goes on with that one's.
   const auto* const resume = std::get_if<operation::ResumeOperation>(&command);
   const bool had_resumed = resume != nullptr && operation_.state()->resumed != nullptr;
   operation_.apply(command);
+  if (is_of_this_moment(command)) refusal_.words.clear();
+  if (is_touch(command) && operation_.state()->touch_refusal != operation::TouchRefusal::None)
+    ++refusal_.count;
   if (resume != nullptr && !had_resumed && operation_.state()->resumed != nullptr)
     continues_ = resume->session;
   pass_on();

@@ -67,7 +67,7 @@ class OperationRun {
 
   // What is of this moment (a stroke begins, a tip rests) is not done where the newest picture of a live
   // source is older than a hand rests before it presses: it would be taken where the probe was, not where it
-  // is. That is recorded; what is wrong is told by watch().
+  // is. That is recorded, and told by refusal().
   void apply(const operation::Command& command);
   // Takes in what the registration has found and what was seen of the medium meanwhile; true when the first
   // is something new. step() does it too.
@@ -93,6 +93,16 @@ class OperationRun {
   [[nodiscard]] double oldest_pose_s(double else_s) const;
   // What is wrong with the live source that runs; of no other.
   [[nodiscard]] const SourceWatch& watch() const { return live_.watch; }
+  // What was asked for of this moment and not done.
+  struct Refusal {
+    int count = 0;  // of all; grows with each
+    // "touch not taken: the picture was 0.6 s old"; empty once something of this moment was taken again, and
+    // where the operation's state says why (touch_refusal).
+    std::string words;
+  };
+  [[nodiscard]] const Refusal& refusal() const { return refusal_; }
+  // See SourceWatch.
+  void shown_until(double age_ms, std::int64_t now_ns) { live_.watch.shown_until(age_ms, now_ns); }
   // How long the pictures of the source that runs, or ran last, took. Whoever takes them further adds to it.
   [[nodiscard]] LatencyMeter& latency() { return live_.meter; }
   // Why nothing is recorded any more; empty while all is well.
@@ -130,6 +140,7 @@ class OperationRun {
     std::int64_t asked_ns = 0;
     std::string trouble;
   } outside_;
+  Refusal refusal_;
   struct Live {
     SourceWatch watch;
     LatencyMeter meter;

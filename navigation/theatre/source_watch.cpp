@@ -1,15 +1,19 @@
 #include "navigation/theatre/source_watch.h"
 
+#include <algorithm>
+
 #include "planning/files/format.h"
 
 namespace arthronaut::theatre {
 
 namespace {
 
-// Three pictures of a slow source (10 a second); half a second is what may pass until it is told.
-constexpr std::int64_t kSilence_ns = 300'000'000;
+// Three pictures of a slow source (10 a second); half a second is what may pass until it is told. Of one that
+// is slower, and said to be, three of its own.
+constexpr std::int64_t kSilence_ns = 300'000'000, kLongestSilence_ns = 1'000'000'000;
 // What is over in a moment is on the screen long enough to be read.
 constexpr std::int64_t kReadable_ns = 2'000'000'000, kSaidAnew_ns = 1'000'000'000;
+constexpr double kFew_ms = 50;  // between pictures; faster ones are late for want of a faster machine
 // Sources of 30 pictures a second that are sent 60 times repeat half of them, and are none the worse for it.
 constexpr double kTooManyRepeats = 0.6;
 
@@ -23,6 +27,7 @@ std::string_view to_text(SourceTrouble trouble) {
                                          "torn picture",
                                          "repeated pictures",
                                          "late pictures",
+                                         "slow pictures",
                                          "lost pictures"};
   return kNames[static_cast<std::size_t>(trouble)];
 }
@@ -34,17 +39,33 @@ bool SourceWatch::set(SourceTrouble trouble, const std::string& words) {
   return is_another;
 }
 
+void SourceWatch::shown_until(double age_ms, std::int64_t now_ns) {
+  const bool is_too_old = age_ms > late_after_ms_;
+  too_old_ = too_old_ << 1 | std::bitset<6>(is_too_old ? 1 : 0);
+  if (is_too_old) slow_ns_ = now_ns;
+  is_slow_ = 2 * too_old_.count() >= too_old_.size() || (is_slow_ && now_ns - slow_ns_ < kReadable_ns);
+}
+
+std::int64_t SourceWatch::silence_ns() const {
+  if (!is_slow_) return kSilence_ns;
+  return std::clamp(static_cast<std::int64_t>(3e6 * gap_ms_), kSilence_ns, kLongestSilence_ns);
+}
+
 bool SourceWatch::silence(const std::string& why, std::int64_t now_ns) {
   if (!has_begun_) {  // counted from the first time that somebody waited
     has_begun_ = true;
     last_picture_ns_ = now_ns;
   }
-  if (now_ns - last_picture_ns_ < kSilence_ns && why.empty()) return false;
+  if (now_ns - last_picture_ns_ < silence_ns() && why.empty()) return false;
   return set(SourceTrouble::NoPicture, why.empty() ? "No picture comes" : "No picture comes: " + why);
 }
 
 bool SourceWatch::picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns,
                           const std::string& remark) {
+  if (has_begun_) {
+    const double gap_ms = static_cast<double>(now_ns - last_picture_ns_) * 1e-6;
+    gap_ms_ += (gap_ms_ > 0 ? 0.3 : 1.0) * (gap_ms - gap_ms_);
+  }
   has_begun_ = true;
   last_picture_ns_ = now_ns;
   if (view.is_torn) {
@@ -63,6 +84,17 @@ bool SourceWatch::picture(const pipeline::PictureObservation& view, double guida
   if (view.is_frozen)
     return set(SourceTrouble::Frozen,
                "The source sends the same picture again and again: check cable and camera");
+  if (is_slow_) {
+    if (trouble_ == SourceTrouble::Slow && now_ns - late_said_ns_ < kSaidAnew_ns) return false;
+    late_said_ns_ = now_ns;
+    return set(
+        SourceTrouble::Slow,
+        gap_ms_ > kFew_ms
+            ? files::format("%.0f a second are too few: each is too old to guide by before the next one",
+                            1000 / gap_ms_)
+            : files::format("Each is over %.0f ms old before the next one is shown: end other programs",
+                            late_after_ms_));
+  }
   if (was_late_) {
     // The words change with the number only when it is said anew: once a second can be read.
     if (trouble_ == SourceTrouble::Late && (late_ns_ != now_ns || now_ns - late_said_ns_ < kSaidAnew_ns))

@@ -1,11 +1,12 @@
 // What is wrong with a live source, in words, while it is wrong: no picture comes, the picture is plain,
-// frozen, torn, repeated, or late, or others are lost. Says it within half a second and takes it back when it
-// is over. Guidance does not wait for it: what a picture does not stand for is gone in that picture, and an
-// old picture guides nobody.
+// frozen, torn, repeated, late or too slow, or others are lost. Says it within half a second and takes it
+// back when it is over. Guidance does not wait for it: what a picture does not stand for is gone in that
+// picture, and an old picture guides nobody.
 //
 // Pure: told of pictures and of their absence, with the time; one thread at a time.
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 #include <string>
 
@@ -13,7 +14,8 @@
 
 namespace arthronaut::theatre {
 
-enum class SourceTrouble { None, NoPicture, Plain, Frozen, Torn, Repeated, Late, Lost };
+// Late: pictures that are too old to guide by now and then; Slow: so many that nothing may guide, steadily.
+enum class SourceTrouble { None, NoPicture, Plain, Frozen, Torn, Repeated, Late, Slow, Lost };
 // "no picture", "plain picture", ...; empty for None.
 [[nodiscard]] std::string_view to_text(SourceTrouble trouble);
 
@@ -26,6 +28,10 @@ class SourceWatch {
   // knows; remark: what the source says of its pictures. True: what is wrong has changed.
   bool picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns,
                const std::string& remark = "");
+  // The screen showed a picture until it was so old, and then the next one. Tells with the next picture
+  // whether the source is too slow: half of six were too old by then. For as long as that goes on what guides
+  // would come and go with every picture. Over once none was for two seconds.
+  void shown_until(double age_ms, std::int64_t now_ns);
   // None came since the last call; why, as the source says it.
   bool silence(const std::string& why, std::int64_t now_ns);
 
@@ -35,13 +41,15 @@ class SourceWatch {
 
  private:
   bool set(SourceTrouble trouble, const std::string& words);
+  [[nodiscard]] std::int64_t silence_ns() const;
 
   double late_after_ms_ = 100;
   SourceTrouble trouble_ = SourceTrouble::None;
   std::string words_;
-  std::int64_t last_picture_ns_ = 0, torn_ns_ = 0, late_ns_ = 0, late_said_ns_ = 0;
-  double late_ms_ = 0;
-  bool has_begun_ = false, was_torn_ = false, was_late_ = false;
+  std::int64_t last_picture_ns_ = 0, torn_ns_ = 0, late_ns_ = 0, late_said_ns_ = 0, slow_ns_ = 0;
+  double late_ms_ = 0, gap_ms_ = 0;  // between pictures, lately
+  bool has_begun_ = false, was_torn_ = false, was_late_ = false, is_slow_ = false;
+  std::bitset<6> too_old_;  // of those that were shown last
 };
 
 }  // namespace arthronaut::theatre

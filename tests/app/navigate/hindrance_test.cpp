@@ -114,6 +114,10 @@ TEST(Hindrance, IsThePictureBeforeAnythingInIt) {
   late.trouble = SourceTrouble::Late;
   late.see(late.probe(), MarkerState::NotSeen);
   EXPECT_EQ(late.missing(NextAction::GoOnDrawing), "the pictures are late");
+  // Of pictures that come slowly strokes are drawn all the same.
+  late.trouble = SourceTrouble::Slow;
+  EXPECT_EQ(late.missing(NextAction::GoOnDrawing), "probe not seen");
+  EXPECT_EQ(late.missing(NextAction::FollowBullseye), "the pictures come too slowly");
   Seen torn;
   torn.operation.frame.is_torn = true;
   torn.operation.frame.intrinsics_are_known = false;

@@ -247,17 +247,31 @@ TEST(CheckingWords, SayWhyTheControlPointIsAskedFor) {
   EXPECT_EQ(words_of_verifying(state), "bone looks otherwise: touch places that you know, 2 to go");
 }
 
-// Why a touch was refused is told while it can be mended: not for good when the source has ended, whose time
-// stands still then.
-TEST(TouchNotice, EndsWithTheSource) {
+// Why a touch was refused is told for long enough to be read, and while it can be mended: no longer once the
+// source has ended.
+TEST(RefusalNotice, SaysWhatWasNotDoneAndWhy) {
+  constexpr double kNow_s = 100;
+  theatre::LiveState live;
   operation::OperationState state;
+  const auto notice = [&](double now_s) {
+    live.operation = std::make_shared<const operation::OperationState>(state);
+    return refusal_notice(live, now_s);
+  };
+  EXPECT_EQ(notice(kNow_s), "");
+  live.refused_s = kNow_s;
   state.has_source = true;
   state.touch_refusal = operation::TouchRefusal::TipMoves;
-  EXPECT_FALSE(touch_notice(state).empty());
+  EXPECT_EQ(notice(kNow_s + 1), "touch not taken: the probe moves: hold its tip still");
+  EXPECT_EQ(notice(kNow_s + 9), "");
+  // The newest reason is the one of now.
+  live.refusal.words = "touch not taken: the picture was 0.6 s old";
+  EXPECT_EQ(notice(kNow_s + 1), live.refusal.words);
+  EXPECT_EQ(notice(kNow_s + 9), "");
+  live.refusal.words.clear();
   state.has_source = false;
-  EXPECT_TRUE(touch_notice(state).empty());
+  EXPECT_EQ(notice(kNow_s + 1), "");
   state.touch_refusal = operation::TouchRefusal::NoSource;
-  EXPECT_EQ(touch_notice(state), "no pictures come");
+  EXPECT_EQ(notice(kNow_s + 1), "touch not taken: no pictures come");
 }
 
 }  // namespace

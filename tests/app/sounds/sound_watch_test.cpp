@@ -104,5 +104,19 @@ TEST(SoundWatch, TheSameSoundKeepsApart) {
   EXPECT_GE(listener.heard.size(), 1u);
 }
 
+// Every press that was for nothing is heard, also where no source runs; none from before it was listened to,
+// and a drill that breaks out first.
+TEST(SoundWatch, WhatIsRefusedIsHeardEachTime) {
+  Listener listener;
+  listener.see({.refusals = 3}, 1);
+  EXPECT_EQ(listener.heard, Heard{});
+  listener.see({.refusals = 4}, 2);
+  listener.see({.runs = false, .end_was_asked = true, .refusals = 5}, 2);
+  EXPECT_EQ(listener.heard, (Heard{Sound::Refused, Sound::Refused}));
+  listener.see({.runs = false, .end_was_asked = true, .refusals = 5}, 2);
+  listener.see({.breaks_out = true, .refusals = 6}, 1);
+  EXPECT_EQ(listener.heard, (Heard{Sound::Refused, Sound::Refused, Sound::Breakout}));
+}
+
 }  // namespace
 }  // namespace arthronaut::sounds

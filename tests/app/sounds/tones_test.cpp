@@ -9,7 +9,7 @@
 namespace arthronaut::sounds {
 namespace {
 
-constexpr Sound kAll[] = {Sound::Lost, Sound::Doubtful, Sound::Reached, Sound::Breakout};
+constexpr Sound kAll[] = {Sound::Lost, Sound::Doubtful, Sound::Reached, Sound::Breakout, Sound::Refused};
 
 // "." for a tone below a fifth of a second, "-" for a longer one, as heard in the samples alone.
 std::string heard(const std::vector<std::int16_t>& samples) {
@@ -37,6 +37,7 @@ TEST(Tones, DifferInRhythm) {
   EXPECT_EQ(heard(samples_of(Sound::Doubtful)), "-.");
   EXPECT_EQ(heard(samples_of(Sound::Reached)), ".-");
   EXPECT_EQ(heard(samples_of(Sound::Breakout)), "--");
+  EXPECT_EQ(heard(samples_of(Sound::Refused)), "-");
 }
 
 // Nothing clicks: no sample is further from the one before than the steepest of the tones is, full scale is

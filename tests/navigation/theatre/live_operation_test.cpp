@@ -68,6 +68,36 @@ TEST_F(LiveOperationTest, AnotherPictureSizeIsTold) {
   EXPECT_NE(live_.latest()->message.find("320 x 240"), std::string::npos) << live_.latest()->message;
 }
 
+// Pictures that are no plain ones.
+class SlowSource : public test::PlainSource {
+ public:
+  using PlainSource::PlainSource;
+  [[nodiscard]] camera::FramePtr next() override {
+    const std::int64_t index = PlainSource::next()->index;
+    return std::make_shared<const camera::Frame>(
+        test::round_frame(index, static_cast<std::uint8_t>(100 + index % 100)));
+  }
+};
+
+// The screen tells when it showed which picture: ten a second are told to be too few, and so is a touch that
+// was not taken.
+TEST_F(LiveOperationTest, Hazard3ASlowSourceAndARefusedTouchArePublished) {
+  TheatreSource source = test::plain_source(0, false, SourceKind::Live);
+  source.open = [] { return std::make_unique<SlowSource>(1000, false, 10); };
+  live_.start(source);
+  ASSERT_TRUE(waits_for([&] {
+    const LiveStatePtr now = live_.latest();
+    if (now->picture != nullptr) live_.shown(*now);
+    return now->trouble == SourceTrouble::Slow;
+  }));
+  EXPECT_EQ(live_.latest()->refusal.count, 0);
+  live_.apply(operation::TakeTouch{});
+  ASSERT_TRUE(waits_for([&] { return live_.latest()->refusal.count == 1; }));
+  EXPECT_EQ(live_.latest()->operation->touch_refusal, operation::TouchRefusal::TipUnknown);
+  EXPECT_NEAR(live_.latest()->refused_s, LiveOperation::now_s(), 5);
+  live_.end_source();
+}
+
 // A record that cannot be begun is said on the screen and ends nothing.
 TEST(LiveOperationRecord, TroubleIsPublished) {
   LiveOptions options;

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <random>
+#include <vector>
+
 namespace arthronaut::theatre {
 namespace {
 
@@ -120,6 +123,108 @@ TEST_F(SourceWatchTest, RepeatsAreSaidWhenTheyAreMost) {
   pictures(view, 500);
   EXPECT_EQ(watch_.trouble(), SourceTrouble::Repeated);
   EXPECT_THAT(watch_.words(), HasSubstr("75"));
+}
+
+// A source and a screen on a seeded clock: pictures come at a rate, some ms early or late, are known 10 ms
+// after they were captured, and the screen shows the newest one every 17 ms.
+class ShownPictures {
+ public:
+  explicit ShownPictures(SourceWatch& watch, unsigned seed) : watch_(watch), random_(seed) {}
+  void run(double rate, double seconds, double uneven_ms = 3) {
+    std::uniform_real_distribution<double> early_or_late(-uneven_ms, uneven_ms);
+    const double end_ms = now_ms_ + 1000 * seconds;
+    for (; now_ms_ < end_ms; now_ms_ += 1) {
+      if (now_ms_ >= next_ms_) {
+        come_.push_back(next_ms_);
+        next_ms_ += 1000 / rate + early_or_late(random_);
+      }
+      if (!come_.empty() && now_ms_ >= come_.front() + kWork_ms) {
+        if (watch_.picture({}, kWork_ms, ns(now_ms_))) said.push_back({now_ms_, watch_.trouble()});
+        known_ms_ = come_.front();
+        come_.erase(come_.begin());
+      }
+      if (now_ms_ < drawn_ms_ + 17) continue;
+      drawn_ms_ = now_ms_;
+      if (known_ms_ == shown_ms_) continue;
+      if (shown_ms_ > 0) watch_.shown_until(now_ms_ - shown_ms_, ns(now_ms_));
+      shown_ms_ = known_ms_;
+    }
+  }
+  [[nodiscard]] double now_ms() const { return now_ms_; }
+  struct Said {
+    double at_ms;
+    SourceTrouble trouble;
+  };
+  std::vector<Said> said;
+
+ private:
+  static constexpr double kWork_ms = 10;
+  static std::int64_t ns(double ms) { return static_cast<std::int64_t>(ms * 1e6); }
+  SourceWatch& watch_;
+  std::mt19937 random_;
+  std::vector<double> come_;
+  double now_ms_ = 5000, next_ms_ = 5000, drawn_ms_ = 0, known_ms_ = 0, shown_ms_ = 0;
+};
+
+// Below some twelve pictures a second each is too old to guide by before the next one is shown. That is told
+// once, within half a second of pictures, and stays told.
+TEST_F(SourceWatchTest, Hazard3ASlowSourceIsToldOnceAndSteadily) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    for (const double rate : {5.0, 8.0, 10.0}) {
+      SourceWatch watch;
+      ShownPictures pictures(watch, seed);
+      const double begin_ms = pictures.now_ms();
+      pictures.run(rate, 20);
+      ASSERT_EQ(pictures.said.size(), 1U) << rate << " a second, seed " << seed;
+      EXPECT_EQ(pictures.said[0].trouble, SourceTrouble::Slow);
+      EXPECT_LT(pictures.said[0].at_ms - begin_ms, 100 + 5 * 1000 / rate);
+      EXPECT_THAT(watch.words(), HasSubstr("are too few"));
+      if (rate == 10) {
+        EXPECT_THAT(watch.words(), testing::AnyOf(testing::StartsWith("10 "), testing::StartsWith("9 "),
+                                                  testing::StartsWith("11 ")));
+      }
+      EXPECT_FALSE(watch.silence("", static_cast<std::int64_t>((pictures.now_ms() + 1000 / rate) * 1e6)))
+          << "its own pace is no silence";
+      pictures.run(30, 5);
+      ASSERT_EQ(pictures.said.size(), 2U);
+      EXPECT_EQ(pictures.said[1].trouble, SourceTrouble::None) << "it is quick enough again";
+    }
+    for (const double rate : {20.0, 30.0, 60.0}) {
+      SourceWatch watch;
+      ShownPictures pictures(watch, seed);
+      pictures.run(rate, 20);
+      EXPECT_TRUE(pictures.said.empty()) << rate << " a second, seed " << seed;
+    }
+  }
+}
+
+// About the limit, where some pictures are too old and others are not, nothing that is said goes before it
+// could be read.
+TEST_F(SourceWatchTest, Hazard3AboutTheLimitNothingFlickers) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    for (const double rate : {11.0, 12.0, 13.0, 14.0, 15.0}) {
+      SourceWatch watch;
+      ShownPictures pictures(watch, seed);
+      pictures.run(rate, 30, 15);
+      for (std::size_t i = 1; i < pictures.said.size(); ++i)
+        EXPECT_TRUE(pictures.said[i].trouble == SourceTrouble::Slow ||
+                    pictures.said[i].at_ms - pictures.said[i - 1].at_ms >= 2000)
+            << rate << " a second, seed " << seed;
+    }
+  }
+}
+
+// Single pictures that are late on the screen hide nothing for longer than they are late.
+TEST_F(SourceWatchTest, ALateScreenNowAndThenIsNoSlowSource) {
+  for (int i = 0; i < 200; ++i) {
+    watch_.shown_until(i % 4 == 0 ? 130 : 60, now_ns_);
+    pictures(well_, 33);
+    ASSERT_EQ(watch_.trouble(), SourceTrouble::None) << i;
+  }
+  for (int i = 0; i < 6; ++i) watch_.shown_until(130, now_ns_);
+  pictures(well_, 33);
+  EXPECT_EQ(watch_.trouble(), SourceTrouble::Slow);
+  EXPECT_THAT(watch_.words(), HasSubstr("end other programs")) << "pictures come often enough";
 }
 
 }  // namespace
