@@ -26,7 +26,7 @@ constexpr int kNoHabit = 5;  // repeats on end; what a source makes that hangs i
 
 void RepeatedPictures::begin(std::int64_t timestamp_ns) {
   reset();
-  steps_[0] = {timestamp_ns, false};
+  steps_[0] = {timestamp_ns};
   count_ = 1;
   row_.since_ns = last_ns_ = timestamp_ns;
 }
@@ -67,10 +67,19 @@ bool RepeatedPictures::is_refined(double largest, double noise) const {
 }
 
 void RepeatedPictures::follow_stop(double largest, double noise) {
-  if (stop_.moved > 0 && largest > kStopped * stop_.moved) stop_ = {};
+  const bool goes_on = stop_.moved > 0 && largest > kStopped * stop_.moved;
+  if (goes_on) {
+    stops_and_goes_ = stop_.is_of_repeats();
+    // What stood between two pictures that moved is known by the second one.
+    for (int i = 1; stops_and_goes_ && i <= std::min(stop_.repeats.count, kNoHabit); ++i)
+      steps_[(count_ - static_cast<std::size_t>(i)) % kMost].is_coded_repeat = true;
+    stop_ = {};
+  }
   if (stop_.moved == 0 && largest < kStopped * largest_[0]) {
     stop_ = {{0, last_ns_}, 0, largest_[0]};
     largest_.fill(0);
+  } else if (stop_.moved == 0 && !goes_on) {
+    stops_and_goes_ = false;
   }
   if (stop_.moved == 0) return;
   if (hardly_changes(largest, noise))
@@ -85,7 +94,8 @@ bool RepeatedPictures::observe(double largest, double noise, std::int64_t timest
   const bool repeats = is_same || (is_suspected_ && is_refined_now);
   if (!repeats) row_ = {0, timestamp_ns};
   row_.count += repeats ? 1 : 0;
-  steps_[count_++ % kMost] = {timestamp_ns, repeats};
+  const bool is_between = stops_and_goes_ && stop_.moved > 0 && hardly_changes(largest, noise);
+  steps_[count_++ % kMost] = {timestamp_ns, repeats, is_between};
 
   const bool hangs = stop_.stands() && (is_same || is_refined_now);
   const bool is_too_many =
@@ -105,7 +115,7 @@ double RepeatedPictures::share(std::int64_t since_ns) const {
     const Step& step = steps_[(count_ - 1 - i) % kMost];
     if (step.timestamp_ns <= since_ns) break;
     ++count;
-    repeats += step.repeats ? 1 : 0;
+    repeats += step.repeats || step.is_coded_repeat ? 1 : 0;
   }
   return count > 0 ? static_cast<double>(repeats) / count : 0;
 }

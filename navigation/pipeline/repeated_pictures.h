@@ -5,7 +5,8 @@
 // shown on for 95 ms is too old whatever the habit. A codec does not repeat a picture that hangs at once: it
 // refines it for a few pictures, and codes it anew as a key frame now and then. What tells then is the stop:
 // everything that moved moves no more from one picture to the next, and hardly anything of the source's noise
-// is left. No hand stops so, and a live picture that is at rest keeps its noise.
+// is left. No hand stops so, and a live picture that is at rest keeps its noise. Nor does one stop and go on
+// by as much again and again: what lies between are repeats, however an encoder refines them.
 #pragma once
 
 #include <array>
@@ -30,7 +31,7 @@ class RepeatedPictures {
   [[nodiscard]] bool is_suspected() const { return is_suspected_; }
   // What the newest picture shows may be an encoder's refinement: nothing of the source's noise is in it.
   [[nodiscard]] bool may_be_refined() const { return is_suspected_ || stop_.stands(); }
-  // Of the pictures after since_ns.
+  // Of the pictures after since_ns: what repeats, and what an encoder made of repeats between two that move.
   [[nodiscard]] double share(std::int64_t since_ns) const;
   [[nodiscard]] bool has_begun() const { return count_ > 0; }
   void reset() { *this = RepeatedPictures(); }
@@ -39,7 +40,7 @@ class RepeatedPictures {
   static constexpr std::size_t kMost = 128;
   struct Step {
     std::int64_t timestamp_ns = 0;
-    bool repeats = false;
+    bool repeats = false, is_coded_repeat = false;
   };
   struct Row {
     int count = 0;  // of repeats
@@ -51,6 +52,7 @@ class RepeatedPictures {
     int others = 0;
     double moved = 0;  // as much as a tile did before; 0: there was no stop
     [[nodiscard]] bool stands() const { return moved > 0 && others <= 1; }
+    [[nodiscard]] bool is_of_repeats() const { return stands() && repeats.count >= 2; }
   };
   [[nodiscard]] int habit() const;
   [[nodiscard]] bool is_too_long(const Row& row, std::int64_t timestamp_ns) const;
@@ -65,6 +67,7 @@ class RepeatedPictures {
   std::array<double, 4> largest_{};  // of the pictures before, the newest first; since a stop from it on
   std::int64_t last_ns_ = 0;
   bool is_suspected_ = false;
+  bool stops_and_goes_ = false;      // the picture that moved last ended a stop
   std::int64_t lives_since_ns_ = 0;  // while it is suspected: the last picture that repeats
 };
 

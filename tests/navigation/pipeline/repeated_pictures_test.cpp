@@ -20,6 +20,10 @@ class Source {
     (void)repeated_.observe(largest, kNoise, ++frame_ * 1'000'000'000LL / rate_);
     return repeated_.is_suspected();
   }
+  // Of the half second before the newest one.
+  [[nodiscard]] double share() const {
+    return repeated_.share(frame_ * 1'000'000'000LL / rate_ - 500'000'000);
+  }
   // A live scene in motion.
   void live(int count) {
     std::uniform_real_distribution<double> motion(10.5, 14.5);
@@ -123,6 +127,41 @@ TEST(RepeatedPictures, OfAConverterAreItsHabit) {
         for (int repeat = 1; repeat < times[static_cast<std::size_t>(i) % times.size()]; ++repeat)
           EXPECT_FALSE(source.give(0.1)) << times[0] << ' ' << largest;
       }
+    }
+  }
+}
+
+// Four pictures in five repeat, and an encoder refines each: more than 0.6 of the last half second repeat
+// from 0.4 s on, which is what is told, and none once all move again. A picture that moved and the four after
+// it, as measured at 960 x 540 of x264 at CRF 18, 23 and 28 and at 4 Mb/s, and of openh264.
+TEST(RepeatedPictures, Hazard28ThatAnEncoderRefinesBetweenTwoThatMoveAreCounted) {
+  for (const std::vector<double>& five :
+       {std::vector<double>{98, 1.88, 1.64, 1.14, 0.71}, std::vector<double>{86, 1.90, 1.47, 0.89, 0.98},
+        std::vector<double>{100, 0.88, 1.18, 0.80, 0.54}, std::vector<double>{87, 0.53, 0.95, 0.81, 0.59},
+        std::vector<double>{49, 0.53, 0, 0, 0}}) {
+    Source source(30);
+    source.live(30);
+    for (std::size_t i = 0; i < 60; ++i) {
+      (void)source.give(five[i % 5]);
+      if (i >= 12) {
+        EXPECT_GT(source.share(), 0.6) << i << ' ' << five[1];
+      }
+    }
+    source.live(16);
+    EXPECT_EQ(source.share(), 0);
+  }
+}
+
+// A hand that stops and goes on: it takes longer to do so than from one picture to the next, and then it is
+// at rest for longer than it moved, or moves for longer than it rested.
+TEST(RepeatedPictures, OfAHandThatStopsAndGoesOnAreNone) {
+  for (const double noise : {2.2, 3.0, 5.0}) {
+    Source source(30);
+    source.live(30);
+    for (int i = 0; i < 10; ++i) {
+      for (const double largest : {40.0, 55.0, 30.0, 12.0, 4.0, noise, noise, noise, noise, 5.0, 20.0})
+        (void)source.give(largest);
+      EXPECT_LE(source.share(), 0.4) << noise;
     }
   }
 }
