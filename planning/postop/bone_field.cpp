@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "planning/files/format.h"
-#include "planning/geometry/error.h"
 #include "planning/images/voxel_mask.h"
 
 namespace arthronaut::postop {
@@ -211,17 +209,12 @@ std::vector<Eigen::Quaterniond> turns_to_try(Turns turns) {
 
 }  // namespace
 
-BoneField bone_field(const images::Volume& volume, double threshold_hu) {
+std::optional<BoneField> bone_field(const images::Volume& volume, double threshold_hu) {
   Cells cells = cells_above(volume, threshold_hu);
   const double cell_mm3 = std::abs(cells.lps_from_cell.linear().determinant());
   const auto pieces = images::connected_pieces(
       cells.is_bone, std::max<std::size_t>(1, static_cast<std::size_t>(kLeastPiece_mm3 / cell_mm3)));
-  if (pieces.empty()) {
-    const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
-    throw InvalidInput(
-        files::format("shows no bone: nothing of any size is above %.0f HU; its values run from %.0f to %.0f",
-                      threshold_hu, *low, *high));
-  }
+  if (pieces.empty()) return std::nullopt;
   BoneField field;
   for (std::size_t p = 0; p < pieces.size() && p < kMostAnchored; ++p) {
     if (p == 0 || static_cast<double>(pieces[p].count) * cell_mm3 > kLeastAnchored_mm3)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,8 +24,8 @@ struct BoneField {
   std::vector<Eigen::Vector3d> anchors_mm;
 };
 
-// Throws InvalidInput when nothing large is above the threshold.
-[[nodiscard]] BoneField bone_field(const images::Volume& volume, double threshold_hu);
+// nullopt: nothing large is above the threshold.
+[[nodiscard]] std::optional<BoneField> bone_field(const images::Volume& volume, double threshold_hu);
 
 struct CoarsePose {
   geometry::RigidTransform postop_from_plan;

@@ -24,9 +24,12 @@ struct BoneGrid {
   // HU, held between soft tissue and hard cortex; metal and what is beside it count as soft: no bone.
   std::vector<float> grey;
 
-  // The nearest cell; -1 beyond the grid.
-  [[nodiscard]] std::ptrdiff_t cell_at(const Eigen::Vector3d& p_mm) const {
-    const Eigen::Vector3d at = (p_mm - first_mm) / kStep_mm + Eigen::Vector3d::Constant(0.5);
+  // A place counted in cells from the corner of the first one.
+  [[nodiscard]] Eigen::Vector3d in_cells(const Eigen::Vector3d& p_mm) const {
+    return (p_mm - first_mm) / kStep_mm + Eigen::Vector3d::Constant(0.5);
+  }
+  // The cell that such a place lies in; -1 beyond the grid.
+  [[nodiscard]] std::ptrdiff_t cell_at(const Eigen::Vector3d& at) const {
     if (!(at.array() >= 0).all() || (at.array() >= size.cast<double>().array()).any()) return -1;
     return static_cast<std::ptrdiff_t>(at.x()) +
            static_cast<std::ptrdiff_t>(size.x()) *

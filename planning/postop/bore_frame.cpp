@@ -23,6 +23,12 @@ void BoreFrame::move(const Eigen::Vector4d& by_mm) {
   set_direction(direction_ + (by_mm[2] * u_ + by_mm[3] * v_) / half_mm_);
 }
 
+double BoreFrame::ends_off_mm(const BoreFrame& other) const {
+  const Vector3d off = middle_ - other.middle_,
+                 tilted = half_mm_ * direction_ - other.half_mm_ * other.direction_;
+  return std::max((off + tilted).norm(), (off - tilted).norm());
+}
+
 void BoreFrame::set_direction(const Vector3d& direction) {
   direction_ = direction.normalized();
   u_ = direction_.unitOrthogonal();

@@ -31,6 +31,9 @@ class BoreFrame {
   // The middle across the axis, and one end against it, mm; the directions across follow.
   void move(const Eigen::Vector4d& by_mm);
 
+  // By how much the farther of its ends is off the other's.
+  [[nodiscard]] double ends_off_mm(const BoreFrame& other) const;
+
   [[nodiscard]] const Eigen::Vector3d& middle() const { return middle_; }
   [[nodiscard]] const Eigen::Vector3d& direction() const { return direction_; }
   [[nodiscard]] double half_mm() const { return half_mm_; }

@@ -1,8 +1,12 @@
 #include "planning/postop/comparison.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "planning/files/format.h"
+#include "planning/geometry/error.h"
 #include "planning/postop/bone_pose.h"
 #include "planning/postop/drilled_tunnel.h"
 
@@ -56,6 +60,22 @@ AchievedTunnel told(const DrilledTunnel& drilled, const FoundBone& bone, const t
   return achieved;
 }
 
+// What is seen above a threshold.
+struct SeenBones {
+  double threshold_hu;
+  BoneField field;
+};
+
+SeenBones seen_bones(const images::Volume& volume, double threshold_hu) {
+  for (const double threshold : {threshold_hu, kFaintBone_hu}) {
+    if (auto field = bone_field(volume, threshold)) return {threshold, std::move(*field)};
+  }
+  const auto [low, high] = std::ranges::minmax_element(volume.values);
+  throw InvalidInput(
+      files::format("shows no bone: nothing of any size is above %.0f HU; its values run from %.0f to %.0f",
+                    std::min(threshold_hu, kFaintBone_hu), *low, *high));
+}
+
 }  // namespace
 
 bool is_against(const AchievedTunnel& achieved, const tunnels::Tunnel& plan) {
@@ -68,14 +88,12 @@ bool is_against(const AchievedTunnel& achieved, const tunnels::Tunnel& plan) {
 struct PostopImages::Prepared {
   const images::Volume& volume;
   images::VolumeSampler sampler;
-  double threshold_hu;
-  BoneField field;
+  SeenBones bones;
 };
 
 PostopImages::PostopImages(const images::Volume& postop, const ComparisonOptions& options)
-    : prepared_(
-          std::make_unique<Prepared>(Prepared{postop, images::VolumeSampler(postop), options.threshold_hu,
-                                              bone_field(postop, options.threshold_hu)})) {}
+    : prepared_(std::make_unique<Prepared>(
+          Prepared{postop, images::VolumeSampler(postop), seen_bones(postop, options.threshold_hu)})) {}
 PostopImages::~PostopImages() = default;
 PostopImages::PostopImages(PostopImages&&) noexcept = default;
 PostopImages& PostopImages::operator=(PostopImages&&) noexcept = default;
@@ -83,9 +101,12 @@ PostopImages& PostopImages::operator=(PostopImages&&) noexcept = default;
 Comparison PostopImages::compare(const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan,
                                  std::span<const tunnels::Tunnel> others) const {
   Comparison comparison;
-  FoundBone found = find_bone(prepared_->sampler, prepared_->field, bone, plan.entry_mm);
-  if (!found.is_found && prepared_->threshold_hu > kFaintBone_hu)
-    found = find_bone(prepared_->sampler, bone_field(prepared_->volume, kFaintBone_hu), bone, plan.entry_mm);
+  const SeenBones& seen = prepared_->bones;
+  FoundBone found = find_bone(prepared_->sampler, seen.field, bone, plan.entry_mm);
+  if (!found.is_found && seen.threshold_hu > kFaintBone_hu) {
+    if (const auto faint = bone_field(prepared_->volume, kFaintBone_hu))
+      found = find_bone(prepared_->sampler, *faint, bone, plan.entry_mm);
+  }
   comparison.bone = told(found);
   if (!found.is_found) {
     comparison.tunnel.reasons = {"the " + std::string(bones::to_text(plan.bone)) +

@@ -50,7 +50,7 @@ struct Candidate {
   std::vector<std::string> doubts;
 
   [[nodiscard]] double merit() const {
-    return seen_share * std::min(length_mm, 30.0) + (mouth.is_open() ? 100 : 0) + 20 * mouth.open_share;
+    return seen_share * std::min(length_mm, 30.0) + 20 * mouth.open_share;
   }
 };
 
@@ -70,6 +70,7 @@ class Finder {
 
   [[nodiscard]] const BoneGrid& grid() const { return grid_; }
 
+  // nullopt: too short, or it does not open at the bone's surface.
   [[nodiscard]] std::optional<Candidate> measured(const Bore& found) const {
     Candidate candidate;
     const auto first = passage_of(bone_, found.entry_mm, found.direction);
@@ -90,10 +91,11 @@ class Finder {
     }
     find_end(voxels, candidate);
     if (candidate.length_mm < kShortest_mm) return std::nullopt;
-    if (!candidate.comes_out && candidate.has_end)
-      candidate.beyond_mm = thinner_beyond_mm(voxels, candidate, candidate.length_mm);
     candidate.mouth = mouth_at(sampler_, postop_from_plan_, bone_, candidate.passage.entry_mm,
                                candidate.fit.direction, candidate.fit.radius_mm);
+    if (!candidate.mouth.is_open()) return std::nullopt;
+    if (!candidate.comes_out && candidate.has_end)
+      candidate.beyond_mm = thinner_beyond_mm(voxels, candidate, candidate.length_mm);
     candidate.bend_mm = bend(voxels, candidate);
     candidate.goes_on = goes_on(voxels, candidate);
     describe(candidate);
@@ -311,7 +313,7 @@ DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTr
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.merit() > b.merit(); });
   DrilledTunnel none;
-  if (candidates.empty() || !candidates.front().mouth.is_open()) {
+  if (candidates.empty()) {
     none.reasons = {
         files::format("no tunnel is seen within %.0f mm and %.0f deg of the plan: no bore there is open at "
                       "the bone's surface and stands out from the bone around it; one that is plugged with "
@@ -328,13 +330,13 @@ DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTr
     return nullptr;
   };
   for (const Candidate& candidate : candidates) {
-    if (!candidate.mouth.is_open() || !candidate.doubts.empty()) continue;
+    if (!candidate.doubts.empty()) continue;
     if (is_same(candidate, *chosen) && chosen->doubts.empty()) continue;
     if (!chosen->doubts.empty() || off_plan(candidate) < off_plan(*chosen)) chosen = &candidate;
   }
   DrilledTunnel drilled = told(*chosen, plan);
   for (const Candidate& other : candidates) {
-    if (!other.mouth.is_open() || other.seen_share < kLeastSeen || is_same(other, *chosen)) continue;
+    if (other.seen_share < kLeastSeen || is_same(other, *chosen)) continue;
     if (planned_nearer(other) != nullptr) continue;  // that one was to be expected
     drilled.reasons.push_back(files::format(
         "another tunnel opens %.1f mm beside it: this one is the nearer to the plan, or the better seen",

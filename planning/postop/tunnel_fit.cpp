@@ -8,6 +8,7 @@
 #include "planning/geometry/quantile.h"
 #include "planning/postop/bore_frame.h"
 #include "planning/postop/fit_spread.h"
+#include "planning/postop/near_voxels.h"
 #include "planning/postop/wall_levels.h"
 
 namespace arthronaut::postop {
@@ -35,16 +36,29 @@ constexpr double kRadiusChange_mm = 0.4;
 constexpr double kHuber = 2.5;
 constexpr double kNoRim_hu = -1e4;  // less dense than anything: what is beyond the wall begins at it
 
+// What the levels make of a voxel's grey.
+struct Model {
+  double value, slope;  // slope: by the distance from the axis
+  double variance;      // of what the levels are made of: beside a cortex that slants there is no one level
+};
+
+struct PlacedVoxel {
+  PlacedByBore placed;
+  const WallVoxel* voxel;
+};
+
 struct FittedVoxel {
   PlacedByBore placed;
   std::size_t sector;
   float hu;
+  Model model;
 };
 
 class Fit {
  public:
   Fit(const std::vector<WallVoxel>& voxels, const Bore& bore, double from_mm, double to_mm, Wall wall)
       : voxels_(voxels),
+        near_(voxels),
         wall_(wall),
         frame_(bore.entry_mm, bore.direction, from_mm, to_mm),
         stretches_(frame_.parts_of(kStretch_mm)),
@@ -84,7 +98,7 @@ class Fit {
     for (int step = 0; step < kSteps; ++step) {
       const double blur = std::max(profile_.blur_mm, first_blur_mm * std::pow(0.8, step));
       take_levels(blur);
-      const double moved = improve(blur);
+      const double moved = improve();
       if (!(moved < 1e3)) return false;
       if (blur == profile_.blur_mm && moved < 0.004) break;
     }
@@ -100,7 +114,7 @@ class Fit {
     constexpr int kSteps = 12;
     for (int step = 0; step < kSteps; ++step) {
       take_levels(profile_.blur_mm);
-      const double moved = improve(profile_.blur_mm, Moves::Radii);
+      const double moved = improve(Moves::Radii);
       if (!(moved < 1e3)) return false;
       if (moved < 0.004) break;
     }
@@ -117,45 +131,49 @@ class Fit {
     return frame_.place(p, stretches_, bins_);
   }
 
-  // Means well inside and well outside the wall, and the noise about what they predict.
+  // Means well inside and well outside the wall, what they make of each voxel through this blur, and the
+  // noise about that.
   void take_levels(double blur) {
     levels_.assign(bins_, {});
     metal_of_bin_.assign(bins_, {});
-    for (const WallVoxel& voxel : voxels_) {
+    placed_.clear();
+    const double reach_mm =
+        *std::ranges::max_element(radius_) + std::max(kBesideWall_mm, profile_.rim_mm + kOutward_mm);
+    for (const WallVoxel& voxel : near_.about(frame_, reach_mm)) {
       const auto placed = place(voxel.p_mm);
-      if (placed && placed->off < radius_[placed->stretch] + kBesideWall_mm)
+      if (!placed || placed->off > reach_mm) continue;
+      placed_.push_back({*placed, &voxel});
+      if (placed->off < radius_[placed->stretch] + kBesideWall_mm)
         metal_of_bin_[placed->bin].add(voxel.is_metal ? 1 : 0);
     }
     metal_.assign(stretches_, {});
-    placed_.clear();
-    for (std::size_t i = 0; i < voxels_.size(); ++i) {
-      const auto placed = place(voxels_[i].p_mm);
-      if (!placed) continue;
-      const double off = placed->off - radius_[placed->stretch];
-      if (off < -0.4) metal_[placed->stretch].add(voxels_[i].is_metal ? 1 : 0);
+    fitted_.clear();
+    for (const auto& [placed, voxel] : placed_) {
+      const double off = placed.off - radius_[placed.stretch];
+      if (off < -0.4) metal_[placed.stretch].add(voxel->is_metal ? 1 : 0);
       const double beyond = off - profile_.rim_mm;
-      if (!counts(voxels_[i], *placed) || beyond > kOutward_mm || off < -kInward_mm - 1) continue;
-      WallLevels& levels = levels_[placed->bin];
-      const WallGrey grey = grey_at(*placed, profile_.blur_mm);
-      if (off < -kBesideWallFrom_mm) levels.add_inside(voxels_[i].hu, grey);
+      if (!counts(*voxel, placed) || beyond > kOutward_mm || off < -kInward_mm - 1) continue;
+      WallLevels& levels = levels_[placed.bin];
+      const WallGrey grey = grey_at(placed, profile_.blur_mm);
+      if (off < -kBesideWallFrom_mm) levels.add_inside(voxel->hu, grey);
       if (off <= -kInward_mm) continue;
-      const std::size_t sector = placed->sector(kSectors);
-      if (beyond > kBesideWallFrom_mm) levels.add_outside(sector, voxels_[i].hu, grey);
-      if (off > 0 && beyond < 0) levels.add_rim(sector, voxels_[i].hu);
-      placed_.push_back({*placed, sector, voxels_[i].hu});
+      const std::size_t sector = placed.sector(kSectors);
+      if (beyond > kBesideWallFrom_mm) levels.add_outside(sector, voxel->hu, grey);
+      if (off > 0 && beyond < 0) levels.add_rim(sector, voxel->hu);
+      fitted_.push_back({placed, sector, voxel->hu, {}});
     }
     for (WallLevels& levels : levels_) levels.part(profile_.has_rim() ? profile_.rim_hu : kNoRim_hu);
+    std::erase_if(fitted_, [&](FittedVoxel& voxel) {
+      const auto model = model_at(voxel.placed, voxel.sector, blur);
+      if (model) voxel.model = *model;
+      return !model;
+    });
     std::vector<double> off_model;
-    for (const auto& [placed, sector, hu] : placed_) {
-      if (const auto model = model_at(placed, sector, blur)) off_model.push_back(std::abs(hu - model->value));
-    }
+    off_model.reserve(fitted_.size());
+    for (const auto& [placed, sector, hu, model] : fitted_) off_model.push_back(std::abs(hu - model.value));
     noise_hu_ = std::max(kLeastNoise_hu, 1.4826 * geometry::median(std::move(off_model), 1e3));
   }
 
-  struct Model {
-    double value, slope;  // slope: by the distance from the axis
-    double variance;      // of what the levels are made of: beside a cortex that slants there is no one level
-  };
   [[nodiscard]] std::optional<Model> model_at(const PlacedByBore& placed, std::size_t sector,
                                               double blur) const {
     const WallLevels& levels = levels_[placed.bin];
@@ -216,25 +234,23 @@ class Fit {
   }
 
   // `by_eighth`: what each eighth of each stretch alone puts into both.
-  void assemble(double blur, Eigen::MatrixXd& normal, Eigen::VectorXd& right,
+  void assemble(Eigen::MatrixXd& normal, Eigen::VectorXd& right,
                 std::vector<PartOfFit>* by_eighth = nullptr) const {
     const auto n = static_cast<Eigen::Index>(4 + stretches_);
     normal = Eigen::MatrixXd::Zero(n, n);
     right = Eigen::VectorXd::Zero(n);
     if (by_eighth)
       by_eighth->assign(stretches_ * kSectors, {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
-    for (const auto& [placed, sector, hu] : placed_) {
-      const auto model = model_at(placed, sector, blur);
-      if (!model) continue;
-      const double residual = hu - model->value,
-                   sigma = std::sqrt(0.5 * (noise_hu_ * noise_hu_ + model->variance)),
+    for (const auto& [placed, sector, hu, model] : fitted_) {
+      const double residual = hu - model.value,
+                   sigma = std::sqrt(0.5 * (noise_hu_ * noise_hu_ + model.variance)),
                    weight =
                        std::min(1.0, kHuber * sigma / std::max(1e-9, std::abs(residual))) / (sigma * sigma);
       // The distance from the axis falls when the axis comes nearer.
       Eigen::Matrix<double, 5, 1> row;
       row << -placed.across_u, -placed.across_v, -placed.along * placed.across_u / frame_.half_mm(),
           -placed.along * placed.across_v / frame_.half_mm(), -1;
-      row *= model->slope;
+      row *= model.slope;
       const auto r = static_cast<Eigen::Index>(4 + placed.stretch);
       const auto add = [&](Eigen::MatrixXd& to_normal, Eigen::VectorXd& to_right) {
         to_normal.topLeftCorner<4, 4>() += weight * row.head<4>() * row.head<4>().transpose();
@@ -270,10 +286,10 @@ class Fit {
 
   enum class Moves { All, Radii };
   // One step; how far it went, mm.
-  double improve(double blur, Moves moves = Moves::All) {
+  double improve(Moves moves = Moves::All) {
     Eigen::MatrixXd normal;
     Eigen::VectorXd right;
-    assemble(blur, normal, right);
+    assemble(normal, right);
     const auto radii = static_cast<Eigen::Index>(stretches_);
     Eigen::VectorXd change = Eigen::VectorXd::Zero(4 + radii);
     if (moves == Moves::All)
@@ -313,7 +329,7 @@ class Fit {
     Eigen::MatrixXd normal;
     Eigen::VectorXd right;
     std::vector<PartOfFit> by_eighth;
-    assemble(profile_.blur_mm, normal, right, &by_eighth);
+    assemble(normal, right, &by_eighth);
     return spread_of(normal, by_eighth);
   }
 
@@ -358,13 +374,15 @@ class Fit {
   }
 
   const std::vector<WallVoxel>& voxels_;
+  NearVoxels near_;
   Wall wall_;
   BoreFrame frame_;
   std::size_t stretches_, bins_;
   std::vector<double> radius_;
   std::vector<WallLevels> levels_;  // by bins
   std::vector<Level> metal_, metal_of_bin_;
-  std::vector<FittedVoxel> placed_;
+  std::vector<PlacedVoxel> placed_;
+  std::vector<FittedVoxel> fitted_;
   double noise_hu_ = 25;
   WallProfile profile_;
 };

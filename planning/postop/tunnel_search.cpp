@@ -26,7 +26,7 @@ std::optional<Vector3d> entry_on(const BoneGrid& grid, const Vector3d& origin, c
   bool was_inside = true;  // nothing is known of what lies before
   for (double t = -kReach_mm; t <= kReach_mm; t += kStep_mm) {
     const Vector3d p = origin + t * direction;
-    const std::ptrdiff_t cell = grid.cell_at(p);
+    const std::ptrdiff_t cell = grid.cell_at(grid.in_cells(p));
     const bool is_inside = cell >= 0 && grid.depth_mm[static_cast<std::size_t>(cell)] > 0;
     if (is_inside && !was_inside && std::abs(t) < nearest) {
       nearest = std::abs(t);
@@ -50,7 +50,11 @@ const std::array<Eigen::Vector2d, kSectors>& sectors() {
 }
 
 double evidence_of(const BoneGrid& grid, const Bore& bore) {
-  const Vector3d u = bore.direction.unitOrthogonal(), v = bore.direction.cross(u);
+  const Vector3d u = bore.direction.unitOrthogonal(), v = bore.direction.cross(u),
+                 entry = grid.in_cells(bore.entry_mm), along = bore.direction / BoneGrid::kStep_mm;
+  std::array<Vector3d, kSectors> out;
+  for (std::size_t s = 0; s < kSectors; ++s)
+    out[s] = (sectors()[s].x() * u + sectors()[s].y() * v) / BoneGrid::kStep_mm;
   double evidence = 0;
   for (int segment = 0; segment < kSegments; ++segment) {
     std::array<double, kSectors> contrast{};
@@ -59,17 +63,19 @@ double evidence_of(const BoneGrid& grid, const Bore& bore) {
     int inner_count = 0;
     for (int station = 0; station < kStations; ++station) {
       const double t = kFirstStation_mm + kStationStep_mm * (segment * kStations + station);
-      const Vector3d middle = bore.entry_mm + t * bore.direction;
+      const Vector3d middle = entry + t * along;
       for (std::size_t s = 0; s < kSectors; ++s) {
-        const Vector3d out = sectors()[s].x() * u + sectors()[s].y() * v;
-        const std::ptrdiff_t rim = grid.cell_at(middle + (bore.radius_mm + 0.8) * out),
-                             beyond = grid.cell_at(middle + (bore.radius_mm + 1.6) * out),
-                             core = grid.cell_at(middle + 0.35 * bore.radius_mm * out),
-                             side = grid.cell_at(middle + 0.75 * bore.radius_mm * out);
-        if (rim < 0 || beyond < 0 || core < 0 || side < 0) continue;
-        if (grid.depth_mm[static_cast<std::size_t>(rim)] < kLeastDepth_mm ||
-            grid.depth_mm[static_cast<std::size_t>(beyond)] < kLeastDepth_mm)
-          continue;
+        const auto deep_cell = [&](double off_mm) {
+          const std::ptrdiff_t cell = grid.cell_at(middle + off_mm * out[s]);
+          return cell >= 0 && grid.depth_mm[static_cast<std::size_t>(cell)] < kLeastDepth_mm ? -1 : cell;
+        };
+        const std::ptrdiff_t rim = deep_cell(bore.radius_mm + 0.8);
+        if (rim < 0) continue;
+        const std::ptrdiff_t beyond = deep_cell(bore.radius_mm + 1.6);
+        if (beyond < 0) continue;
+        const std::ptrdiff_t core = grid.cell_at(middle + 0.35 * bore.radius_mm * out[s]),
+                             side = grid.cell_at(middle + 0.75 * bore.radius_mm * out[s]);
+        if (core < 0 || side < 0) continue;
         const double outer = 0.5 * (grid.grey[static_cast<std::size_t>(rim)] +
                                     grid.grey[static_cast<std::size_t>(beyond)]),
                      inner = 0.5 * (grid.grey[static_cast<std::size_t>(core)] +

@@ -32,11 +32,10 @@ class CompareCommand : public ::testing::Test {
   }
   // A scan of the femur with this tunnel, or without any.
   void scan(const std::string& name, const std::optional<tunnels::Tunnel>& tunnel) const {
-    test::KnownCtOptions options;
-    options.spacing_mm = {0.6, 0.6, 0.8};
     std::vector<test::Drilled> drilled;
     if (tunnel) drilled.push_back({.tunnel = *tunnel});
-    images::write_volume(folder_ / name, test::postop_ct({made_.femur.mesh}, drilled, lying_, options));
+    images::write_volume(folder_ / name,
+                         test::postop_ct({made_.femur.mesh}, drilled, lying_, test::half_fine()));
   }
   [[nodiscard]] test::ProgramResult compare(const std::string& source, const std::string& output) const {
     return run_program({"compare", folder_ / "knee.arthro", "--postop", folder_ / source, "-o",
@@ -47,7 +46,7 @@ class CompareCommand : public ::testing::Test {
   }
 
   [[nodiscard]] static const phantom::PhantomKnee& made() {
-    static const auto knee = phantom::make_phantom_knee();
+    static const auto knee = phantom::make_phantom_knee({.edge_length_mm = 2});
     return knee;
   }
 
@@ -131,7 +130,7 @@ TEST_F(CompareCommand, SaysWhichOfTwoBonesIsNotSeen) {
 // Another knee's plan, and images that name another patient.
 TEST_F(CompareCommand, AnotherPatientIsNotReliable) {
   scan("postop.nrrd", made_.femoral_tunnel);
-  auto other = phantom::case_of(phantom::make_phantom_knee({.seed = 7}), "Another");
+  auto other = phantom::case_of(phantom::make_phantom_knee({.seed = 7, .edge_length_mm = 2}), "Another");
   other.plan.tunnels.erase(BoneKind::Tibia);
   cases::save_case(folder_ / "other.arthro", other);
   const auto result = run_program({"compare", folder_ / "other.arthro", "--postop", folder_ / "postop.nrrd",

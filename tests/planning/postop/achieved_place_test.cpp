@@ -24,8 +24,16 @@ class AchievedPlaceTest : public ::testing::Test {
     achieved.tunnel = tunnel;
     return achieved;
   }
-  const phantom::PhantomKnee knee_ = phantom::make_phantom_knee({.edge_length_mm = 3});
-  const tunnels::PlanSurroundings femur_ = around(knee_.femur, knee_.femur_landmarks);
+  struct Known {
+    phantom::PhantomKnee knee = phantom::make_phantom_knee({.edge_length_mm = 3});
+    tunnels::PlanSurroundings femur = around(knee.femur, knee.femur_landmarks);
+  };
+  static const Known& known() {
+    static const Known made;
+    return made;
+  }
+  const phantom::PhantomKnee& knee_ = known().knee;
+  const tunnels::PlanSurroundings& femur_ = known().femur;
 };
 
 TEST_F(AchievedPlaceTest, SaysWhichWayTheEntryIsOff) {

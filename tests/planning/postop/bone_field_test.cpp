@@ -17,7 +17,7 @@ TEST(BoneField, AJointMayLieAnywhereAlongAPiece) {
   for (int k = 10; k < 110; ++k)
     for (int j = 8; j < 22; ++j)
       for (int i = 8; i < 22; ++i) volume.values[volume.index(i, j, k)] = 900;
-  const BoneField field = bone_field(volume, 200);
+  const BoneField field = bone_field(volume, 200).value();
   for (double z_mm = 40; z_mm <= 200; z_mm += 1) {
     const auto off_mm = [&](const Eigen::Vector3d& anchor) {
       return (anchor - Eigen::Vector3d(29, 29, z_mm)).norm();

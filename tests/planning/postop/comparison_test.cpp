@@ -4,7 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "planning/geometry/error.h"
 #include "planning/phantom/phantom_knee.h"
+#include "tests/message_of.h"
 #include "tests/planning/postop/postop_ct.h"
 
 namespace arthronaut::postop {
@@ -15,22 +19,45 @@ using testing::Contains;
 using testing::HasSubstr;
 using tunnels::Tunnel;
 
+// Of each bone no more is scanned than it takes to tell whose it is.
+constexpr double kScanned_mm = 62;
+
+struct Known {
+  phantom::PhantomKnee knee = phantom::make_phantom_knee({.edge_length_mm = 2});
+  geometry::Surface femur{knee.femur.mesh}, tibia{knee.tibia.mesh};
+};
+
 class Achieved : public ::testing::Test {
  protected:
-  [[nodiscard]] const geometry::TriangleMesh& mesh(BoneKind bone) const {
-    return (bone == BoneKind::Femur ? knee_.femur : knee_.tibia).mesh;
+  [[nodiscard]] const geometry::Surface& surface(BoneKind bone) const {
+    return bone == BoneKind::Femur ? known_.femur : known_.tibia;
   }
+  [[nodiscard]] const geometry::TriangleMesh& mesh(BoneKind bone) const { return surface(bone).mesh(); }
   [[nodiscard]] const Tunnel& plan(BoneKind bone) const {
-    return bone == BoneKind::Femur ? knee_.femoral_tunnel : knee_.tibial_tunnel;
+    return bone == BoneKind::Femur ? known_.knee.femoral_tunnel : known_.knee.tibial_tunnel;
   }
   // The plan's, moved by millimetres and tilted by degrees.
   [[nodiscard]] Tunnel moved(BoneKind bone, const Eigen::Vector2d& shift_mm,
                              const Eigen::Vector2d& tilt_deg) const {
-    return test::moved_tunnel(plan(bone), geometry::Surface(mesh(bone)), shift_mm, tilt_deg);
+    return test::moved_tunnel(plan(bone), surface(bone), shift_mm, tilt_deg);
+  }
+  [[nodiscard]] images::Volume ct(const std::vector<BoneKind>& bones,
+                                  const std::vector<test::Drilled>& drilled,
+                                  test::KnownCtOptions options = {}) const {
+    std::vector<geometry::TriangleMesh> meshes;
+    options.lowest_mm = std::numeric_limits<double>::infinity();
+    options.highest_mm = -options.lowest_mm;
+    for (const BoneKind bone : bones) {
+      meshes.push_back(mesh(bone));
+      const double entry_z = (truth_ * plan(bone).entry_mm).z();
+      options.lowest_mm = std::min(options.lowest_mm, entry_z - kScanned_mm);
+      options.highest_mm = std::max(options.highest_mm, entry_z + kScanned_mm);
+    }
+    return test::postop_ct(meshes, drilled, truth_, options);
   }
   [[nodiscard]] images::Volume ct(BoneKind bone, const std::vector<test::Drilled>& drilled,
                                   const test::KnownCtOptions& options = {}) const {
-    return test::postop_ct({mesh(bone)}, drilled, truth_, options);
+    return ct(std::vector{bone}, drilled, options);
   }
   [[nodiscard]] Comparison compared(BoneKind bone, const images::Volume& volume) const {
     return PostopImages(volume).compare(mesh(bone), plan(bone));
@@ -45,12 +72,12 @@ class Achieved : public ::testing::Test {
     EXPECT_NEAR(achieved.tunnel.diameter_mm, truth.diameter_mm, diameter_mm);
   }
 
-  static const phantom::PhantomKnee& knee() {
-    static const auto made = phantom::make_phantom_knee();
+  static const Known& known() {
+    static const Known made;
     return made;
   }
 
-  const phantom::PhantomKnee& knee_ = knee();
+  const Known& known_ = known();
   const geometry::RigidTransform truth_ = test::lying(30, {1, 2, 3}, {30, -20, 60});
 };
 
@@ -60,9 +87,8 @@ class Achieved : public ::testing::Test {
 TEST_F(Achieved, TunnelsAreFoundAwayFromThePlan) {
   const std::map<BoneKind, Tunnel> drilled{{BoneKind::Femur, moved(BoneKind::Femur, {3, -2}, {6, 5})},
                                            {BoneKind::Tibia, moved(BoneKind::Tibia, {-3, 2}, {-6, 5})}};
-  const auto volume = test::postop_ct(
-      {mesh(BoneKind::Femur), mesh(BoneKind::Tibia)},
-      {{.tunnel = drilled.at(BoneKind::Femur)}, {.tunnel = drilled.at(BoneKind::Tibia)}}, truth_);
+  const auto volume = ct({BoneKind::Femur, BoneKind::Tibia},
+                         {{.tunnel = drilled.at(BoneKind::Femur)}, {.tunnel = drilled.at(BoneKind::Tibia)}});
   const PostopImages images(volume);
   for (const auto& [bone, tunnel] : drilled) {
     const Comparison comparison = images.compare(mesh(bone), plan(bone));
@@ -71,8 +97,7 @@ TEST_F(Achieved, TunnelsAreFoundAwayFromThePlan) {
     EXPECT_TRUE(comparison.tunnel.reliable) << testing::PrintToString(comparison.tunnel.reasons);
     expect_near(comparison.tunnel, tunnel);
     EXPECT_TRUE(comparison.tunnel.comes_out);
-    EXPECT_NEAR(comparison.tunnel.length_mm,
-                tunnels::measure(tunnel, geometry::Surface(mesh(bone))).length_mm, 0.4);
+    EXPECT_NEAR(comparison.tunnel.length_mm, tunnels::measure(tunnel, surface(bone)).length_mm, 0.4);
     EXPECT_NEAR(comparison.tunnel.offset_mm, (tunnel.entry_mm - plan(bone).entry_mm).norm(), 0.15);
     EXPECT_NEAR(comparison.tunnel.angle_rad,
                 geometry::angle_between_rad(tunnel.direction, plan(bone).direction), 0.006);
@@ -190,11 +215,10 @@ TEST_F(Achieved, PoorImagesTellAsWell) {
               tunnel, 0.3, 0.6, 0.3);
 }
 
-// Thin cortex about empty marrow: hardly any of it is as bright as bone usually is.
+// Thin cortex about empty marrow: nothing of any size is as bright as bone usually is.
 TEST_F(Achieved, AFaintBoneIsFound) {
   const Tunnel truth = moved(BoneKind::Tibia, {2, -1}, {4, 3});
-  test::KnownCtOptions options;
-  options.spacing_mm = {0.6, 0.6, 0.8};
+  test::KnownCtOptions options = test::half_fine();
   options.cortex_mm = 0.6;
   options.cortex_hu = 600;
   options.marrow_hu = 115;
@@ -204,9 +228,19 @@ TEST_F(Achieved, AFaintBoneIsFound) {
   expect_near(comparison.tunnel, truth);
 }
 
+TEST_F(Achieved, NoBoneAtAllIsRefused) {
+  images::Volume empty;
+  empty.size = {40, 40, 40};
+  empty.values.assign(64000, 60.0F);
+  EXPECT_THAT(test::message_of<InvalidInput>([&] { const PostopImages images(empty); }),
+              HasSubstr("no bone"));
+}
+
 TEST_F(Achieved, AWholeBoneHasNone) {
+  const auto volume = ct({BoneKind::Femur, BoneKind::Tibia}, {}, test::half_fine());
+  const PostopImages images(volume);
   for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) {
-    const Comparison found = compared(bone, ct(bone, {}));
+    const Comparison found = images.compare(mesh(bone), plan(bone));
     EXPECT_TRUE(found.bone.reliable);
     EXPECT_FALSE(found.tunnel.is_found);
     EXPECT_FALSE(found.tunnel.reliable);
@@ -232,8 +266,7 @@ TEST_F(Achieved, OfTwoPlannedTunnelsEachIsFoundForItsOwn) {
   pl.bundle = norms::Bundle::Posterolateral;
   am.diameter_mm = pl.diameter_mm = 7;
   const auto drilled_from = [&](const Tunnel& planned) {
-    Tunnel drilled =
-        test::moved_tunnel(planned, geometry::Surface(mesh(BoneKind::Femur)), {0.8, 0.6}, {2, 1});
+    Tunnel drilled = test::moved_tunnel(planned, surface(BoneKind::Femur), {0.8, 0.6}, {2, 1});
     drilled.diameter_mm = planned.diameter_mm;
     return drilled;
   };
@@ -246,7 +279,7 @@ TEST_F(Achieved, OfTwoPlannedTunnelsEachIsFoundForItsOwn) {
     EXPECT_TRUE(found.reliable) << testing::PrintToString(found.reasons);
     EXPECT_EQ(found.tunnel.bundle, planned.bundle);
   }
-  const auto one = ct(BoneKind::Femur, {{.tunnel = truth_am}});
+  const auto one = ct(BoneKind::Femur, {{.tunnel = truth_am}}, test::half_fine());
   const auto missing = PostopImages(one).compare(mesh(BoneKind::Femur), pl, std::span(&am, 1)).tunnel;
   EXPECT_FALSE(missing.reliable);
   EXPECT_THAT(missing.reasons, Contains(HasSubstr("nearer to the planned tunnel femur AM")));
@@ -254,8 +287,9 @@ TEST_F(Achieved, OfTwoPlannedTunnelsEachIsFoundForItsOwn) {
 
 // A tunnel found in a bone that is another's: told, and not relied on.
 TEST_F(Achieved, ATunnelInAnotherPatientsBoneIsNotReliable) {
-  const auto other = phantom::make_phantom_knee({.seed = 2});
-  const auto volume = ct(BoneKind::Femur, {{.tunnel = moved(BoneKind::Femur, {2, 2}, {4, -3})}});
+  const auto other = phantom::make_phantom_knee({.seed = 2, .edge_length_mm = 2});
+  const auto volume =
+      ct(BoneKind::Femur, {{.tunnel = moved(BoneKind::Femur, {2, 2}, {4, -3})}}, test::half_fine());
   const Comparison found = PostopImages(volume).compare(other.femur.mesh, other.femoral_tunnel);
   EXPECT_FALSE(found.bone.reliable);
   EXPECT_FALSE(found.tunnel.reliable);

@@ -27,17 +27,20 @@ void drill(images::Volume& volume, const Drilled& drilled, const geometry::Rigid
            double soft_hu) {
   constexpr int kSub = 3;
   const geometry::RigidTransform plan_from_postop = postop_from_plan.inverse();
+  const Eigen::Affine3d plan_from_index = Eigen::Translation3d(plan_from_postop.translation_mm) *
+                                          plan_from_postop.rotation * volume.lps_from_index;
   const double reach = 0.5 * drilled.tunnel.diameter_mm + drilled.widened_mm + drilled.rim_mm + 2;
   std::size_t v = 0;
   for (int k = 0; k < volume.size.z(); ++k) {
     for (int j = 0; j < volume.size.y(); ++j) {
       for (int i = 0; i < volume.size.x(); ++i, ++v) {
         const auto place_at = [&](const Vector3d& index) {
-          return place_of(drilled, plan_from_postop * (volume.lps_from_index * index));
+          return place_of(drilled, plan_from_index * index);
         };
-        const Place middle = place_at(Vector3d(i, j, k));
-        if (middle.off_mm > reach || middle.along_mm < drilled.from_mm - 1 ||
-            middle.along_mm > drilled.to_mm + 1)
+        const Vector3d from_entry = plan_from_index * Vector3d(i, j, k) - drilled.tunnel.entry_mm;
+        const double along_mm = from_entry.dot(drilled.tunnel.direction);
+        if (along_mm < drilled.from_mm - 1 || along_mm > drilled.to_mm + 1 ||
+            from_entry.squaredNorm() - along_mm * along_mm > reach * reach)
           continue;
         const float before = volume.values[v];
         double sum = 0;
@@ -72,6 +75,12 @@ void drill(images::Volume& volume, const Drilled& drilled, const geometry::Rigid
 }
 
 }  // namespace
+
+KnownCtOptions half_fine() {
+  KnownCtOptions options;
+  options.spacing_mm = {0.6, 0.6, 0.8};
+  return options;
+}
 
 images::Volume postop_ct(const std::vector<geometry::TriangleMesh>& bones_in_plan,
                          const std::vector<Drilled>& drilled,

@@ -23,6 +23,9 @@ struct Drilled {
   double screw_from_mm = 1, screw_to_mm = 21, screw_aside_mm = 0, screw_hu = 3000;
 };
 
+// Voxels of 0.6 x 0.6 x 0.8 mm: half as fine, and made and searched in a third of the time.
+[[nodiscard]] KnownCtOptions half_fine();
+
 // The bones in the plan's frame, moved by `postop_from_plan` together.
 [[nodiscard]] images::Volume postop_ct(const std::vector<geometry::TriangleMesh>& bones_in_plan,
                                        const std::vector<Drilled>& drilled,
