@@ -42,6 +42,9 @@ class DistanceField {
   };
   // Trilinear. Error of the distance about spacing^2 * curvature / 8.
   [[nodiscard]] Sample sample(const Eigen::Vector3d& point_mm) const;
+  // Has what sample() will read there brought near: the nodes are tens of megabytes, and a fit that goes from
+  // point to point waits for them more than it reckons.
+  void expect(const Eigen::Vector3d& point_mm) const;
 
  private:
   static constexpr double kStep_mm = 0.001;
@@ -85,6 +88,18 @@ inline DistanceField::Sample DistanceField::sample(const Eigen::Vector3d& point_
   return sample;
 }
 
+inline void DistanceField::expect(const Eigen::Vector3d& point_mm) const {
+  const Eigen::Vector3d cell = (point_mm - origin_mm_) * (1 / spacing_mm_);
+  if (!(cell.x() >= 0 && cell.y() >= 0 && cell.z() >= 0 && cell.x() < size_.x() - 1 &&
+        cell.y() < size_.y() - 1 && cell.z() < size_.z() - 1)) {
+    return;
+  }
+  const auto nx = static_cast<std::size_t>(size_.x()), nxy = nx * static_cast<std::size_t>(size_.y());
+  const std::int16_t* n =
+      &nodes_[index(static_cast<int>(cell.x()), static_cast<int>(cell.y()), static_cast<int>(cell.z()))];
+  for (const std::size_t row : {std::size_t{0}, nx, nxy, nxy + nx}) __builtin_prefetch(n + row);
+}
+
 // The same, small enough to stay in a core's cache: one byte a node, nodes 1 mm apart (more for a large
 // bone). For the millions of look-ups that score hypotheses; off by 0.3 mm in the mean, 0.9 mm at most.
 class CoarseDistanceField {
@@ -93,6 +108,15 @@ class CoarseDistanceField {
 
   // Distance at the nearest node; the band's width outside the grid.
   [[nodiscard]] float nearest_mm(const Eigen::Vector3f& point_mm) const {
+    const std::int8_t* node = nearest_node(point_mm);
+    return step_mm_ * static_cast<float>(node ? *node : 127);
+  }
+  // Has what nearest_mm() will read there brought near.
+  void expect(const Eigen::Vector3f& point_mm) const { __builtin_prefetch(nearest_node(point_mm)); }
+
+ private:
+  // None outside the grid.
+  [[nodiscard]] const std::int8_t* nearest_node(const Eigen::Vector3f& point_mm) const {
     const Eigen::Vector3f cell = (point_mm - origin_mm_) * nodes_per_mm_;
     const int x = static_cast<int>(cell.x() + 0.5f), y = static_cast<int>(cell.y() + 0.5f),
               z = static_cast<int>(cell.z() + 0.5f);
@@ -101,12 +125,11 @@ class CoarseDistanceField {
     if (static_cast<unsigned>(x) >= static_cast<unsigned>(size_[0]) ||
         static_cast<unsigned>(y) >= static_cast<unsigned>(size_[1]) ||
         static_cast<unsigned>(z) >= static_cast<unsigned>(size_[2])) {
-      return 127 * step_mm_;
+      return nullptr;
     }
-    return step_mm_ * static_cast<float>(nodes_[static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x)]);
+    return &nodes_[static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x)];
   }
 
- private:
   Eigen::Vector3f origin_mm_;
   Eigen::Vector3i size_;
   float nodes_per_mm_ = 1, step_mm_ = 0;

@@ -74,7 +74,7 @@ class Search {
   }
 
  private:
-  static constexpr std::size_t kTestPointCount = 60;
+  static constexpr std::size_t kTestPointCount = 60, kTogether = 32;
 
   void add_ordered_pair(const CurvePair& pair) {
     matches_.clear();
@@ -99,16 +99,35 @@ class Search {
       RoughPose pose;
       pose.rotation = surface_axes * curve_axes;
       pose.translation_mm = 0.5f * (first.point_mm + second.point_mm) - pose.rotation * curve_middle;
-      if (bone_.coarse_field.nearest_mm(pose.translation_mm) < kMinSeenHeight_mm) continue;
-      if (options_.use_marker_prior && !marker_may_be_there(pose)) continue;
+      bone_.coarse_field.expect(pose.translation_mm);
+      supposed_.push_back(pose);
+      if (supposed_.size() == kTogether) judge_supposed();
+    }
+    judge_supposed();
+  }
+
+  // All of them through one check after the other, so that the look-ups of many are under way at a time.
+  void judge_supposed() {
+    const auto drop = [this](const auto& is_out) {
+      supposed_.erase(std::remove_if(supposed_.begin(), supposed_.end(), is_out), supposed_.end());
+    };
+    drop([this](const RoughPose& pose) {
+      const float height_mm = bone_.coarse_field.nearest_mm(pose.translation_mm);
+      if (height_mm < kMinSeenHeight_mm) return true;
+      if (!options_.use_marker_prior) return false;
+      if (height_mm < kMinMarkerHeight_mm || height_mm > kMaxMarkerHeight_mm) return true;
+      bone_.field.expect(pose.translation_mm.cast<double>());
+      return false;
+    });
+    if (options_.use_marker_prior) drop([this](const RoughPose& pose) { return !marker_may_face(pose); });
+    for (RoughPose& pose : supposed_) {
       pose.score = score_of(pose);
       if (pose.score > 0 && shaft_collision_.is_possible(pose.rotation, pose.translation_mm)) keep(pose);
     }
+    supposed_.clear();
   }
 
-  [[nodiscard]] bool marker_may_be_there(const RoughPose& pose) const {
-    const float height_mm = bone_.coarse_field.nearest_mm(pose.translation_mm);
-    if (height_mm < kMinMarkerHeight_mm || height_mm > kMaxMarkerHeight_mm) return false;
+  [[nodiscard]] bool marker_may_face(const RoughPose& pose) const {
     const Eigen::Vector3d up = bone_.field.sample(pose.translation_mm.cast<double>()).gradient;
     return up.dot(pose.rotation.col(2).cast<double>()) > kMinMarkerCosine * up.norm();
   }
@@ -159,6 +178,7 @@ class Search {
   Eigen::Vector3f center_;
   std::vector<Eigen::Vector3f> test_points_;
   std::vector<PairTable::Match> matches_;
+  std::vector<RoughPose> supposed_;  // a few at a time
   std::vector<RoughPose> found_;
 };
 

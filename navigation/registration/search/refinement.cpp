@@ -154,10 +154,15 @@ MarkerObjection object_to(const Eigen::Matrix3d& bone_from_marker, const Distanc
           kCorrelationLength_mm * ratio * ratio / (prior.sigma_mm * prior.sigma_mm)};
 }
 
-// See refine() in the header. Distance: gives the sample at a point of the bone frame.
-template <typename Distance>
-RefinedPose refine_by(const Distance& distance, const WeightedPoints& points, const RigidTransform& start,
-                      const NoiseModel& model, const MarkerPrior& prior, int iterations) {
+// How many points before its turn one is expected by the field: about what a look-up in main memory lasts.
+constexpr std::size_t kAhead = 6;
+
+// See refine() in the header. Distance: gives the sample at a point of the bone frame; expect: is told of the
+// points to come.
+template <typename Distance, typename Expect>
+RefinedPose refine_by(const Distance& distance, const Expect& expect, const WeightedPoints& points,
+                      const RigidTransform& start, const NoiseModel& model, const MarkerPrior& prior,
+                      int iterations) {
   RefinedPose refined;
   refined.bone_from_marker = start;
   refined.model = model;
@@ -173,7 +178,11 @@ RefinedPose refine_by(const Distance& distance, const WeightedPoints& points, co
     ModelUpdate model_update;
     double cost = 0;
     for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
-      const Eigen::Vector3d p = rotation * points.positions_mm[i] + refined.bone_from_marker.translation_mm;
+      const auto there = [&](std::size_t k) -> Eigen::Vector3d {
+        return rotation * points.positions_mm[k] + refined.bone_from_marker.translation_mm;
+      };
+      if (i + kAhead < points.positions_mm.size()) expect(there(i + kAhead));
+      const Eigen::Vector3d p = there(i);
       const DistanceField::Sample sample = distance(p);
       const double residual_mm = sample.distance_mm - points.offset_mm(i);
       refined.residuals_mm[i] = residual_mm;
@@ -237,7 +246,11 @@ ApproachedPose approach(const DistanceField& field, const WeightedPoints& points
     NormalEquations equations;
     double cost = 0;
     for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
-      const Eigen::Vector3d p = rotation * points.positions_mm[i] + bone_from_marker.translation_mm;
+      const auto there = [&](std::size_t k) -> Eigen::Vector3d {
+        return rotation * points.positions_mm[k] + bone_from_marker.translation_mm;
+      };
+      if (i + kAhead < points.positions_mm.size()) field.expect(there(i + kAhead));
+      const Eigen::Vector3d p = there(i);
       const DistanceField::Sample sample = field.sample(p);
       const double ratio = width * width / (width * width + sample.distance_mm * sample.distance_mm);
       cost += points.weights[i] * (1 - ratio);
@@ -254,13 +267,15 @@ ApproachedPose approach(const DistanceField& field, const WeightedPoints& points
 RefinedPose refine(const DistanceField& field, const WeightedPoints& points, const RigidTransform& start,
                    const NoiseModel& model, const MarkerPrior& prior, int iterations) {
   const auto distance = [&field](const Eigen::Vector3d& p) { return field.sample(p); };
-  return refine_by(distance, points, start, model, prior, iterations);
+  const auto expect = [&field](const Eigen::Vector3d& p) { field.expect(p); };
+  return refine_by(distance, expect, points, start, model, prior, iterations);
 }
 
 RefinedPose refine(const DistanceFunction& distance, const WeightedPoints& points,
                    const RigidTransform& start, const NoiseModel& model, const MarkerPrior& prior,
                    int iterations) {
-  return refine_by(distance, points, start, model, prior, iterations);
+  return refine_by(
+      distance, [](const Eigen::Vector3d&) {}, points, start, model, prior, iterations);
 }
 
 }  // namespace arthronaut::registration
