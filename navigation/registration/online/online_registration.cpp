@@ -209,12 +209,23 @@ int OnlineRegistration::State::agreement_count() const {
 }
 
 // Which side's bone it is shows late: with few strokes the wrong one fits too. So it is asked when all else
-// would confirm, until something is confirmed, and again when half as much again was drawn.
+// would confirm, until something is confirmed, and again when half as much again was drawn. Where the answer
+// is what stands in the way, a little more stroke gives the same one, and asking takes twenty times an
+// update.
 void OnlineRegistration::State::check_side() {
-  const bool is_due = side_checked_mm == 0 || judges_all || result.length_mm > 1.5 * side_checked_mm ||
-                      result.state != OnlineState::Confirmed;
+  constexpr double kAgainWhenConfirmed = 1.5, kAgainWhenRefused = 1.1;
   const double needed_log_odds = judges_all ? kNeededLogOdds : kNeededLogOddsWhileDrawing;
   const RegistrationSummary& found = result.registration;
+  const auto is_refused_as_before = [&] {
+    if (side.verdict != SideVerdict::Own) return true;
+    RegistrationSummary judged = found;
+    judge_odds(judged, side.lead, needed_log_odds);
+    return !judged.reliable;
+  };
+  const double again = result.state == OnlineState::Confirmed
+                           ? kAgainWhenConfirmed
+                           : (is_refused_as_before() ? kAgainWhenRefused : 0);
+  const bool is_due = side_checked_mm == 0 || judges_all || result.length_mm > again * side_checked_mm;
   if (is_due && agreement_count() >= kAgreeingSolutions && found.reliable &&
       found.evidence.log_odds >= needed_log_odds) {
     // Costs compare only between searches of the same kind, over the same points.

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
+#include <vector>
 
 #include "tests/navigation/registration/phantom_bone.h"
 
@@ -112,6 +114,27 @@ TEST(OnlineRegistration, AsksForTheSideAgainWhenAStrokeIsTakenOut) {
   EXPECT_TRUE(asks_until_confirmed());
   EXPECT_EQ(online.result().state, OnlineState::Confirmed);
   EXPECT_LT(online.result().length_mm, 1.5 * length_mm);
+}
+
+// The phantom's notch is much like its own mirror image, and these strokes are doubted for it from the first
+// asking on: what took a fifth of a second then is not asked at every step of the stroke.
+TEST(OnlineRegistration, AsksForTheSideAgainOnlyWithMoreStroke) {
+  const PhantomBone& bone = phantom_bone();
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  std::optional<double> answer;
+  std::vector<double> asked_mm;
+  for (const strokes::CurvePoint& point : bone.trial(TrialNoise::ExVivo, 2).curves) {
+    online.add_points({&point, 1});
+    const OnlineResult& result = online.update();
+    const std::optional<double>& side_lead = result.registration.evidence.side_lead;
+    EXPECT_NE(result.state, OnlineState::Confirmed);
+    if (side_lead && side_lead != answer) {
+      answer = side_lead;
+      asked_mm.push_back(result.length_mm);
+    }
+  }
+  ASSERT_GT(asked_mm.size(), 1u);
+  for (std::size_t i = 1; i < asked_mm.size(); ++i) EXPECT_GT(asked_mm[i], 1.1 * asked_mm[i - 1]);
 }
 
 // The wrong side's bone is never confirmed: neither by clean strokes nor by noisy ones, of which the second
