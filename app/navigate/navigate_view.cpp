@@ -352,7 +352,8 @@ void NavigateView::tick(double /*now_s*/) {
 
 void NavigateView::on_screen() {
   const theatre::LiveStatePtr seen = std::exchange(drawn_, nullptr);
-  if (auto* const shows = bones_.known(choices_.bone); shows != nullptr && seen) shows->shown(*seen);
+  if (auto* const shows = bones_.known(choices_.bone); shows != nullptr && seen)
+    shows->shown(*seen, drawn_s_);
 }
 
 void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -360,7 +361,7 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (model_ != nullptr && model_->has_bone(choices_.bone)) (void)bones_.operation(choices_.bone);
   read_live();
   drawn_ = live_;
-  const double now = theatre::LiveOperation::now_s();
+  const double now = drawn_s_ = theatre::LiveOperation::now_s();
   NavigateDisplay display = display_of(live_.get(), now);
   const bool was_refused = is_lent_ && now - refused_s_ < kRefusal_s;
   if (live_->phase == Phase::NoSource && !pedal_acts()) display.detail.clear();

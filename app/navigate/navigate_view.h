@@ -158,6 +158,7 @@ class NavigateView : public mode::Mode {
   std::string patient_;                      // in words; empty: not known
   NavigateChoices choices_;
   theatre::LiveStatePtr drawn_;                           // and not told to be on the screen yet; else null
+  double drawn_s_ = 0;                                    // when that was begun
   theatre::LiveStatePtr live_ = TheatreBones::nothing();  // of this frame, of the chosen bone; never null
   RegistrationWords words_;                               // of its registration
   std::optional<SimulatedPart> part_;                     // of the simulation that was started last

@@ -65,12 +65,14 @@ class Rate {
 // What of the latency the screen alone knows.
 class DisplayLatency {
  public:
-  void shown(const LiveState& live, double now_s) {
+  void shown(const LiveState& live, double drawn_s, double now_s) {
     const std::lock_guard lock(mutex_);
+    const double age_s = drawn_s - live.captured_s;
+    if (live.published_s == last_published_s_) last_age_s_ = age_s;
     if (live.published_s <= last_published_s_) return;
-    if (last_published_s_ > 0) outlived_s_ = std::max(outlived_s_.value_or(0), now_s - last_captured_s_);
+    if (last_published_s_ > 0) outlived_s_ = std::max(outlived_s_.value_or(0), last_age_s_);
     last_published_s_ = live.published_s;
-    last_captured_s_ = live.captured_s;
+    last_age_s_ = age_s;
     meter_.add(Stage::Display, 1000 * (now_s - live.published_s));
     meter_.add(Stage::ToScreen, 1000 * (now_s - live.captured_s));
   }
@@ -86,8 +88,8 @@ class DisplayLatency {
     last_published_s_ = 0;
     outlived_s_.reset();
   }
-  // How old a picture was when the next one took its place on the screen: the oldest since this was asked
-  // last; empty: none was replaced.
+  // How old a picture was when it was drawn last before the next one took its place: the oldest since this
+  // was asked last; empty: none was replaced.
   [[nodiscard]] std::optional<double> take_outlived_s() {
     const std::lock_guard lock(mutex_);
     return std::exchange(outlived_s_, std::nullopt);
@@ -96,7 +98,7 @@ class DisplayLatency {
  private:
   mutable std::mutex mutex_;
   LatencyMeter meter_;
-  double last_published_s_ = 0, last_captured_s_ = 0;
+  double last_published_s_ = 0, last_age_s_ = 0;
   std::optional<double> outlived_s_;
 };
 
@@ -283,9 +285,9 @@ void LiveOperation::end_source() { thread_->worker.post(EndSource{}); }
 void LiveOperation::apply(operation::Command command) { thread_->worker.post(std::move(command)); }
 void LiveOperation::keep_video(bool on) { thread_->worker.post(VideoRequest{on}); }
 void LiveOperation::keep_pictures_as(recording::PicturesAs as) { thread_->worker.post(as); }
-void LiveOperation::shown(const LiveState& live) {
+void LiveOperation::shown(const LiveState& live, double drawn_s) {
   if (live.operation->source != nullptr && live.operation->source->kind == sources::SourceKind::Live)
-    thread_->display.shown(live, now_s());
+    thread_->display.shown(live, drawn_s, now_s());
 }
 void LiveOperation::request_stop() { thread_->worker.request_stop(); }
 

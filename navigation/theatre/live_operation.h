@@ -76,8 +76,9 @@ class LiveOperation {
   void keep_video(bool on);                         // see OperationRun
   void keep_pictures_as(recording::PicturesAs as);  // see OperationRun
   void request_stop();
-  // The screen shows this state from now on: once for each picture. For the latency to the screen.
-  void shown(const LiveState& live);
+  // The screen shows this state from now on, as it was at drawn_s, on the clock of now_s(): after each time
+  // that it was drawn. For the latency to the screen, and to know pictures that come too slowly.
+  void shown(const LiveState& live, double drawn_s);
 
   // Never null.
   [[nodiscard]] LiveStatePtr latest() const;

@@ -28,9 +28,9 @@ class SourceWatch {
   // knows; remark: what the source says of its pictures. True: what is wrong has changed.
   bool picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns,
                const std::string& remark = "");
-  // The screen showed a picture until it was so old, and then the next one. Tells with the next picture
-  // whether the source is too slow: half of six were too old by then. For as long as that goes on what guides
-  // would come and go with every picture. Over once none was for two seconds.
+  // The screen drew a picture for the last time when it was so old, and then the next one. Tells with the
+  // next picture whether the source is too slow: half of six were drawn when they were too old. For as long
+  // as that goes on what guides would come and go with every picture. Over once none was for two seconds.
   void shown_until(double age_ms, std::int64_t now_ns);
   // None came since the last call; why, as the source says it.
   bool silence(const std::string& why, std::int64_t now_ns);

@@ -79,15 +79,15 @@ class SlowSource : public test::PlainSource {
   }
 };
 
-// The screen tells when it showed which picture: ten a second are told to be too few, and so is a touch that
+// The screen tells when it drew which picture: eight a second are told to be too few, and so is a touch that
 // was not taken.
 TEST_F(LiveOperationTest, Hazard3ASlowSourceAndARefusedTouchArePublished) {
   TheatreSource source = test::plain_source(0, false, SourceKind::Live);
-  source.open = [] { return std::make_unique<SlowSource>(1000, false, 10); };
+  source.open = [] { return std::make_unique<SlowSource>(1000, false, 8); };
   live_.start(source);
   ASSERT_TRUE(waits_for([&] {
     const LiveStatePtr now = live_.latest();
-    if (now->picture != nullptr) live_.shown(*now);
+    if (now->picture != nullptr) live_.shown(*now, LiveOperation::now_s());
     return now->trouble == SourceTrouble::Slow;
   }));
   EXPECT_EQ(live_.latest()->refusal.count, 0);
