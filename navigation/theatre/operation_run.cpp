@@ -227,9 +227,8 @@ void OperationRun::apply(const operation::Command& command) {
       record.add_event(recording::kCommandRefusedEvent, text, frame_state_->frame.timestamp_ns);
     });
     ++refusal_.count;
-    refusal_.words =
-        files::format("%s: the picture was %.1f s old",
-                      begins_to_draw(command) ? "drawing not begun" : "touch not taken", age_ms / 1000);
+    refusal_.words = files::format("%s: picture %.1f s old",
+                                   begins_to_draw(command) ? "not drawing" : "no touch", age_ms / 1000);
     return;
   }
   // The record of what follows goes on with that one's.

@@ -96,7 +96,7 @@ class OperationRun {
   // What was asked for of this moment and not done.
   struct Refusal {
     int count = 0;  // of all; grows with each
-    // "touch not taken: the picture was 0.6 s old"; empty once something of this moment was taken again, and
+    // "no touch: picture 0.6 s old"; empty once something of this moment was taken again, and
     // where the operation's state says why (touch_refusal).
     std::string words;
   };

@@ -63,8 +63,10 @@ bool SourceWatch::silence(const std::string& why, std::int64_t now_ns) {
 bool SourceWatch::picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns,
                           const std::string& remark) {
   if (has_begun_) {
-    const double gap_ms = static_cast<double>(now_ns - last_picture_ns_) * 1e-6;
-    gap_ms_ += (gap_ms_ > 0 ? 0.3 : 1.0) * (gap_ms - gap_ms_);
+    const std::int64_t gap_ns = now_ns - last_picture_ns_;
+    // A pause is no pace.
+    if (gap_ns < kLongestSilence_ns)
+      gap_ms_ += (gap_ms_ > 0 ? 0.3 : 1.0) * (static_cast<double>(gap_ns) * 1e-6 - gap_ms_);
   }
   has_begun_ = true;
   last_picture_ns_ = now_ns;

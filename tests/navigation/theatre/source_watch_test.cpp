@@ -149,6 +149,10 @@ class ShownPictures {
       shown_ms_ = known_ms_;
     }
   }
+  void pause(double seconds) {
+    now_ms_ += 1000 * seconds;
+    next_ms_ = now_ms_;
+  }
   [[nodiscard]] double now_ms() const { return now_ms_; }
   struct Said {
     double at_ms;
@@ -220,6 +224,17 @@ TEST_F(SourceWatchTest, ASlowScreenIsNoSlowSource) {
     pictures(well_, 38);
     ASSERT_EQ(watch_.trouble(), SourceTrouble::None) << i;
   }
+}
+
+// How long a source was away says nothing of its pace.
+TEST_F(SourceWatchTest, APauseIsNoPace) {
+  ShownPictures pictures(watch_, 1);
+  pictures.run(10, 5);
+  pictures.pause(4);
+  pictures.run(10, 0.5);
+  EXPECT_EQ(watch_.trouble(), SourceTrouble::Slow);
+  EXPECT_THAT(watch_.words(), testing::AnyOf(testing::StartsWith("10 "), testing::StartsWith("9 "),
+                                             testing::StartsWith("11 ")));
 }
 
 // Single pictures that are late on the screen hide nothing for longer than they are late.
