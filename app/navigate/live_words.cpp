@@ -141,13 +141,11 @@ std::string why_no_touch(const operation::OperationState& state) {
     case operation::TouchRefusal::NoSource:
       return "no pictures come";
     case operation::TouchRefusal::NoControlPoint:
-      return "touch the control point with the probe first";
+      return "no control point yet";
     case operation::TouchRefusal::TipUnknown:
-      if (state.touch_is_of_guide) return "the guide's tip is not known now: show guide and bone marker";
-      return "the probe's tip is not known now: show probe and bone marker";
+      return state.touch_is_of_guide ? "guide's tip not seen" : "probe's tip not seen";
     case operation::TouchRefusal::TipMoves:
-      if (state.touch_is_of_guide) return "the guide moves: hold its tip still";
-      return "the probe moves: hold its tip still";
+      return state.touch_is_of_guide ? "the guide moves" : "the probe moves";
   }
   return "";
 }
@@ -158,7 +156,7 @@ std::string refusal_notice(const theatre::LiveState& live, double now_s) {
   if (now_s - live.refused_s > kReadable_s) return "";
   if (!live.refusal.words.empty()) return live.refusal.words;
   const std::string why = why_no_touch(*live.operation);
-  return why.empty() ? "" : "touch not taken: " + why;
+  return why.empty() ? "" : "no touch: " + why;
 }
 
 Trouble trouble_of(const operation::RegistrationState& registration) {

@@ -23,8 +23,8 @@ namespace arthronaut::navigate {
 // where that is no hindrance.
 [[nodiscard]] std::string words_without_pictures(theatre::SourceTrouble trouble,
                                                  operation::NextAction action);
-// What was asked for a moment ago and not done, with why: "touch not taken: the picture was 0.6 s old". Empty
-// once it was done, or when that is longer ago than it takes to read.
+// What was asked for a moment ago and not done, with why: "no touch: the probe moves". Short enough to stand
+// in full size beside the step. Empty once it was done, or when that is longer ago than it takes to read.
 [[nodiscard]] std::string refusal_notice(const theatre::LiveState& live, double now_s);
 
 // What is wrong, in a few words, and what to do about it.

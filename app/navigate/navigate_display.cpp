@@ -63,6 +63,8 @@ std::string headline_of(theatre::SourceTrouble trouble) {
       return "Picture frozen";
     case SourceTrouble::Torn:
       return "Picture torn";
+    case SourceTrouble::Slow:
+      return "Pictures come too slowly";
     default:
       return "";
   }
@@ -250,15 +252,15 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   // while it is young, so that nothing comes and goes ten times a second. That it has stopped is told by
   // trouble.
   const bool is_slow = live->trouble == theatre::SourceTrouble::Slow;
-  constexpr double kSlowPicture_s = 1;
+  constexpr double kSlowPicture_s = 0.3;  // older ones are not taken for live; see OperationRun::apply
   if (display.age_s > (is_slow ? kSlowPicture_s : live->stale_after_s)) {
     const bool is_short = display.age_s < 1;
     // What is wrong with the source comes first; what lasts stays said while a busy machine is late with one.
-    const bool is_late_alone =
-        live->trouble == theatre::SourceTrouble::None || live->trouble == theatre::SourceTrouble::Late;
+    const bool is_late = live->trouble == theatre::SourceTrouble::Late || is_slow;
+    const bool is_late_alone = live->trouble == theatre::SourceTrouble::None || is_late;
     if (is_short && is_late_alone && explain(display, *live)) return display;
     // Pictures that come late all the while are no silence.
-    const bool come = is_short || live->trouble == theatre::SourceTrouble::Late;
+    const bool come = is_short || is_late;
     display.headline = is_short ? headline_of(live->trouble) : "";
     if (display.headline.empty())
       display.headline = come ? "Picture " + late_by(display.age_s) + " late"
@@ -291,7 +293,7 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   if (display.guidance_is_valid)
     display.guidance = result.guidance;
   else if (!explain(display, *live) && is_slow && standing == operation::Standing::Stands)
-    tell(display, {"Pictures come too slowly", live->trouble_words});
+    tell(display, {headline_of(live->trouble), live->trouble_words});
   return display;
 }
 

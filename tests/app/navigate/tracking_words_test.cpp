@@ -261,17 +261,17 @@ TEST(RefusalNotice, SaysWhatWasNotDoneAndWhy) {
   live.refused_s = kNow_s;
   state.has_source = true;
   state.touch_refusal = operation::TouchRefusal::TipMoves;
-  EXPECT_EQ(notice(kNow_s + 1), "touch not taken: the probe moves: hold its tip still");
+  EXPECT_EQ(notice(kNow_s + 1), "no touch: the probe moves");
   EXPECT_EQ(notice(kNow_s + 9), "");
   // The newest reason is the one of now.
-  live.refusal.words = "touch not taken: the picture was 0.6 s old";
+  live.refusal.words = "no touch: picture 0.6 s old";
   EXPECT_EQ(notice(kNow_s + 1), live.refusal.words);
   EXPECT_EQ(notice(kNow_s + 9), "");
   live.refusal.words.clear();
   state.has_source = false;
   EXPECT_EQ(notice(kNow_s + 1), "");
   state.touch_refusal = operation::TouchRefusal::NoSource;
-  EXPECT_EQ(notice(kNow_s + 1), "touch not taken: no pictures come");
+  EXPECT_EQ(notice(kNow_s + 1), "no touch: no pictures come");
 }
 
 }  // namespace
