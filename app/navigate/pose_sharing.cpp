@@ -47,7 +47,9 @@ void PoseSharing::tell(const theatre::LiveState& live) {
   if (!display.is_live) {
     state_->server->tell({false, display.headline}, utc_now_s());
   } else if (is_new) {
-    state_->server->publish(live.operation, utc_now_s() - (now_s - live.captured_s), live.picture);
+    const bool is_slow = live.trouble == theatre::SourceTrouble::Slow;
+    state_->server->publish(live.operation, utc_now_s() - (now_s - live.captured_s), live.picture,
+                            is_slow ? display.headline : "");
   } else {
     state_->server->tell(openigtlink::status_of(*live.operation), utc_now_s());
   }

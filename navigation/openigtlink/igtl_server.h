@@ -31,9 +31,10 @@ class IgtlServer {
   [[nodiscard]] int port() const;
   [[nodiscard]] std::size_t client_count() const;
   // To all clients. Never waits for one; from any thread. captured_utc_s: when the picture was taken, seconds
-  // since 1970, as the messages carry it. picture: of that state, null when there is none.
+  // since 1970, as the messages carry it. picture: of that state, null when there is none. withheld: why the
+  // screen does not guide by it all the same; STATUS says that then.
   void publish(const operation::OperationStatePtr& state, double captured_utc_s,
-               const camera::FramePtr& picture = nullptr);
+               const camera::FramePtr& picture = nullptr, const std::string& withheld = "");
   // A STATUS alone, while there is no picture that could be published: without it clients would hold what
   // came last for what is.
   void tell(const Status& status, double utc_s);

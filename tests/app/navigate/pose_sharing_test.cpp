@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "app/navigate/navigate_display.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::navigate {
@@ -111,6 +112,17 @@ TEST_F(PoseSharingTest, Hazard3ALatePictureIsNotSentAsLive) {
   live.phase = Phase::Ended;
   sharing_.tell(live);
   EXPECT_EQ(listener_.until_status(), std::vector<std::string>{"STATUS: The pictures have ended"});
+}
+
+// Of a source that is too slow the poses go out with their time, and STATUS says what the screen says.
+TEST_F(PoseSharingTest, Hazard3StatusSaysThatASlowSourceDoesNotGuide) {
+  theatre::LiveState live = running(bones::BoneKind::Femur);
+  live.trouble = theatre::SourceTrouble::Slow;
+  sharing_.tell(live);
+  const std::vector<std::string> heard = listener_.until_status();
+  EXPECT_NE(std::find(heard.begin(), heard.end(), "WorldFemur"), heard.end());
+  const NavigateDisplay display = display_of(&live, theatre::LiveOperation::now_s());
+  EXPECT_EQ(heard.back(), "STATUS: " + display.headline);
 }
 
 // Of two operations the one that gives pictures is told: what becomes of the other one is no news.
