@@ -130,8 +130,8 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
   const std::string hint =
       !trouble_.empty()   ? trouble_
       : !tracker_.empty() ? "Tools seen by " + tracker_ + ". Now the pictures; igtl:// alone takes it back"
-      : offered_.empty()  ? "No camera is connected. A stream's address, or a tracker's (igtl://HOST:PORT)"
-                          : "Or a stream's address, or a tracker's (igtl://HOST:PORT)";
+      : offered_.empty()  ? "No camera is connected. Type rtsp://HOST/PATH, udp://:PORT, igtl://TRACKER:PORT"
+                          : "Or type rtsp://HOST/PATH, udp://:PORT, igtl://TRACKER:PORT";
   widgets::text_centered(ui, box.cut_top(row), ui.theme.strong,
                          trouble_.empty() ? widgets::kQuietText : widgets::kCaution, hint);
   const widgets::Rect field = box.cut_top(row).inset(ui.theme.px(6));

@@ -75,6 +75,7 @@ void draw_words(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
   widgets::Rect inner = area;
   (void)inner.cut_left(ui.theme.px(20));
   widgets::Rect head = inner.cut_top(ui.theme.title->FontSize);
+  (void)inner.cut_right(ui.theme.px(12));
   const Step step = screen.looked_at.value_or(step_of_now(screen.rail));
   std::string title = screen.is_exercise ? "Exercise" : numbered(step);
   if (is_back) title += ", once more";

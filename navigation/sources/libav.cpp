@@ -48,6 +48,8 @@ LumaPlane luma_plane(const AVFrame& picture) {
 }  // namespace
 
 std::string libav_message(int error) {
+  if (error == AVERROR_PROTOCOL_NOT_FOUND)
+    return "no kind of address that is known: rtsp://, rtsps://, udp://, srt://, tcp:// and gst: are";
   char text[AV_ERROR_MAX_STRING_SIZE] = {};
   av_strerror(error, text, sizeof text);
   return text;
