@@ -89,8 +89,11 @@ std::pair<std::string, bool> WorkstationWindow::status_words() {
   const std::string access = case_ == nullptr        ? std::string()
                              : case_->is_read_only() ? "READ-ONLY: the case " + case_->read_only_reason()
                                                      : case_->notice();
+  // A pedal that will not do what it was told to is not to be found out in the operation.
+  const std::string trouble = room_.trouble();
+  const bool is_read_only = case_ != nullptr && case_->is_read_only();
+  if (!trouble.empty() && !is_read_only) return {trouble, true};
   if (!access.empty()) return {access, true};
-  if (const std::string trouble = room_.trouble(); !trouble.empty()) return {trouble, true};
   return {case_ != nullptr ? case_->folder().string() : std::string(), false};
 }
 
