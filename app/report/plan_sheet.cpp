@@ -29,6 +29,7 @@ constexpr Ink kGrid{0.80, 0.47, 0.65}, kNorm{0.85, 0.72, 0.10}, kPlan{0.20, 0.62
     kBone{0.85, 0.55, 0.20};
 constexpr TextStyle kCaption{.size_pt = 7.5, .ink = kGray};
 constexpr double kCheck_pt = 7.5;
+constexpr double kAspect = 0.78;  // of the two pictures above the slices
 
 // A plane drawn on the page: its picture's place, and what of it lies where.
 struct PlanePicture {
@@ -119,7 +120,6 @@ void Sheet::line(const PlanePicture& picture, const Vector3d& from, const Vector
 }
 
 double Sheet::lateral(double x_mm, double y_mm, double width_mm) {
-  constexpr double kAspect = 0.78;
   PlanePicture picture{x_mm, y_mm, width_mm, kAspect * width_mm, {}, {760, static_cast<int>(kAspect * 760)}};
   if (!review_.has_bone(BoneKind::Femur)) return picture.height_mm;
   const auto& quadrant = review_.bone(BoneKind::Femur).surroundings.quadrant;
@@ -160,8 +160,8 @@ void Sheet::plateau(double x_mm, double y_mm, double width_mm) {
   scene::PictureRequest request;
   request.knee = &knee_;
   request.view = scene::ViewDirection::Plateau;
-  request.width = 900;
-  request.height = 702;
+  request.width = static_cast<int>(frame_.picture_px_per_mm * width_mm);
+  request.height = static_cast<int>(frame_.picture_px_per_mm * kAspect * width_mm);
   request.light_background = true;
   const auto picture = scene::render_plan_picture(request);
   const double height = pdf_.image(x_mm, y_mm, width_mm, picture.rgb, picture.width, picture.height);

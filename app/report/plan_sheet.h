@@ -13,6 +13,7 @@ struct Content;
 
 struct SheetFrame {
   double left_mm = 20, top_mm = 28, width_mm = 170, bottom_mm = 285;
+  double picture_px_per_mm = 12;  // of the bones' pictures
 };
 
 // Of which grafts a plan needs a sheet: of the single one, or of each bundle that a tunnel is planned for.

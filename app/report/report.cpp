@@ -55,7 +55,8 @@ class Report {
                       {.left_mm = pages_.left_mm(),
                        .top_mm = pages_.y_mm(),
                        .width_mm = kWidthMm,
-                       .bottom_mm = pages_.bottom_mm()},
+                       .bottom_mm = pages_.bottom_mm(),
+                       .picture_px_per_mm = options_.picture_px_per_mm},
                       content_, graft);
     }
     navigate_page();
@@ -74,9 +75,7 @@ class Report {
   // Two pictures side by side with their names; of the plan alone where there is no result.
   void pictures(scene::ViewDirection left, scene::ViewDirection right,
                 const std::optional<Result>& result = std::nullopt) {
-    constexpr int kPictureWidth = 1000;
-    const int picture_height = result ? 580 : 720;
-    const double width = (kWidthMm - 6) / 2, needed = width * picture_height / kPictureWidth;
+    const double width = (kWidthMm - 6) / 2, needed = result ? 0.72 * width : width;
     pages_.need(needed + 8);
     const double y = pages_.y_mm() + 3;
     double x = pages_.left_mm();
@@ -84,8 +83,8 @@ class Report {
       scene::PictureRequest request;
       request.knee = &content_.knee;
       request.view = view;
-      request.width = kPictureWidth;
-      request.height = picture_height;
+      request.width = static_cast<int>(options_.picture_px_per_mm * width);
+      request.height = static_cast<int>(options_.picture_px_per_mm * needed);
       request.light_background = true;
       if (result) {
         request.achieved = result->achieved;
@@ -275,6 +274,9 @@ void Report::navigate_page() {
   const auto& session = *content_.session;
   const auto& header = session.header();
   const SessionFigures figures = figures_of(session);
+  if (content_.check.outcome == recording::SessionCheck::Outcome::Broken)
+    pages_.sentence("NOT AS RECORDED: something of this session was changed or lost since (see Record).",
+                    {.bold = true, .ink = kWarning});
   std::vector<std::vector<std::string>> rows{
       {"Session", options_.is_deidentified ? "" : header.id},
       {"Started", options_.is_deidentified ? kNotTold : files::utc_in_words(header.started_utc)},
@@ -285,6 +287,7 @@ void Report::navigate_page() {
       {"Frames", std::to_string(figures.frames) + " in " + clock_text(figures.length_s)},
       {"World marker tracked", number(figures.world_percent, " % of the frames")},
       {"Lens mark found", number(figures.mark_percent, " % of the frames")},
+      {"Record", recording::check_words(content_.check)},
       {"Last hash of the record", content_.last_hash.empty() ? "none" : in_groups(content_.last_hash)}};
   if (const std::string guided = guided_bundles(session); !guided.empty())
     rows.push_back({"Guided to the tunnel", guided});
@@ -343,10 +346,7 @@ std::vector<std::string> write_report(const std::filesystem::path& case_folder,
     files::write_atomically(output, report_csv(content, options));
   else
     Report(content, options).drawn().save(output);
-  std::vector<std::string> missing;
-  for (const auto& [session, reason] : content.unreadable)
-    missing.push_back("the session " + session + " cannot be read and is not in it: " + reason);
-  return missing;
+  return shortcomings_of(content);
 }
 
 std::string make_report(const std::filesystem::path& case_folder, const ReportOptions& options) {

@@ -19,6 +19,8 @@ struct ReportOptions {
   // Says when it was made; without it the same case gives the same bytes at any time.
   bool says_when_made = true;
   Paper paper = Paper::A4;  // of a PDF
+  // Of a PDF's pictures of bones, at least 0.5: drawing them is most of what a report takes.
+  double picture_px_per_mm = 12;
   // Tells of this session, by its folder's name, whatever it came to, and of what was drilled before it.
   std::string session = {};
 };
@@ -26,8 +28,9 @@ struct ReportOptions {
 // Where none is named, the newest session with a drilled tunnel is reported, else the newest with a
 // registration; the report says so when there is none. By the output's ending: .json and .csv are the same
 // numbers for other programs, anything else is a PDF. Atomic. Throws IoError, InvalidInput (a broken case, a
-// session that is not there), DeviceError (no OpenGL at all for the pictures). Returns, in words, the
-// sessions that are not in it since they cannot be read; the report names them too.
+// session that is not there), DeviceError (no OpenGL at all for the pictures). Returns, in words, which
+// sessions are not in it since they cannot be read, and that its own is no longer what was recorded; the
+// report says so too. Reads all of that session, to hash it.
 std::vector<std::string> write_report(const std::filesystem::path& case_folder,
                                       const std::filesystem::path& output, const ReportOptions& options = {});
 // The bytes of such a file. Throws as write_report.

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "navigation/recording/case_sessions.h"
-#include "navigation/recording/session_check.h"
 #include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/plan_review/proposed_landmarks.h"
@@ -96,6 +95,7 @@ void add_earlier(const std::vector<std::filesystem::path>& sessions, Content& co
 void add_looked_at(Content& content) {
   const std::filesystem::path folder = content.session->folder();
   content.last_hash = recording::chain_head(folder);
+  content.check = recording::check_session(folder);
   try {
     content.marks = recording::read_marks(folder);
   } catch (const InvalidInput& error) {
@@ -135,6 +135,16 @@ void add_postoperative(Content& content) {
 }
 
 }  // namespace
+
+std::vector<std::string> shortcomings_of(const Content& content) {
+  std::vector<std::string> sentences;
+  for (const auto& [session, reason] : content.unreadable)
+    sentences.push_back("the session " + session + " cannot be read and is not in it: " + reason);
+  if (content.check.outcome == recording::SessionCheck::Outcome::Broken)
+    sentences.push_back("the session " + content.session->folder().filename().string() +
+                        " is no longer what was recorded: " + recording::check_words(content.check));
+  return sentences;
+}
 
 bool has_proposed_grid(const Content& content, bones::BoneKind bone) {
   if (!content.review->has_bone(bone)) return false;
@@ -184,6 +194,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
                   .marks = {},
                   .marks_problem = {},
                   .last_hash = {},
+                  .check = {},
                   .postoperative = {},
                   .places = {},
                   .postoperative_problem = {},

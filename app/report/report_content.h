@@ -12,6 +12,7 @@
 #include "app/report/report.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
+#include "navigation/recording/session_check.h"
 #include "navigation/recording/session_marks.h"
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
@@ -42,6 +43,7 @@ struct Content {
   recording::SessionMarks marks = {};  // of `session`: what whoever looked at it marked
   std::string marks_problem = {};      // why they cannot be read; empty when they can
   std::string last_hash = {};          // of the chain of `session`; empty: it has none, or a broken one
+  recording::SessionCheck check = {};  // whether `session` is what was recorded
   // With images after the operation, as the case's achieved.json keeps it.
   std::map<tunnels::TunnelKey, postop::Comparison> postoperative = {};
   // Of those of them that are against today's plan.
@@ -53,6 +55,8 @@ struct Content {
 // Throws IoError or InvalidInput (file, place, reason).
 [[nodiscard]] Content gather(const std::filesystem::path& folder, const ReportOptions& options);
 
+// What the report tells less of than was recorded, or tells of what was not: a sentence each.
+[[nodiscard]] std::vector<std::string> shortcomings_of(const Content& content);
 // Whether percentages and axes of this bone follow from landmarks of which nobody has looked at all.
 [[nodiscard]] bool has_proposed_grid(const Content& content, bones::BoneKind bone);
 // Where navigation says that it was drilled; nullopt where the case lacks the bone.

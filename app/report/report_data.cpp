@@ -88,7 +88,11 @@ ordered_json session_of(const Content& content, const ReportOptions& options) {
                        {"frames", figures.frames},
                        {"world_marker_tracked_percent", figures.world_percent},
                        {"lens_mark_found_percent", figures.mark_percent},
+                       {"is_as_recorded", nullptr},  // no hashes tell
+                       {"record", recording::check_words(content.check)},
                        {"last_hash", content.last_hash}};
+  if (content.check.outcome != recording::SessionCheck::Outcome::NoChain)
+    node["is_as_recorded"] = content.check.is_unbroken();
   node["registration"] = nullptr;
   if (session.registration()) node["registration"] = json_of(*session.registration());
   node["safety"] = ordered_json::object();

@@ -10,15 +10,22 @@ namespace arthronaut::scene {
 
 using bones::BoneKind;
 
-geometry::Bounds joint_bounds(const geometry::TriangleMesh& mesh, BoneKind kind,
-                              const landmarks::AnatomicalAxes& axes) {
-  constexpr double kShown_mm = 80;
+std::vector<Eigen::Vector3d> joint_end(const geometry::TriangleMesh& mesh, BoneKind kind,
+                                       const landmarks::AnatomicalAxes& axes, double shown_mm) {
   const Eigen::Vector3d into_bone = kind == BoneKind::Femur ? axes.proximal : Eigen::Vector3d(-axes.proximal);
   double joint = std::numeric_limits<double>::infinity();
   for (const auto& vertex : mesh.vertices_mm) joint = std::min(joint, vertex.dot(into_bone));
-  geometry::TriangleMesh part;
+  std::vector<Eigen::Vector3d> part;
   for (const auto& vertex : mesh.vertices_mm)
-    if (vertex.dot(into_bone) <= joint + kShown_mm) part.vertices_mm.push_back(vertex);
+    if (vertex.dot(into_bone) <= joint + shown_mm) part.push_back(vertex);
+  return part;
+}
+
+geometry::Bounds joint_bounds(const geometry::TriangleMesh& mesh, BoneKind kind,
+                              const landmarks::AnatomicalAxes& axes) {
+  constexpr double kShown_mm = 80;
+  geometry::TriangleMesh part;
+  part.vertices_mm = joint_end(mesh, kind, axes, kShown_mm);
   return geometry::bounds_of(part);
 }
 

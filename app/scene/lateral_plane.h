@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/scene/reslice.h"
 #include "planning/bones/bone.h"
@@ -11,8 +12,11 @@
 
 namespace arthronaut::scene {
 
-// Of the vertices within 80 mm of the joint, which is at the femur's lower end and at the tibia's upper one:
+// The vertices within so far of the joint, which is at the femur's lower end and at the tibia's upper one:
 // what a surgeon looks at of a bone that may be whole.
+[[nodiscard]] std::vector<Eigen::Vector3d> joint_end(const geometry::TriangleMesh& mesh, bones::BoneKind kind,
+                                                     const landmarks::AnatomicalAxes& axes, double shown_mm);
+// Of those within 80 mm.
 [[nodiscard]] geometry::Bounds joint_bounds(const geometry::TriangleMesh& mesh, bones::BoneKind kind,
                                             const landmarks::AnatomicalAxes& axes);
 

@@ -37,7 +37,8 @@ struct PictureRequest {
   bool light_background = false;  // for paper
 };
 
-// The tunnels are seen through the bone. Throws DeviceError when no OpenGL context can be made, InvalidInput
+// Of each bone what is near to the joint, and the planned tunnels, fill the picture. The tunnels are seen
+// through the bone. Throws DeviceError when no OpenGL context can be made, InvalidInput
 // when the case has none of the bones asked for or the size is not in 16..8192.
 [[nodiscard]] Image render_plan_picture(const PictureRequest& request);
 

@@ -30,8 +30,8 @@ TEST_F(Report, GivesTheSameNumbersAsJsonAndAsATable) {
       session / "achieved.json",
       {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = {}});
   const auto json_file = pdf().parent_path() / "report.json", csv_file = pdf().parent_path() / "report.csv";
-  write_report(knee_folder(), json_file, {.says_when_made = false});
-  write_report(knee_folder(), csv_file, {.says_when_made = false});
+  write(json_file, {.says_when_made = false});
+  write(csv_file, {.says_when_made = false});
   const auto json = nlohmann::json::parse(files::read_text(json_file));
   EXPECT_EQ(json.at("format"), "arthronaut.report");
   EXPECT_EQ(json.at("case").at("name"), "Knee of Ærø");
@@ -54,19 +54,19 @@ TEST_F(Report, GivesTheSameNumbersAsJsonAndAsATable) {
     expect_contains(csv, path.substr(1) + "," + value.dump() + "\n");
   }
   EXPECT_GT(numbers, 30u);
-  write_report(knee_folder(), json_file, {.with_identity = true});
+  write(json_file, {.with_identity = true});
   expect_contains(files::read_text(json_file), "Muster^Anna");
 }
 
 // In memory it is the same document as in a file; without its date it is the same at any time.
 TEST_F(Report, CanBeTheSameBytesEachTime) {
-  const std::string report = make_report(knee_folder(), {.says_when_made = false});
+  const std::string report = made({.says_when_made = false});
   EXPECT_EQ(report.substr(0, 5), "%PDF-");
-  EXPECT_EQ(report, make_report(knee_folder(), {.says_when_made = false}));
-  write_report(knee_folder(), pdf(), {.says_when_made = false});
+  EXPECT_EQ(report, made({.says_when_made = false}));
+  write(pdf(), {.says_when_made = false});
   EXPECT_EQ(report, files::read_text(pdf()));
   EXPECT_EQ(pdf_text().find("Report made"), std::string::npos);
-  write_report(knee_folder(), pdf());
+  write(pdf());
   expect_contains(pdf_text(), "Report made");
 }
 
@@ -102,7 +102,7 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
   doubted.metal_share = 0.37;
   doubted.reasons = {"metal hides most of the wall"};
   postop::write_achieved_file(achieved_file, comparisons);
-  write_report(knee_folder(), pdf());
+  write(pdf());
   std::string text = pdf_text();
   for (const char* const part :
        {"CT after the operation", "1.37 mm", "2.46 mm", "0.08", "8.4 mm; planned", "8.4 to 9.6 mm",
@@ -110,7 +110,7 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
         "tibia: metal hides most of the wall", "Banded: as the CT after the operation"})
     expect_contains(text, part);
   const auto json_file = pdf().parent_path() / "report.json";
-  write_report(knee_folder(), json_file);
+  write(json_file);
   const auto json = nlohmann::json::parse(files::read_text(json_file)).at("postoperative");
   ASSERT_EQ(json.size(), 2U);
   EXPECT_NEAR(json[0].at("offset_mm").get<double>(), 1.37, 1e-9);
@@ -123,13 +123,13 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
   EXPECT_FALSE(json[1].at("reliable").get<bool>());
   EXPECT_EQ(json[1].at("reasons").at(0), "metal hides most of the wall");
   const auto csv_file = pdf().parent_path() / "report.csv";
-  write_report(knee_folder(), csv_file);
+  write(csv_file);
   expect_contains(files::read_text(csv_file), "postoperative/1/achieved/diameter_mm,8.4\n");
   // Without landmarks the same percentages as everywhere, by what the shape proposes, and that is said.
   const auto placed = knee_.landmarks;
   knee_.landmarks.clear();
   cases::save_case(knee_folder(), knee_);
-  write_report(knee_folder(), json_file);
+  write(json_file);
   const auto bare = nlohmann::json::parse(files::read_text(json_file));
   EXPECT_EQ(bare.at("proposed_landmarks"), nlohmann::json({"femur", "tibia"}));
   const auto& by_shape = bare.at("postoperative").at(0);
@@ -142,7 +142,7 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
   EXPECT_NEAR(by_shape.at("off_plan").at("anterior_mm").get<double>(), place.off_mm.x(), 1e-9);
   EXPECT_NEAR(by_shape.at("grid").at(0).at("achieved_percent").get<double>(),
               place.grid.at(0).achieved_percent, 1e-9);
-  write_report(knee_folder(), pdf());
+  write(pdf());
   text = pdf_text();
   expect_contains(text, "proposed landmarks)");
   expect_contains(text, "Landmarks: proposed by the program");
@@ -153,21 +153,21 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
   moved.entry_mm += 3 * moved.direction.unitOrthogonal();
   knee_.plan.put(moved, "");
   cases::save_case(knee_folder(), knee_);
-  write_report(knee_folder(), pdf());
+  write(pdf());
   text = pdf_text();
   expect_contains(text, "of an earlier plan");
   EXPECT_EQ(text.find("Banded: as the CT"), std::string::npos) << "drawn beside another plan";
   // Nothing was found: no number is shown.
   comparisons.at(bones::BoneKind::Femur).tunnel = {};
   postop::write_achieved_file(achieved_file, comparisons);
-  write_report(knee_folder(), pdf());
+  write(pdf());
   expect_contains(pdf_text(), "no tunnel found");
   EXPECT_EQ(pdf_text().find("1.37 mm"), std::string::npos);
   files::write_atomically(achieved_file, "{");
-  write_report(knee_folder(), pdf());
+  write(pdf());
   expect_contains(pdf_text(), "NOT READABLE: achieved.json");
   std::filesystem::remove(achieved_file);
-  write_report(knee_folder(), pdf());
+  write(pdf());
   expect_contains(pdf_text(), "No comparison with images after the operation");
 }
 

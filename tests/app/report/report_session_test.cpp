@@ -46,7 +46,7 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   operation::write_achieved_file(
       session_folder / "achieved.json",
       {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = truth});
-  write_report(knee_folder(), pdf());
+  write(pdf());
   EXPECT_GE(page_count(pdf_info()), 3);
   const std::string text = pdf_text();
   expect_contains(text, "NOT RELIABLE");
@@ -91,7 +91,7 @@ TEST_F(Report, NamesTheTunnelOfTheOtherBundleThatWasDrilledInASessionBefore) {
   };
   record(am, "live");
   record(pl, "live");
-  write_report(knee_folder(), pdf());
+  write(pdf());
   const std::string text = pdf_text();
   expect_contains(text, "Planned against achieved: femur PL");
   expect_contains(text, "0.75 mm");
@@ -100,7 +100,7 @@ TEST_F(Report, NamesTheTunnelOfTheOtherBundleThatWasDrilledInASessionBefore) {
   expect_contains(text, "Drilled in the session " + first);
   // A rehearsal's is nobody's knee: after it the live ones are not its own.
   record(pl, "simulation");
-  write_report(knee_folder(), pdf());
+  write(pdf());
   EXPECT_EQ(pdf_text().find("Planned against achieved: femur AM"), std::string::npos);
 }
 
@@ -112,10 +112,10 @@ TEST_F(Report, TellsTheSessionThatIsAskedFor) {
   const std::string first = folders.front().filename().string(), newest = folders.back().filename().string();
   const auto json = knee_folder().parent_path() / "report.json";
   for (const std::string& session : {first, newest}) {
-    write_report(knee_folder(), json, {.session = session});
+    write(json, {.session = session});
     expect_contains(files::read_text(json), "\"id\": \"" + session + "\"");
   }
-  EXPECT_THROW(write_report(knee_folder(), json, {.session = "0099"}), InvalidInput);
+  EXPECT_THROW(write(json, {.session = "0099"}), InvalidInput);
 }
 
 // A session that a disk has spoilt takes no report away: it is named with its reason, and the one before it
@@ -125,22 +125,22 @@ TEST_F(Report, NamesASessionThatCannotBeRead) {
   (void)text_of_session("simulation", {});
   const std::filesystem::path newest = cases::session_folders(knee_folder()).back();
   files::write_atomically(newest / "session.sqlite", "spoilt");
-  EXPECT_THAT(write_report(knee_folder(), pdf()),
+  EXPECT_THAT(write(pdf()),
               testing::ElementsAre(testing::AllOf(testing::HasSubstr(newest.filename().string()),
                                                   testing::HasSubstr("session.sqlite: "))));
   std::string text = pdf_text();
   expect_contains(text, "NOT READABLE, and not in this report: the session " + newest.filename().string());
   expect_contains(text, "live: a camera, as it came");
   const auto json_file = pdf().parent_path() / "report.json";
-  write_report(knee_folder(), json_file);
+  write(json_file);
   const auto json = nlohmann::json::parse(files::read_text(json_file));
   EXPECT_EQ(json.at("unreadable_sessions").at(0).at("id"), newest.filename().string());
   EXPECT_EQ(json.at("session").at("source_kind"), "live");
-  write_report(knee_folder(), pdf(), {.is_deidentified = true});
+  write(pdf(), {.is_deidentified = true});
   text = pdf_text();
   expect_contains(text, "NOT READABLE, and not in this report: a session of this case");
   EXPECT_EQ(text.find(newest.filename().string()), std::string::npos);
-  write_report(knee_folder(), json_file, {.is_deidentified = true});
+  write(json_file, {.is_deidentified = true});
   const auto for_strangers = nlohmann::json::parse(files::read_text(json_file));
   EXPECT_EQ(for_strangers.at("unreadable_sessions").at(0).at("id"), nullptr);
   EXPECT_EQ(for_strangers.at("session").at("id"), nullptr);
@@ -182,7 +182,7 @@ TEST_F(Report, HasStepsMarksAndTheLastHash) {
   (void)text_of_session("live", {{recording::kVerifiedEvent, ""}, {recording::kVoidEvent, "bumped"}});
   const std::filesystem::path session = cases::session_folders(knee_folder()).back();
   recording::write_marks(session, {{3, 65'400'000'000, "marker, in glare"}, {9, 70'000'000'000, ""}});
-  write_report(knee_folder(), pdf());
+  write(pdf());
   const std::string text = pdf_text();
   for (const char* const part : {"bone registered", "registration verified", "registration void",
                                  "Marks of who looked", "marker, in glare", "(frame 3)", "(no note)"})
@@ -191,7 +191,7 @@ TEST_F(Report, HasStepsMarksAndTheLastHash) {
   ASSERT_EQ(hash.size(), 64u);
   for (const std::size_t at : {0, 16, 32, 48}) expect_contains(text, hash.substr(at, 16));
   files::write_atomically(recording::marks_file(session), "{");
-  write_report(knee_folder(), pdf());
+  write(pdf());
   // Without where the case lies: its folder may bear a name.
   expect_contains(pdf_text(), "NOT READABLE: sessions/");
   expect_contains(pdf_text(), "bone registered");
@@ -212,7 +212,7 @@ TEST_F(Report, Hazard40AnExerciseIsNotReported) {
   header["source"] = sources::kExerciseSource;
   files::write_atomically(exercise / "session.json", header.dump());
   const auto json_file = pdf().parent_path() / "report.json";
-  write_report(knee_folder(), json_file, {.says_when_made = false});
+  write(json_file, {.says_when_made = false});
   const auto json = nlohmann::json::parse(files::read_text(json_file));
   EXPECT_TRUE(!json.contains("achieved") || json.at("achieved").empty());
   EXPECT_NE(json.dump().find(operation.filename().string()), std::string::npos);
@@ -249,18 +249,18 @@ std::filesystem::path record_pictures(const std::filesystem::path& knee_folder) 
       result.guidance.angle_deg = 1.2;
       recorder.append(result);
     }
-    recorder.add_event({400'000'000, std::string(recording::kDrilledEvent), "", -1});
+    recorder.add_event({400'000'000, std::string(recording::kDrilledEvent), "achieved.json", -1});
     recorder.finish();
   }
   return folder;
 }
 
-// The pictures that were recorded at the moments that matter, the same bytes each time; without a video the
-// report says so, and the name of a video that is gone is not in it.
+// The pictures that were recorded at the moments that matter, the same bytes each time. Without the video the
+// report says so, and that the session is no longer what was recorded.
 TEST_F(Report, ShowsWhatTheSurgeonSaw) {
   expect_contains(text_of_session("live", {}), "The session keeps no video");
   const auto folder = record_pictures(knee_folder());
-  write_report(knee_folder(), pdf());
+  write(pdf());
   const std::string text = pdf_text();
   expect_contains(text, "Pictures of the session, with the plan");
   expect_contains(text, "0:00.2: aimed closest, 0.7 mm, 1.2\u00B0");
@@ -268,25 +268,35 @@ TEST_F(Report, ShowsWhatTheSurgeonSaw) {
   expect_contains(text, "5 in 0:00.4");  // frames
   expect_contains(text, "Blue: as planned.");
   EXPECT_EQ(text.find("-0.0"), std::string::npos) << text;
-  const std::string bytes = make_report(knee_folder(), {.says_when_made = false});
-  EXPECT_EQ(bytes, make_report(knee_folder(), {.says_when_made = false}));
+  const std::string bytes = made({.says_when_made = false});
+  EXPECT_EQ(bytes, made({.says_when_made = false}));
+  expect_contains(text, "as recorded: ");
+  const auto json_file = pdf().parent_path() / "report.json";
+  const auto record_in_json = [&] {
+    return nlohmann::json::parse(files::read_text(json_file)).at("session").at("is_as_recorded");
+  };
+  EXPECT_TRUE(write(json_file).empty());
+  EXPECT_EQ(record_in_json(), true);
   const auto video = recording::RecordedSession(folder).video();
   ASSERT_TRUE(std::filesystem::exists(video));
   std::filesystem::remove(video);
-  write_report(knee_folder(), pdf());
-  expect_contains(pdf_text(), "The session's video is not there, or cannot be read");
-  EXPECT_EQ(pdf_text().find(video.filename().string()), std::string::npos);
+  EXPECT_THAT(write(json_file),
+              testing::ElementsAre(testing::HasSubstr("is no longer what was recorded: video")));
+  EXPECT_EQ(record_in_json(), false);
+  write(pdf());
+  const std::string without = pdf_text();
+  expect_contains(without, "The session's video is not there, or cannot be read");
+  expect_contains(without, "NOT AS RECORDED");
 }
 
 // For strangers: not who, not when, and nothing that was filmed.
 TEST_F(Report, Hazard19ADeidentifiedOneShowsNoPictureAndNoDay) {
   const std::string session = record_pictures(knee_folder()).filename().string();
   const std::string day = cases::load_case(knee_folder()).created_utc.substr(0, 10);
-  write_report(knee_folder(), pdf(), {.is_deidentified = false, .says_when_made = false});
+  write(pdf(), {.is_deidentified = false, .says_when_made = false});
   for (const std::string& told : {std::string("Pictures of the session"), session, day})
     expect_contains(pdf_text(), told);
-  write_report(knee_folder(), pdf(),
-               {.with_identity = true, .is_deidentified = true, .says_when_made = false});
+  write(pdf(), {.with_identity = true, .is_deidentified = true, .says_when_made = false});
   for (const std::string& told : {std::string("Pictures of the session"), session, day})
     EXPECT_EQ(pdf_text().find(told), std::string::npos) << told;
 }
@@ -359,7 +369,7 @@ TEST_F(Report, DrawsNoPlanOverATool) {
     if (guide_is_tracked) see(guide.marker_id, camera_from_guide);
     recorder.append(result);
     recorder.finish();
-    write_report(knee_folder(), pdf());
+    write(pdf());
     const cv::Mat green = green_of(pdf());
     EXPECT_GT(cv::countNonZero(green), 500);
     const camera::CameraModel camera(options.calibration, 0, options.refractive_index);

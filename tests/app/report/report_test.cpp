@@ -16,7 +16,7 @@ namespace {
 
 // A case that has only been planned: the plan's numbers, versions and what the software is not.
 TEST_F(Report, OfAPlanAloneSaysThatNothingWasNavigated) {
-  write_report(knee_folder(), pdf());
+  write(pdf());
   EXPECT_GE(page_count(pdf_info()), 2);
   const std::string text = pdf_text();
   expect_contains(text, "Knee of Ærø");
@@ -28,7 +28,7 @@ TEST_F(Report, OfAPlanAloneSaysThatNothingWasNavigated) {
 
 // The sheet has every check of both tunnels, in words, and the percentages of the entries.
 TEST_F(Report, HasThePlanOnOneSheet) {
-  write_report(knee_folder(), pdf());
+  write(pdf());
   const std::string text = pdf_text();
   expect_contains(text, "The plan on one sheet");
   expect_contains(text, "True lateral view");
@@ -46,7 +46,7 @@ TEST_F(Report, SaysWhereTheLateralViewIsNotTrue) {
   for (const char* side : {"lateral", "medial"})
     for (const char* part : {"center", "posterior"}) marks.erase(std::string(side) + "_condyle_" + part);
   cases::save_case(knee_folder(), knee_);
-  write_report(knee_folder(), pdf());
+  write(pdf());
   EXPECT_EQ(pdf_text().find("True lateral view"), std::string::npos);
   expect_contains(pdf_text(), "Lateral view along the scanner");  // lines break after that
 }
@@ -54,10 +54,10 @@ TEST_F(Report, SaysWhereTheLateralViewIsNotTrue) {
 // Hazard 46: whoever reads the sheet alone reads what whoever imported the bone read.
 TEST_F(Report, Hazard46SaysWhatSpokeAgainstABone) {
   cases::save_bone_doubts(knee_folder(), {{bones::BoneKind::Tibia, {"the images end within it"}}});
-  write_report(knee_folder(), pdf());
+  write(pdf());
   expect_contains(pdf_text(), "Bone: the images end within it");
   const auto json = knee_folder().parent_path() / "report.json";
-  write_report(knee_folder(), json);
+  write(json);
   expect_contains(files::read_text(json), R"("bone_doubts": {
     "tibia": [
       "the images end within it"
@@ -73,7 +73,7 @@ TEST_F(Report, OfOneBoneAlone) {
     std::erase_if(one.plan.tunnels, [&](const auto& tunnel) { return tunnel.first != kind; });
     const auto folder = knee_folder().parent_path() / (std::string(bones::to_text(kind)) + ".arthro");
     cases::save_case(folder, one);
-    write_report(folder, pdf());
+    write_report(folder, pdf(), {.picture_px_per_mm = 1});
     EXPECT_GE(page_count(pdf_info()), 2);
     expect_contains(pdf_text(), std::string(bones::to_text(kind)));
   }
@@ -82,10 +82,10 @@ TEST_F(Report, OfOneBoneAlone) {
 // Hazard 19: nobody is named unless that was asked for.
 TEST_F(Report, Hazard19NamesThePatientOnlyWhenAsked) {
   cases::save_identity(knee_folder(), {"Muster^Anna", "4711", "19900131"});
-  write_report(knee_folder(), pdf());
+  write(pdf());
   for (const char* word : {"Muster", "4711", "1990"})
     EXPECT_EQ((pdf_text() + pdf_info()).find(word), std::string::npos) << word;
-  write_report(knee_folder(), pdf(), {.with_identity = true});
+  write(pdf(), {.with_identity = true});
   expect_contains(pdf_text(), "Muster, Anna");
   expect_contains(pdf_text(), "1990-01-31");
 }
@@ -122,18 +122,18 @@ TEST_F(Report, FitsA4AndLetter) {
 
 // Hazard 21: a plan of another mesh is no valid plan, and the report says so.
 TEST_F(Report, Hazard21SaysThatThePlanIsOfAnotherMesh) {
-  write_report(knee_folder(), pdf());
+  write(pdf());
   EXPECT_EQ(pdf_text().find("NOT VALID"), std::string::npos);
   cases::Plan plan = cases::load_case(knee_folder()).plan;
   plan.mesh_sha256[bones::BoneKind::Femur] = std::string(64, '0');
   cases::save_plan(knee_folder(), plan);
-  write_report(knee_folder(), pdf());
+  write(pdf());
   expect_contains(pdf_text(), "NOT VALID");
 }
 
 TEST_F(Report, LeavesNothingBehindWhenItFails) {
   EXPECT_THROW(write_report(knee_folder() / "nothing", pdf()), IoError);
-  EXPECT_THROW(write_report(knee_folder(), "/nowhere/report.pdf"), IoError);
+  EXPECT_THROW(write("/nowhere/report.pdf"), IoError);
   EXPECT_FALSE(std::filesystem::exists(pdf()));
 }
 

@@ -23,11 +23,23 @@ namespace arthronaut::report {
 class Report : public ::testing::Test {
  protected:
   void SetUp() override {
-    knee_ = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3.0}), "Knee of Ærø");
+    static const cases::Case made =
+        phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3.0}), "Knee of Ærø");
+    knee_ = made;
     cases::save_case(knee_folder(), knee_);
   }
   std::filesystem::path knee_folder() const { return folder_ / "Knee.arthro"; }
   std::filesystem::path pdf() const { return folder_ / "report.pdf"; }
+
+  // With small pictures, which are most of the work; how they look is tested elsewhere.
+  std::vector<std::string> write(const std::filesystem::path& output, ReportOptions options = {}) const {
+    options.picture_px_per_mm = 1;
+    return write_report(knee_folder(), output, options);
+  }
+  std::string made(ReportOptions options) const {
+    options.picture_px_per_mm = 1;
+    return make_report(knee_folder(), options);
+  }
 
   std::string pdf_info() const { return output_of("pdfinfo " + pdf().string()); }
   // Words that a reader finds without complaint: libharu's own text map made it warn.
@@ -54,7 +66,7 @@ class Report : public ::testing::Test {
     recorder.set_registration(registration);
     for (const auto& [kind, text] : events) recorder.add_event({0, std::string(kind), text, -1});
     recorder.finish();
-    write_report(knee_folder(), pdf());
+    write(pdf());
     return pdf_text();
   }
 

@@ -53,7 +53,7 @@ TEST_F(PlanPicture, EveryViewShowsBoneAndPlan) {
     pictures.push_back(render_plan_picture(request_of(view)));
     const Image& image = pictures.back();
     ASSERT_EQ(image.rgb.size(), 3U * 320 * 240);
-    EXPECT_GT(share_of(image, is_bone), 0.05) << to_text(view);
+    EXPECT_GT(share_of(image, is_bone), 0.2) << to_text(view) << ": what matters is small";
     EXPECT_LT(share_of(image, is_bone), 0.90) << to_text(view);
     EXPECT_GT(share_of(image, is_plan), 0.001) << to_text(view);
   }
