@@ -152,7 +152,9 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   EXPECT_LE(findings[0].at("from"), 7);
   EXPECT_GT(findings[0].at("to"), 7);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "differences.csv"));
-  EXPECT_EQ(run_program({"report", knee, "-o", folder_ / "report.json"}).exit_code, 0);
+  const auto reported = run_program({"report", knee, "-o", folder_ / "report.json"});
+  EXPECT_EQ(reported.exit_code, 4);
+  EXPECT_THAT(reported.errors, HasSubstr("is no longer what was recorded: session.sqlite: frames 0 to"));
 
   // 2^32 + 2 is no marker 2.
   ASSERT_EQ(sqlite3_open((session / "session.sqlite").c_str(), &database), SQLITE_OK);
