@@ -226,7 +226,9 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
   proposal.reason.clear();
   const geometry::Surface surface(mesh);
   std::optional<Shape> shape;
-  proposal.reason = "the surface has no joint's end that comes near to its own mirror image";
+  proposal.reason =
+      "the surface has no joint's end that comes near to its own mirror image; is it cut off through the "
+      "joint's end?";
   for (const RoughFrame& rough : rough_frames(mesh, surface, bones::BoneKind::Femur, options.stop)) {
     shape = find_shape(mesh, surface, rough, options.stop, proposal.reason);
     if (shape) break;

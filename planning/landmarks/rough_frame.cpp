@@ -25,7 +25,12 @@ constexpr double kLeastCut_mm2 = 300;  // a smaller plane face may be the bone's
 constexpr double kRoughCut_mm = 0.3;   // root mean square off its plane; a flat side of a condyle has 0.4
 // Under a cut the bone is about as wide as the cut; under a flat side of a condyle it widens at once.
 constexpr double kBelowCut_mm = 4, kWidening = 2.2;
-constexpr double kCutThickness_mm = 0.8;  // marching cubes and smoothing round a cut's edge
+// From a cut across its shaft a femur goes on over more than the cut is long; where the images end in front
+// of it they cut it lengthwise, over more than is left behind.
+constexpr double kLeastBelowCut = 0.8;
+constexpr double kAsLarge = 0.4, kAcross = 0.5;  // share of the area; cosine between two cuts
+constexpr double kCutThickness_mm = 0.8;         // marching cubes and smoothing round a cut's edge
+constexpr double kLongElongation = 1.6;          // of a long piece of a bone
 constexpr double kWholeElongation = 3;    // of standard deviations, along and across a bone without a cut
 constexpr double kSlantingSine = 0.5;     // a cut 20 degrees off, and the valgus of the shaft
 constexpr double kGreatestMisfit_mm = 6;  // a mirrored point further off counts as so far off
@@ -54,17 +59,28 @@ std::vector<SurfaceSample> smoothed(const std::vector<SurfaceSample>& samples) {
   return smooth;
 }
 
-// The largest plane face that supports the whole surface and that the bone goes on under with about its
+struct Cuts {
+  std::optional<Cut> shaft;       // across it
+  std::optional<Cut> lengthwise;  // of a femur
+  std::optional<Cut> aside;       // as deep as the shaft's, and at right angles to it
+  // Which of two is the shaft's nobody can tell by them.
+  [[nodiscard]] bool is_ambiguous() const { return aside && aside->area_mm2 > kAsLarge * shaft->area_mm2; }
+  [[nodiscard]] bool hold(const SurfaceSample& s) const {
+    return (shaft && shaft->holds(s)) || (lengthwise && lengthwise->holds(s));
+  }
+};
+
+// The largest plane faces that support the whole surface and that the bone goes on under with about its
 // width.
-std::optional<Cut> find_cut(const geometry::TriangleMesh& mesh, const std::vector<SurfaceSample>& given,
-                            double area_each_mm2, const std::stop_token& stop) {
+Cuts find_cuts(const geometry::TriangleMesh& mesh, const std::vector<SurfaceSample>& given,
+               double area_each_mm2, bones::BoneKind bone, const std::stop_token& stop) {
   const auto samples = smoothed(given);
-  Cut best;
+  Cuts cuts;
   for (std::size_t i = 0; i < samples.size() && !stop.stop_requested(); i += 8) {
     Vector3d normal = samples[i].normal;
     double offset = samples[i].point_mm.dot(normal);
     std::size_t held = 0;
-    double off_plane_mm = 0;
+    double off_plane_mm = 0, length_mm = 0;
     for (int round = 0; round < 3; ++round) {  // each about the plane through what the one before it held
       const double reach = round == 0 ? 2 * kCutThickness_mm : kCutThickness_mm;
       Vector3d center = Vector3d::Zero();
@@ -82,22 +98,32 @@ std::optional<Cut> find_cut(const geometry::TriangleMesh& mesh, const std::vecto
       center /= static_cast<double>(held);
       moment = moment / static_cast<double>(held) - center * center.transpose();
       const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(moment);
+      length_mm = std::sqrt(12 * std::max(0.0, solver.eigenvalues()[2]));  // were it even
       const Vector3d fitted = solver.eigenvectors().col(0);
       off_plane_mm = std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
       normal = fitted.dot(normal) < 0 ? Vector3d(-fitted) : fitted;
       offset = center.dot(normal);
     }
     const double area = static_cast<double>(held) * area_each_mm2;
-    if (held < 8 || area <= best.area_mm2 || off_plane_mm > kRoughCut_mm) continue;
+    if (held < 8 || area < kLeastCut_mm2 || off_plane_mm > kRoughCut_mm) continue;
+    double deepest_mm = 0;
+    for (const auto& s : samples) deepest_mm = std::max(deepest_mm, offset - s.point_mm.dot(normal));
+    const bool is_lengthwise = bone == bones::BoneKind::Femur && deepest_mm < kLeastBelowCut * length_mm;
+    std::optional<Cut>& best = is_lengthwise ? cuts.lengthwise : cuts.shaft;
+    const bool is_aside = bone == bones::BoneKind::Femur && !is_lengthwise && cuts.shaft &&
+                          std::abs(cuts.shaft->normal.dot(normal)) < kAcross;
+    if (best && area <= best->area_mm2 && !(is_aside && (!cuts.aside || area > cuts.aside->area_mm2)))
+      continue;
     const auto beyond = std::count_if(samples.begin(), samples.end(), [&](const auto& s) {
       return s.point_mm.dot(normal) > offset + kCutThickness_mm;
     });
     if (static_cast<double>(beyond) > 0.004 * static_cast<double>(samples.size())) continue;
     if (sections_across(mesh, normal, offset - kBelowCut_mm, 1, 1)[0].area_mm2 > kWidening * area) continue;
-    best = {normal, offset, area};
+    const Cut cut{normal, offset, area};
+    if (is_aside) cuts.aside = area > best->area_mm2 ? *best : cut;
+    if (!best || area > best->area_mm2) best = cut;
   }
-  if (best.area_mm2 < kLeastCut_mm2) return std::nullopt;
-  return best;
+  return cuts;
 }
 
 // A plane: normal and offset.
@@ -226,7 +252,8 @@ struct JointEnd {
   double greatest_sine = 0.75;  // of what it may be off
 };
 
-std::vector<JointEnd> joint_ends(const std::vector<SurfaceSample>& samples, const std::optional<Cut>& cut) {
+std::vector<JointEnd> joint_ends(const std::vector<SurfaceSample>& samples, const Cuts& cuts) {
+  const std::optional<Cut>& cut = cuts.shaft;
   Vector3d mean = Vector3d::Zero();
   for (const auto& s : samples) mean += s.point_mm / static_cast<double>(samples.size());
   Matrix3d moment = Matrix3d::Zero();
@@ -234,9 +261,12 @@ std::vector<JointEnd> joint_ends(const std::vector<SurfaceSample>& samples, cons
   const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(moment);
   const Vector3d longest = principal.eigenvectors().col(2);
   const double elongation = std::sqrt(principal.eigenvalues()[2] / principal.eigenvalues()[1]);
+  // What parted the joint may have left its end as flat as a saw.
+  if (cuts.lengthwise && elongation > kLongElongation) return {{longest}, {-longest}};
+  if (cuts.is_ambiguous() && elongation <= kLongElongation) return {};
   if (cut) {
     // A long piece's axis tells more than the saw's plane.
-    if (elongation > 1.6)
+    if (elongation > kLongElongation)
       return {{longest.dot(cut->normal) > 0 ? Vector3d(-longest) : longest, kSlantingSine}};
     return {{-cut->normal, kSlantingSine}};
   }
@@ -255,15 +285,14 @@ std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, const g
   const auto samples = sample_surface(mesh, geometry::surface_area_mm2(mesh) / kSamples);
   if (samples.empty()) return {};
   const double area_each = geometry::surface_area_mm2(mesh) / static_cast<double>(samples.size());
-  const auto cut = find_cut(mesh, samples, area_each, stop);
+  const Cuts cuts = find_cuts(mesh, samples, area_each, bone, stop);
   std::vector<std::pair<double, RoughFrame>> found;
-  for (const JointEnd& end : joint_ends(samples, cut)) {
+  for (const JointEnd& end : joint_ends(samples, cuts)) {
     double tip = -1e9;
     for (const auto& s : samples) tip = std::max(tip, s.point_mm.dot(end.direction));
     std::vector<Vector3d> points;
     for (const auto& s : samples) {
-      if (s.point_mm.dot(end.direction) > tip - kJointEnd_mm && !(cut && cut->holds(s)))
-        points.push_back(s.point_mm);
+      if (s.point_mm.dot(end.direction) > tip - kJointEnd_mm && !cuts.hold(s)) points.push_back(s.point_mm);
     }
     if (points.size() < 200) continue;
     if (points.size() > 500) {
@@ -294,9 +323,9 @@ std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, const g
       frame.bone_from_frame.col(0) *= -1;
       frame.bone_from_frame.col(1) *= -1;
     }
-    if (cut) {
-      frame.cut_normal = cut->normal;
-      frame.cut_offset_mm = cut->offset_mm;
+    if (cuts.shaft) {
+      frame.cut_normal = cuts.shaft->normal;
+      frame.cut_offset_mm = cuts.shaft->offset_mm;
     }
     found.push_back({mirror->cost, frame});
   }

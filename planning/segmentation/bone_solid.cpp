@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "planning/segmentation/marrow.h"
+
 namespace arthronaut::segmentation {
 
 namespace {
@@ -14,44 +16,6 @@ using images::VoxelMask;
 // An appendage is worn off from its bone within so much, and has at least this volume then, at most this part
 // of the bone's.
 constexpr double kDeepestNeck_mm = 4.5, kLeastAppendage_mm3 = 1000, kLargestAppendage_fraction = 0.35;
-
-// Fills marrow that the end of the volume cuts open: what its faces show within the bone, over one or several
-// of them. Outside is what comes to a face of the box that is none of the volume's, where the bone is kept
-// off by a margin; where all faces are, the largest piece.
-void cap_ends(const Volume& volume, BoneSolid& solid) {
-  VoxelMask& mask = solid.mask;
-  const Eigen::Vector3i last = mask.size - Eigen::Vector3i::Ones();
-  VoxelMask open(mask.size);
-  for (int axis = 0; axis < 3; ++axis) {
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    Eigen::Vector3i at;
-    for (const int end : {0, last[axis]}) {
-      at[axis] = end;
-      for (at[v] = 0; at[v] <= last[v]; ++at[v]) {
-        for (at[u] = 0; at[u] <= last[u]; ++at[u]) {
-          const std::size_t voxel = mask.index(at.x(), at.y(), at.z());
-          open.inside[voxel] = mask.inside[voxel] == 0;
-        }
-      }
-    }
-  }
-  const auto is_within_volume = [&](std::size_t voxel) {
-    const auto nx = static_cast<std::size_t>(mask.size.x()), ny = static_cast<std::size_t>(mask.size.y());
-    const Eigen::Array3i at(static_cast<int>(voxel % nx), static_cast<int>(voxel / nx % ny),
-                            static_cast<int>(voxel / (nx * ny)));
-    const Eigen::Array3i in_volume = at + solid.box.first.array();
-    return (at == 0 && in_volume > 0).any() ||
-           (at == last.array() && in_volume < volume.size.array() - 1).any();
-  };
-  std::vector<images::VoxelPiece> pieces = images::connected_pieces(open, 1);
-  const auto comes_out = [&](const images::VoxelPiece& piece) {
-    return std::any_of(piece.voxels.begin(), piece.voxels.end(), is_within_volume);
-  };
-  const bool has_margin = std::any_of(pieces.begin(), pieces.end(), comes_out);
-  for (std::size_t i = 0; i < pieces.size(); ++i)
-    if (has_margin ? !comes_out(pieces[i]) : i > 0)
-      for (const std::size_t voxel : pieces[i].voxels) mask.inside[voxel] = 1;
-}
 
 Box padded(const Volume& volume, const Eigen::Vector3i& low, const Eigen::Vector3i& high, double margin_mm) {
   const Eigen::Vector3i margin = (margin_mm / volume.spacing_mm().array()).ceil().cast<int>() + 2;
@@ -64,8 +28,7 @@ Box padded(const Volume& volume, const Eigen::Vector3i& low, const Eigen::Vector
 
 void close_and_fill(const Volume& volume, BoneSolid& solid, double closing_radius_mm) {
   if (closing_radius_mm > 0) images::close_gaps(solid.mask, volume.spacing_mm(), closing_radius_mm);
-  cap_ends(volume, solid);
-  images::fill_unreached(solid.mask);
+  fill_marrow(volume, solid);
 }
 
 }  // namespace
@@ -155,13 +118,21 @@ SectionProfile profile_of(const Volume& volume, const BoneSolid& solid) {
   return profile;
 }
 
-std::vector<Eigen::Vector3d> take_off_appendage(const Volume& volume, BoneSolid& solid) {
+std::vector<Eigen::Vector3d> take_off_appendage(const Volume& volume, BoneSolid& solid,
+                                                const VoxelMask& marrow) {
   const Eigen::Vector3d spacing = volume.spacing_mm();
   const double voxel_mm3 = std::abs(volume.lps_from_index.linear().determinant());
-  const std::vector<float> depths = images::depths_mm(solid.mask, spacing);
+  VoxelMask grown = solid.mask;
+  std::vector<std::size_t> added;
+  for (std::size_t v = 0; v < grown.inside.size(); ++v) {
+    if (!marrow.inside[v]) continue;
+    grown.inside[v] = 0;
+    added.push_back(v);
+  }
+  const std::vector<float> depths = images::depths_mm(grown, spacing);
   std::vector<Eigen::Vector3d> taken;
   for (double radius = 1.5; radius <= kDeepestNeck_mm; radius += 1) {
-    VoxelMask worn = solid.mask;
+    VoxelMask worn = grown;
     for (std::size_t v = 0; v < depths.size(); ++v) worn.inside[v] = depths[v] > radius;
     const auto pieces =
         images::connected_pieces(worn, static_cast<std::size_t>(kLeastAppendage_mm3 / voxel_mm3));
@@ -169,10 +140,11 @@ std::vector<Eigen::Vector3d> take_off_appendage(const Volume& volume, BoneSolid&
     if (static_cast<double>(pieces[1].count) >
         kLargestAppendage_fraction * static_cast<double>(pieces[0].count))
       continue;
-    std::vector<std::size_t> others;
+    std::vector<std::size_t> others, kept = added;
+    kept.insert(kept.end(), pieces[0].voxels.begin(), pieces[0].voxels.end());
     for (std::size_t p = 1; p < pieces.size(); ++p)
       others.insert(others.end(), pieces[p].voxels.begin(), pieces[p].voxels.end());
-    const auto to_kept = images::distances_mm(solid.mask.size, pieces[0].voxels, spacing),
+    const auto to_kept = images::distances_mm(solid.mask.size, kept, spacing),
                to_others = images::distances_mm(solid.mask.size, others, spacing);
     for (std::size_t v = 0; v < depths.size(); ++v) {
       if (!solid.mask.inside[v] || to_kept[v] < to_others[v]) continue;

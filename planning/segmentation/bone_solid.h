@@ -38,8 +38,10 @@ struct SectionProfile {
 };
 [[nodiscard]] SectionProfile profile_of(const images::Volume& volume, const BoneSolid& solid);
 
-// Takes away what hangs on the bone by a neck and is much smaller: the fibula, the patella. Returns the part
-// that was taken away, empty when there was none.
-[[nodiscard]] std::vector<Eigen::Vector3d> take_off_appendage(const images::Volume& volume, BoneSolid& solid);
+// Takes away what hangs on the bone by a neck and is much smaller: the fibula, the patella. `marrow`, of the
+// solid's box, was added to the bone and is no part of a neck. Returns the part that was taken away, empty
+// when there was none.
+[[nodiscard]] std::vector<Eigen::Vector3d> take_off_appendage(const images::Volume& volume, BoneSolid& solid,
+                                                              const images::VoxelMask& marrow);
 
 }  // namespace arthronaut::segmentation

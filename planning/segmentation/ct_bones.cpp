@@ -10,6 +10,7 @@
 #include "planning/segmentation/edge_surface.h"
 #include "planning/segmentation/fibula.h"
 #include "planning/segmentation/joint_space.h"
+#include "planning/segmentation/marrow.h"
 
 namespace arthronaut::segmentation {
 
@@ -34,6 +35,8 @@ constexpr double kMostBelowCondyles_mm = 42, kMostAbovePlateau_mm = 18;
 constexpr double kSureJoint_mm2 = 700, kLeastPart_mm3 = 8000;
 // Knees lie further apart than bones of one.
 constexpr double kBetweenKnees_mm = 70;
+// Between the middles of tibia and fibula, level. Rails of the table are as slender, and lie further off.
+constexpr double kFurthestFibula_mm = 60;
 
 struct Candidate {
   BoneSolid solid;
@@ -76,6 +79,10 @@ Found found_pieces(const Volume& volume, const CtBonesOptions& options) {
     candidate.solid = solid_of(volume, piece.voxels, options.closing_radius_mm);
     candidate.profile = profile_of(volume, candidate.solid);
     if (candidate.profile.volume_mm3 < kLeastPiece_mm3) continue;
+    if (candidate.profile.largest_mm2() < kLeastSection_mm2) {  // it may be the cortex alone
+      BoneSolid whole = candidate.solid;
+      if (close_marrow(volume, whole).widest_mm > 0) candidate.profile = profile_of(volume, whole);
+    }
     if (candidate.profile.largest_mm2() < kLeastSection_mm2) {
       found.slender.push_back(
           {candidate.profile.center_mm, candidate.profile.high_mm() - candidate.profile.low_mm});
@@ -212,7 +219,7 @@ struct Appendage {
   bool stays = false;  // it is seen, and could not be parted
 };
 
-Appendage take_off(const Volume& volume, BoneKind kind, Candidate& candidate) {
+Appendage take_off(const Volume& volume, BoneKind kind, Candidate& candidate, const VoxelMask& marrow) {
   Appendage appendage;
   bool is_seen = false;
   if (kind == BoneKind::Tibia) {  // by a neck alone its shaft would be parted from its head
@@ -220,7 +227,7 @@ Appendage take_off(const Volume& volume, BoneKind kind, Candidate& candidate) {
     appendage.taken_mm = std::move(parted.taken_mm);
     is_seen = parted.outcome == PartedFibula::Outcome::NotParted;
   }
-  if (appendage.taken_mm.empty()) appendage.taken_mm = take_off_appendage(volume, candidate.solid);
+  if (appendage.taken_mm.empty()) appendage.taken_mm = take_off_appendage(volume, candidate.solid, marrow);
   appendage.stays = is_seen && appendage.taken_mm.empty();
   if (!appendage.taken_mm.empty()) candidate.profile = profile_of(volume, candidate.solid);
   return appendage;
@@ -310,12 +317,23 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
     work(0);
     for (auto& other : others) other.get();
   };
-  for_each_bone([&](std::size_t i) { appendages[i] = take_off(volume, wanted[i].first, *wanted[i].second); });
+  std::vector<double> gaps_mm(wanted.size());
+  for_each_bone([&](std::size_t i) {
+    Candidate& candidate = *wanted[i].second;
+    const ClosedMarrow closed = close_marrow(volume, candidate.solid);
+    gaps_mm[i] = closed.widest_mm;
+    if (closed.widest_mm > 0) candidate.profile = profile_of(volume, candidate.solid);
+    appendages[i] = take_off(volume, wanted[i].first, candidate, closed.voxels);
+  });
   tell(options, 0.8);
   result.bones.resize(wanted.size());
   for_each_bone([&](std::size_t i) {
     const Candidate* other = wanted[i].second == chosen.femur ? chosen.tibia : chosen.femur;
     result.bones[i] = surface_of(volume, wanted[i].first, *wanted[i].second, other, appendages[i], options);
+    if (gaps_mm[i] > 0)
+      result.bones[i].notes.push_back(files::format(
+          "its cortex has gaps of up to %.0f mm at the threshold, across which the marrow was closed off",
+          gaps_mm[i]));
   });
   for (CtBone& bone : result.bones) {
     if (is_joined)
@@ -336,9 +354,10 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
     }
     double tallest = 25;
     for (const Slender& s : found.slender) {
-      const double aside = s.center_mm.x() - tibia.center_mm.x();
+      const Eigen::Vector3d from_tibia = s.center_mm - tibia.center_mm;
+      const double aside = from_tibia.x();
       if (s.height_mm < tallest || s.center_mm.z() > tibia.high_mm() || std::abs(aside) < 8 ||
-          std::abs(aside) > 60)
+          from_tibia.head<2>().norm() > kFurthestFibula_mm)
         continue;
       tallest = s.height_mm;
       result.side_by_fibula = aside > 0 ? Side::Left : Side::Right;

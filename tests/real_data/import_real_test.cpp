@@ -193,11 +193,11 @@ TEST(ImportRealVolumes, BonesOfTheCts) {
   }
 }
 
-// The images of one end within the femur, in front: of what is left of it no landmarks are proposed, where
-// they turned it over. The other one is whole, and its landmarks tell its axes.
-TEST(ImportRealVolumes, AFemurThatIsCutOffInFrontGivesNoLandmarks) {
+// The images of both end within the femur, in front. Of a long one that cut is told from the shaft's; of a
+// short one it is not, and no landmarks are proposed, where they came out turned by a right angle.
+TEST(ImportRealVolumes, AFemurThatIsCutOffInFrontGivesNoTurnedLandmarks) {
   ARTHRONAUT_REQUIRE_DATA(cut, "volumes/knee-ct-028/CT");
-  ARTHRONAUT_REQUIRE_DATA(whole, "volumes/knee-ct-051/CT");
+  ARTHRONAUT_REQUIRE_DATA(longer, "volumes/knee-ct-051/CT");
   const auto proposed_of = [](const std::filesystem::path& folder) {
     BoneImportOptions options;
     options.side = Side::Left;
@@ -205,10 +205,13 @@ TEST(ImportRealVolumes, AFemurThatIsCutOffInFrontGivesNoLandmarks) {
     EXPECT_EQ(import.bones.at(0).bone.kind, BoneKind::Femur);
     return landmarks::propose(import.bones.at(0).bone.mesh, BoneKind::Femur, {.side = Side::Left});
   };
-  const landmarks::Proposal of_cut = proposed_of(cut);
+  const landmarks::Proposal of_cut = proposed_of(cut), of_longer = proposed_of(longer);
   EXPECT_FALSE(of_cut.is_usable());
   EXPECT_THAT(of_cut.reason, HasSubstr("cut off through the joint's end"));
-  EXPECT_TRUE(proposed_of(whole).is_usable());
+  ASSERT_TRUE(of_longer.is_usable()) << of_longer.reason;
+  EXPECT_GT(of_longer.axes.proximal.z(), 0.8);
+  EXPECT_LT(of_longer.axes.anterior.y(), -0.8);
+  EXPECT_GT(of_longer.axes.lateral.x(), 0.8);
 }
 
 // An oblique label map: the bones must stand above each other in the patient, and have the size of a knee.

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <functional>
 
 #include "planning/bones/mesh_repair.h"
 #include "planning/geometry/error.h"
@@ -221,41 +223,100 @@ TEST(CtBones, OneBoneAloneIsWhatItIs) {
   EXPECT_FALSE(tibia.side_by_fibula.has_value());
 }
 
-// A small field of view ends in front within the shaft, and above: its marrow is open to both ends of the
-// volume at once, enclosed within neither.
-TEST(CtBones, MarrowThatTwoEndsOfTheVolumeOpenIsClosedOff) {
+// The knee's femur alone in a small field of view: it ends in front within the shaft, and above.
+struct CutFemur {
+  images::Volume volume;
+  double front_mm = 0, top_mm = 0;  // LPS y and z
+};
+CutFemur cut_femur(const std::function<void(images::Volume&)>& operate) {
   const TriangleMesh& truth = knee()[0];
-  const geometry::Bounds bounds = geometry::bounds_of(truth);
   test::KnownCtOptions options;
   options.spacing_mm = {0.8, 0.8, 1.0};
-  options.highest_mm = bounds.max_mm.z() - 15;
+  options.highest_mm = geometry::bounds_of(truth).max_mm.z() - 15;
+  options.operate = operate;
   const images::Volume whole = test::known_ct({truth}, options);
-  double shaft_y_mm = 0, count = 0;
+  CutFemur cut{whole, 0, options.highest_mm};
+  double count = 0;
   for (const Eigen::Vector3d& p : truth.vertices_mm) {
     if (p.z() < options.highest_mm - 10 || p.z() > options.highest_mm) continue;
-    shaft_y_mm += p.y();
+    cut.front_mm += p.y();
     count += 1;
   }
-  shaft_y_mm /= count;
-  images::Volume cut = whole;
+  cut.front_mm /= count;
   const int first =
-      static_cast<int>((whole.lps_from_index.inverse() * Eigen::Vector3d(0, shaft_y_mm, 0)).y());
-  cut.size.y() -= first;
-  cut.lps_from_index.translate(Eigen::Vector3d(0, first, 0));
-  cut.values.clear();
-  for (int k = 0; k < cut.size.z(); ++k)
-    for (int j = 0; j < cut.size.y(); ++j)
-      for (int i = 0; i < cut.size.x(); ++i) cut.values.push_back(whole.at(i, j + first, k));
-  const CtBones found = bones_of_ct(cut);
-  ASSERT_EQ(found.bones.size(), 1U);
-  const geometry::Surface surface(bones::mend_mesh(found.bones[0].mesh).mesh), exact(truth);
+      static_cast<int>((whole.lps_from_index.inverse() * Eigen::Vector3d(0, cut.front_mm, 0)).y());
+  cut.volume.size.y() -= first;
+  cut.volume.lps_from_index.translate(Eigen::Vector3d(0, first, 0));
+  cut.volume.values.clear();
+  for (int k = 0; k < whole.size.z(); ++k)
+    for (int j = first; j < whole.size.y(); ++j)
+      for (int i = 0; i < whole.size.x(); ++i) cut.volume.values.push_back(whole.at(i, j, k));
+  return cut;
+}
+
+// The share of the surface's vertices, away from the ends, that do not lie on the femur's outside, nor within
+// so much of any of these points.
+double within_cortex(const CutFemur& cut, const CtBones& found, const std::vector<Eigen::Vector3d>& gaps_mm,
+                     double gap_radius_mm) {
+  const geometry::Surface surface(bones::mend_mesh(found.bones[0].mesh).mesh), exact(knee()[0]);
   int within = 0;
   for (const Eigen::Vector3d& p : surface.mesh().vertices_mm) {
-    const bool is_at_an_end = p.y() < shaft_y_mm + 2 || p.z() > options.highest_mm - 3;
-    within += !is_at_an_end && (exact.closest_point(p).point_mm - p).norm() > 0.8;
+    const bool is_at_an_end = p.y() < cut.front_mm + 2 || p.z() > cut.top_mm - 3;
+    const bool is_at_a_gap = std::ranges::any_of(
+        gaps_mm, [&](const Eigen::Vector3d& gap) { return (p - gap).norm() < gap_radius_mm + 2; });
+    within += !is_at_an_end && !is_at_a_gap && (exact.closest_point(p).point_mm - p).norm() > 0.8;
   }
-  EXPECT_LT(within, 0.01 * static_cast<double>(surface.mesh().vertices_mm.size()))
-      << "on the cortex's inner face";
+  return within / static_cast<double>(surface.mesh().vertices_mm.size());
+}
+
+// Its marrow is open to both ends of the volume at once, enclosed within neither.
+TEST(CtBones, MarrowThatTwoEndsOfTheVolumeOpenIsClosedOff) {
+  const CutFemur cut = cut_femur(nullptr);
+  const CtBones found = bones_of_ct(cut.volume);
+  ASSERT_EQ(found.bones.size(), 1U);
+  EXPECT_LT(within_cortex(cut, found, {}, 0), 0.01) << "on the cortex's inner face";
+  EXPECT_THAT(found.bones[0].notes, testing::Not(testing::Contains(HasSubstr("gap"))));
+}
+
+// Where the cortex is soft or thin it is below the threshold: through gaps of 9 mm, more than is closed of
+// itself, the outside would come in, and the inner face of the cortex were the bone's surface.
+TEST(CtBones, MarrowBehindGapsOfTheCortexIsClosedOff) {
+  constexpr double kGap_mm = 4.5;
+  const TriangleMesh& truth = knee()[0];
+  const geometry::Bounds bounds = geometry::bounds_of(truth);
+  std::vector<Eigen::Vector3d> gaps_mm;  // on the inner and the outer condyle
+  for (const double x : {bounds.min_mm.x(), bounds.max_mm.x()})
+    gaps_mm.push_back(
+        geometry::Surface(truth).closest_point({x, bounds.center_mm().y(), bounds.min_mm.z() + 25}).point_mm);
+  const CutFemur cut = cut_femur([&](images::Volume& volume) {
+    for (int k = 0; k < volume.size.z(); ++k)
+      for (int j = 0; j < volume.size.y(); ++j)
+        for (int i = 0; i < volume.size.x(); ++i) {
+          const Eigen::Vector3d p = volume.lps_from_index * Eigen::Vector3d(i, j, k);
+          float& hu = volume.values[volume.index(i, j, k)];
+          for (const Eigen::Vector3d& gap : gaps_mm)
+            if ((p - gap).norm() < kGap_mm) hu = std::min(hu, 150.0F);
+        }
+  });
+  const CtBones found = bones_of_ct(cut.volume);
+  ASSERT_EQ(found.bones.size(), 1U);
+  EXPECT_LT(within_cortex(cut, found, gaps_mm, kGap_mm), 0.01) << "on the cortex's inner face";
+  EXPECT_THAT(found.bones[0].notes, testing::Contains(HasSubstr("gaps of up to")));
+  for (const Eigen::Vector3d& gap : gaps_mm)
+    EXPECT_LT((geometry::Surface(found.bones[0].mesh).closest_point(gap).point_mm - gap).norm(), 3)
+        << "the bone goes on across the gap";
+}
+
+// A rail of the table is as slender as a fibula and may run beside the bone: it says nothing on the side.
+TEST(CtBones, ARailOfTheTableIsNoFibula) {
+  test::KnownCtOptions options;
+  options.spacing_mm = {1.2, 1.2, 1.5};
+  TriangleMesh rail = fibula_of(knee()[1]);
+  for (Eigen::Vector3d& p : rail.vertices_mm) p.y() += 70;
+  options.cortex_mm = 4;
+  const CtBones found = bones_of_ct(test::known_ct({knee()[0], knee()[1], rail}, options));
+  ASSERT_EQ(found.bones.size(), 2U);
+  EXPECT_FALSE(found.side_by_fibula.has_value());
 }
 
 // As in a scan that begins within the condyles: what is there of a femur is no femur to plan on.
