@@ -84,9 +84,17 @@ PlanCheck check_length_change(const graft::GraftCourse& course,
 
 PlanCheck check_against_insertions(const graft::GraftCourse& course,
                                    const std::optional<graft::GraftCourse>& of_insertions,
+                                   const KneePlan& plan, const KneeSurroundings& surroundings,
                                    const PlanNorms& norms) {
   const char* name = "Against the insertions";
-  if (!of_insertions) return not_checked(name, "the grid of the femur or of the tibia");
+  if (!of_insertions) {
+    std::string missing;
+    for (const bones::BoneKind bone : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
+      if (!surroundings.insertions_mm.contains({bone, plan.graft}))
+        missing += (missing.empty() ? "the grid of the " : " and that of the ") +
+                   std::string(bones::to_text(bone)) + ", from its landmarks,";
+    return not_checked(name, missing);
+  }
   double most_mm = 0, most_at_deg = 0;  // longer than between the insertions
   for (std::size_t i = 0; i < course.states.size(); ++i) {
     const double longer_mm = course.states[i].length_mm - course.states.front().length_mm -
@@ -202,7 +210,7 @@ std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,
   if (is_femur) {
     const auto of_insertions = course_of_insertions(plan.graft, surroundings);
     checks.push_back(check_length_change(course, of_insertions, *surroundings.axis, norms));
-    checks.push_back(check_against_insertions(course, of_insertions, norms));
+    checks.push_back(check_against_insertions(course, of_insertions, plan, surroundings, norms));
     checks.push_back(note_bend(bend, extended.femoral_bend_deg, course.greatest_femoral_bend_deg));
   } else {
     checks.push_back(note_bend(bend, extended.tibial_bend_deg, course.greatest_tibial_bend_deg));

@@ -58,6 +58,8 @@ TEST_F(LengthOverFlexion, IsNoReproachWhereTheInsertionsDoTheSame) {
 TEST_F(LengthOverFlexion, IsJudgedByTheCustomWhereTheInsertionsKeepItOrAreUnknown) {
   EXPECT_EQ(check("Length over flexion", 5).verdict, Verdict::Look);
   EXPECT_EQ(check("Against the insertions", 5).verdict, Verdict::NotChecked);
+  knee_.insertions_mm = {{BoneKind::Femur, {0, 1, 0}}};
+  EXPECT_THAT(check("Against the insertions", 5).text, HasSubstr("not checked: the grid of the tibia"));
   set_insertions(1);
   const PlanCheck check = this->check("Length over flexion", 5);
   EXPECT_EQ(check.verdict, Verdict::Look);
