@@ -211,7 +211,10 @@ std::string CaseRecord::plan_in_words() const {
   std::string words;
   for (const bones::BoneKind kind : planned)
     words += (words.empty() ? "" : " and ") + std::string(bones::to_text(kind));
-  return words + " planned";
+  words += " planned";
+  for (const bones::BoneKind kind : bones)
+    if (!planned.contains(kind)) words += ", " + std::string(bones::to_text(kind)) + " not";
+  return words;
 }
 
 std::string CaseRecord::last_outcome() const {

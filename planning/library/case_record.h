@@ -82,7 +82,9 @@ struct CaseRecord {
   std::vector<PostoperativeFacts> postoperative;
 
   [[nodiscard]] CaseState state() const;
-  // "femur and tibia planned", "no tunnel planned", ...
+  // Whether every bone of the case has a tunnel.
+  [[nodiscard]] bool is_planned_whole() const { return !planned.empty() && planned == bones; }
+  // "femur and tibia planned", "femur planned, tibia not", "no tunnel planned", ...
   [[nodiscard]] std::string plan_in_words() const;
   // Null without a session.
   [[nodiscard]] const SessionFacts* last_session() const {

@@ -41,7 +41,8 @@ TEST_F(CaseRecordTest, SaysWhatTheFolderHolds) {
   EXPECT_EQ(record.created_utc, "2026-01-31T12:00:00Z");
   EXPECT_THAT(record.bones, ::testing::ElementsAre(bones::BoneKind::Femur, bones::BoneKind::Tibia));
   EXPECT_THAT(record.planned, ::testing::ElementsAre(bones::BoneKind::Femur));
-  EXPECT_EQ(record.plan_in_words(), "femur planned");
+  EXPECT_EQ(record.plan_in_words(), "femur planned, tibia not");
+  EXPECT_FALSE(record.is_planned_whole());
   EXPECT_EQ(record.note, "revision?");
   ASSERT_EQ(record.sessions.size(), 2U);
   EXPECT_EQ(record.sessions[0].id, "0001-20260131-120000") << "oldest first";
