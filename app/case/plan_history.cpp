@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "planning/cases/plan_file.h"
+#include "planning/cases/plan_versions.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
@@ -173,8 +175,9 @@ void PlanHistory::go_to(std::size_t position) {
 }
 
 void PlanHistory::look_at_disk(double now_s) {
-  if (model_ == nullptr || is_read_only_ || is_in_conflict() || now_s - looked_at_s_ < kLookEvery_s) return;
+  if (model_ == nullptr || is_read_only_ || now_s - looked_at_s_ < kLookEvery_s) return;
   looked_at_s_ = now_s;
+  if (is_in_conflict()) return read_theirs();            // it may be saved again
   if (status_.save == PlanStatus::Save::Failed) return;  // its reason stands
   std::error_code error;
   if (!std::filesystem::is_directory(case_folder_, error))
@@ -188,6 +191,27 @@ void PlanHistory::look_at_disk(double now_s) {
 void PlanHistory::set_conflict() {
   status_.save = PlanStatus::Save::Conflict;
   status_.text = "another program has saved another plan: take it, or keep this one";
+  read_theirs();
+}
+
+void PlanHistory::read_theirs() {
+  try {
+    cases::Case there;
+    cases::read_plan(case_folder_, there);
+    theirs_ = there.plan;
+  } catch (const std::exception&) {  // said when somebody takes it
+    theirs_.reset();
+  }
+}
+
+std::string PlanHistory::theirs_in_words() const {
+  if (!is_in_conflict() || !theirs_) return {};
+  std::string words;
+  for (const cases::TunnelDifference& tunnel : cases::compare_plans(model_->knee().plan, *theirs_)) {
+    if (tunnel.kind == cases::TunnelDifference::Kind::Same) continue;
+    words += (words.empty() ? "" : "; ") + tunnel.in_words();
+  }
+  return words.empty() ? "the tunnels are the same" : words;
 }
 
 void PlanHistory::take_theirs() {

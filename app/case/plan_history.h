@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,9 @@ class PlanHistory {
   // Whether another program has saved a plan: looks at plan.json, at most once a second. For every frame.
   void look_at_disk(double now_s);
   [[nodiscard]] bool is_in_conflict() const { return status_.save == PlanStatus::Save::Conflict; }
+  // How the other program's plan differs from the model's, a tunnel each: "femur: entry 2.1 mm off, 0.5 mm
+  // wider". Empty without a conflict, and where its plan cannot be read.
+  [[nodiscard]] std::string theirs_in_words() const;
   // The end of a conflict; without effect where there is none. Theirs comes into the model, as a step that
   // undo takes back; ours is written over theirs. A plan.json that cannot be read leaves the conflict, with
   // the reason.
@@ -87,12 +91,14 @@ class PlanHistory {
   void moved(double now_s);
   void save();
   void set_conflict();
+  void read_theirs();
   void describe();
 
   PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
-  State saved_;          // what is on disk, but for the plan
-  std::string version_;  // of the plan on disk that the model's was made from
+  State saved_;                        // what is on disk, but for the plan
+  std::string version_;                // of the plan on disk that the model's was made from
+  std::optional<cases::Plan> theirs_;  // the other program's in a conflict, where it can be read
   bool is_read_only_ = false;
   std::vector<Step> steps_;
   std::size_t position_ = 0;  // steps_[0, position_) are done

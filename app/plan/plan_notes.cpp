@@ -13,9 +13,17 @@ void PlanView::draw_conflict(const widgets::Ui& ui, const widgets::Rect& area) c
   draw.AddRect(area.min(), area.max(), widgets::kCaution, ui.theme.px(6), 0, ui.theme.px(2));
   const float middle = area.y + area.height / 2, font = ui.theme.strong->FontSize;
   widgets::draw_sign(draw, {area.x + ui.theme.px(26), middle}, ui.theme.px(10), widgets::Severity::Caution);
-  draw.AddText(ui.theme.strong, font, {area.x + ui.theme.px(50), middle - font / 2}, widgets::kText,
-               "Another program has saved another plan of this case");
-  const float height = ui.theme.px(44), width = ui.theme.px(190);
+  const float height = ui.theme.px(44), width = ui.theme.px(190), left = area.x + ui.theme.px(50),
+              room = area.width - 2 * width - ui.theme.px(80), top = area.y + ui.theme.px(6);
+  const std::string words = history_.theirs_in_words(),
+                    head =
+                        widgets::wrapped(ui.theme.strong, "Another program has saved this case's plan", room),
+                    differs = words.empty() ? "" : widgets::wrapped(ui.theme.body, "Theirs: " + words, room);
+  draw.PushClipRect(area.min(), area.max(), true);
+  draw.AddText(ui.theme.strong, font, {left, top}, widgets::kText, head.c_str());
+  const float below = top + ui.theme.strong->CalcTextSizeA(font, 1e9F, 0, head.c_str()).y;
+  draw.AddText(ui.theme.body, ui.theme.body->FontSize, {left, below}, widgets::kText, differs.c_str());
+  draw.PopClipRect();
   ImGui::SetCursorScreenPos({area.x + area.width - 2 * width - ui.theme.px(20), middle - height / 2});
   widgets::action_button(ui, "plan.take_theirs", width, height);
   ImGui::SetCursorScreenPos({area.x + area.width - width - ui.theme.px(10), middle - height / 2});

@@ -50,6 +50,7 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
   const BoneKind other = here == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
   if (state.is_read_only) return {"Look only: another program has this case open", ""};
   if (state.is_in_conflict) return {"Take the other program's plan, or keep this one", "plan.take_theirs"};
+  if (state.makes_default) return {"Wait for the default plan, then move it; Esc leaves it", ""};
   if (state.places_entry) return {"Click on the " + bone + " where the tunnel begins", ""};
   if (!model.has_bone(here)) return {"This case has no " + bone + ": plan the other bone", "plan.bone"};
   // The default would move what is planned of the other bundle.

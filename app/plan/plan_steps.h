@@ -23,6 +23,7 @@ struct StepState {
   bool places_entry = false;
   bool shows_landmarks = false;  // whose keys P and Enter are then
   bool is_read_only = false, is_in_conflict = false;
+  bool makes_default = false;  // the default plan is on its way
 };
 
 // The first of what is missing: an answer to a conflict, an entry, a tunnel that can be drilled, the other

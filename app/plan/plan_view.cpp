@@ -131,7 +131,7 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const std::optional<TourCard> card = tour_.card();
   if (card) draw_tour(ui, rest.cut_top(ui.theme.px(88), ui.theme.px(10)), *card);
   ui.log.note_state("tour", card ? std::to_string(card->number) + " " + card->title : "");
-  if (history_.is_in_conflict()) draw_conflict(ui, rest.cut_top(ui.theme.px(64), ui.theme.px(10)));
+  if (history_.is_in_conflict()) draw_conflict(ui, rest.cut_top(ui.theme.px(96), ui.theme.px(10)));
   if (state_.shows_slices) {
     const float gap = ui.theme.px(6);
     widgets::Rect left = rest.cut_left((rest.width - gap) / 2, gap);
@@ -142,8 +142,12 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   } else {
     draw_bones(ui, rest);
   }
-  const StepState step{state_.key, state_.placing == Placing::Entry, state_.page == PanelPage::Landmarks,
-                       status.save == open_case::PlanStatus::Save::ReadOnly, history_.is_in_conflict()};
+  const StepState step{state_.key,
+                       state_.placing == Placing::Entry,
+                       state_.page == PanelPage::Landmarks,
+                       status.save == open_case::PlanStatus::Save::ReadOnly,
+                       history_.is_in_conflict(),
+                       defaults_.is_running()};
   const NextStep next = next_step(*model_, step);
   const PanelClick clicked = draw_plan_panel(
       ui, panel,
@@ -155,6 +159,7 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("landmarks", confirmed_in_words(landmark_rows(*model_, state_.key.bone)));
   ui.log.note_state("plan_next", next.text);
   ui.log.note_state("plan", name_of(status.save));
+  ui.log.note_state("theirs", history_.theirs_in_words());
   ui.log.note_state("undo", status.undo_what);
   ui.log.note_state("redo", status.redo_what);
   ui.log.note_state("placing", state_.placing == Placing::Entry      ? "entry"

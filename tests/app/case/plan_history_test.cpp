@@ -305,6 +305,19 @@ TEST_F(PlanConflict, Hazard15AChangeElsewhereIsNoticedWithoutAnEdit) {
   EXPECT_TRUE(history_.is_in_conflict());
 }
 
+// What the two are to be chosen by is said, of the newest that is on disk.
+TEST_F(PlanConflict, HowTheOtherPlanDiffersIsSaid) {
+  EXPECT_EQ(history_.theirs_in_words(), "");
+  save_elsewhere(start_mm_ - 1.5);
+  history_.look_at_disk(10.0);
+  EXPECT_EQ(history_.theirs_in_words(), "femur: 1.5 mm narrower");
+  save_elsewhere(start_mm_ + 0.5);
+  history_.look_at_disk(11.5);
+  EXPECT_EQ(history_.theirs_in_words(), "femur: 0.5 mm wider");
+  history_.take_theirs();
+  EXPECT_EQ(history_.theirs_in_words(), "");
+}
+
 // Hazard 15: theirs can be taken, and undo brings ours back; ours can be kept, and is then on disk.
 TEST_F(PlanConflict, Hazard15TheSurgeonChoosesBetweenTheTwo) {
   save_elsewhere(7.25);

@@ -59,6 +59,14 @@ TEST(NextStep, ProposedLandmarksAreToBeLookedAt) {
   EXPECT_EQ(next_step(model, {}).action, "plan.landmarks_page");
 }
 
+// A key that has been pressed is not asked for again.
+TEST(NextStep, ADefaultPlanOnItsWayIsWaitedFor) {
+  const open_case::PlanModel model(knee());
+  const NextStep next = next_step(model, {.makes_default = true});
+  EXPECT_EQ(next.text.find("Wait for the default plan"), 0U);
+  EXPECT_EQ(next.action, "");
+}
+
 // What stands against every edit is named first.
 TEST(NextStep, ReadOnlyAndConflictAreNamedFirst) {
   const open_case::PlanModel model(knee());
