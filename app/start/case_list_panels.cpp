@@ -24,6 +24,7 @@ Severity severity_of(const CaseRecord& record) {
     case CaseState::NotPlanned:
       return Severity::Quiet;
     case CaseState::Planned:
+      return record.is_planned_whole() ? Severity::Good : Severity::Quiet;  // no tick for half a plan
     case CaseState::Navigated:
     case CaseState::Drilled:
       break;
@@ -202,7 +203,8 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
   const Severity severity = severity_of(record);
   widgets::draw_sign(draw, {x + ui.theme.px(10), at.y + ui.theme.px(48)}, ui.theme.px(9), severity);
   const std::size_t count = record.sessions.size();
-  std::string what = capital(std::string(to_text(record.state())));
+  std::string what = capital(record.state() == CaseState::Planned ? record.plan_in_words()
+                                                                  : std::string(to_text(record.state())));
   if (severity == Severity::Caution || severity == Severity::Bad)
     what += ": " + record.last_outcome();
   else if (count > 0)
@@ -245,7 +247,7 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
     widgets::status_row(ui, severity, capital(std::string(to_text(record->state()))), record->last_outcome());
   if (!record->side.empty()) widgets::status_row(ui, Severity::Quiet, "Side", record->side + " knee");
   if (record->problem.empty())
-    widgets::status_row(ui, record->planned.empty() ? Severity::Quiet : Severity::Good, "Plan",
+    widgets::status_row(ui, record->is_planned_whole() ? Severity::Good : Severity::Quiet, "Plan",
                         record->plan_in_words());
   if (const library::SessionFacts* last = record->last_session()) {
     std::string words;
