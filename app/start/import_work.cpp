@@ -1,6 +1,8 @@
 #include "app/start/import_work.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include "app/case/case_opening.h"
@@ -10,6 +12,23 @@
 namespace arthronaut::start {
 
 namespace fs = std::filesystem;
+
+double share_of_all(const importing::ImportProgress& progress) {
+  struct Stage {
+    std::string_view begins;  // its name
+    double from, to;
+  };
+  // A process of its own reads, and hands over: of a CT the bones take longest.
+  constexpr std::array<Stage, 5> kStages{{{"Reading", 0, 0.3},
+                                          {"Finding the bones", 0.3, 0.8},
+                                          {"Making the surface", 0.5, 0.8},
+                                          {"Mending the mesh", 0.8, 0.9},
+                                          {"Looking at the bones", 0.9, 0.98}}};
+  for (const Stage& stage : kStages)
+    if (progress.stage.starts_with(stage.begins))
+      return stage.from + (stage.to - stage.from) * std::clamp(progress.fraction, 0.0, 1.0);
+  return 0;
+}
 
 ImportWork::ImportWork(std::function<void()> wake, fs::path program)
     : wake_(std::move(wake)), program_(std::move(program)) {}
@@ -130,6 +149,7 @@ void ImportWork::start_next(std::optional<bones::LengthUnit> unit) {
   if (const auto space = spaces_.find(wishes_.sources[next_]); space != spaces_.end())
     options.space = space->second;
   progress_ = {};
+  done_fraction_ = 0;
   try {
     process_ = std::make_unique<importing::ImportProcess>(
         importing::ImportRequest{.source = source.source, .options = options, .program = program_});
@@ -169,6 +189,7 @@ void ImportWork::take_bones() {
   using Process = importing::ImportProcess;
   const Process::State state = process_->poll();
   progress_ = process_->progress();
+  done_fraction_ = std::max(done_fraction_, share_of_all(progress_));
   if (state == Process::State::Running) return;
   if (state != Process::State::Done) return take_refusal();
   importing::BoneImport made = process_->take_result();

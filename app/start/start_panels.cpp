@@ -81,7 +81,7 @@ void StartView::draw_import(const widgets::Ui& ui, const widgets::Rect& area) {
       const ImVec2 at(area.x + area.width / 4, area.y + area.height / 2 + ui.theme.px(20));
       ImDrawList& draw = *ImGui::GetWindowDrawList();
       draw.AddRectFilled(at, {at.x + width, at.y + height}, widgets::kPanelEdge, ui.theme.px(6));
-      const auto done = static_cast<float>(std::clamp(progress.fraction, 0.0, 1.0));
+      const auto done = static_cast<float>(work_.state() == State::Saving ? 1.0 : work_.done_fraction());
       draw.AddRectFilled(at, {at.x + width * done, at.y + height}, widgets::kAccent, ui.theme.px(6));
       widgets::draw_buttons(ui, {at.x, at.y + ui.theme.px(60), width, ui.theme.px(56)}, {"start.back"});
       return;

@@ -56,6 +56,20 @@ class ImportWorkTest : public ::testing::Test {
   ImportWork work_{[] {}, ARTHRONAUT_PROGRAM};
 };
 
+// One bar for all stages of an import: it does not begin anew with each.
+TEST(ImportProgress, NoStageBeginsBeforeTheOneBeforeItHasEnded) {
+  double before = 0;
+  for (const char* stage :
+       {"Reading the images", "Finding the bones", "Mending the mesh", "Looking at the bones"})
+    for (const double fraction : {-1.0, 0.5, 1.0}) {
+      const double share = share_of_all({stage, fraction});
+      EXPECT_GE(share, before) << stage;
+      before = share;
+    }
+  EXPECT_GT(before, 0.9);
+  EXPECT_LE(before, 1);
+}
+
 // From a folder with two meshes to a case with two bones; the side that no name tells is asked for and the
 // case is not written before.
 TEST_F(ImportWorkTest, MakesACaseOfTwoMeshesAndAsksForTheSide) {
