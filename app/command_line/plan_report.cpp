@@ -19,8 +19,9 @@ const char* sign_of(PlanCheck::Verdict verdict) {
       return "  ! ";
     case PlanCheck::Verdict::NotChecked:
       return "  ? ";
+    case PlanCheck::Verdict::Note:  // a number that nobody holds against anything: no tick
+      return "  - ";
     case PlanCheck::Verdict::Fine:
-    case PlanCheck::Verdict::Note:
       break;
   }
   return "    ";
