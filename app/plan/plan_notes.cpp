@@ -13,7 +13,7 @@ void PlanView::draw_conflict(const widgets::Ui& ui, const widgets::Rect& area) c
   draw.AddRect(area.min(), area.max(), widgets::kCaution, ui.theme.px(6), 0, ui.theme.px(2));
   const float middle = area.y + area.height / 2, font = ui.theme.strong->FontSize;
   widgets::draw_sign(draw, {area.x + ui.theme.px(26), middle}, ui.theme.px(10), widgets::Severity::Caution);
-  const float height = ui.theme.px(44), width = ui.theme.px(190), left = area.x + ui.theme.px(50),
+  const float height = ui.theme.px(44), width = ui.theme.px(206), left = area.x + ui.theme.px(50),
               room = area.width - 2 * width - ui.theme.px(80), top = area.y + ui.theme.px(6);
   const std::string words = history_.theirs_in_words(),
                     head =

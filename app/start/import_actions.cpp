@@ -35,7 +35,8 @@ void StartView::add_import_actions(widgets::Actions& actions) {
   const auto waits = [this] { return state_.page == Page::Import && work_.state() == State::Asking; };
   actions.add({"start.tick",
                "Take it",
-               "Takes the selected series, or leaves it; meshes of different bones go together",
+               "Takes the selected series in place of another; takes a mesh, or leaves it: meshes of "
+               "different bones go together",
                GLFW_KEY_SPACE,
                0,
                false,
@@ -179,18 +180,29 @@ void StartView::say_bone(bones::BoneKind kind) {
   tick_selected();
 }
 
+void StartView::take_selected_volume() {
+  const auto& sources = work_.sources().sources;
+  const auto is_volume = [&](std::size_t i) { return i < sources.size() && sources[i].series.has_value(); };
+  if (state_.page == Page::Import && work_.state() == State::Choosing && is_volume(state_.selected) &&
+      sources[state_.selected].can_be_imported() && std::ranges::all_of(state_.ticked, is_volume))
+    state_.ticked = {state_.selected};
+}
+
 void StartView::tick_selected() {
   const auto& sources = work_.sources().sources;
+  const ImportSource& taken = sources[state_.selected];
+  // A volume stands alone, until another one is taken; a mesh beside meshes of other bones.
+  if (taken.series) {
+    state_.ticked = {state_.selected};
+    return;
+  }
   const auto at = std::find(state_.ticked.begin(), state_.ticked.end(), state_.selected);
   if (at != state_.ticked.end()) {
     state_.ticked.erase(at);
     return;
   }
-  // A volume stands alone; a mesh beside meshes of other bones.
-  const ImportSource& taken = sources[state_.selected];
-  std::erase_if(state_.ticked, [&](std::size_t i) {
-    return taken.series || sources[i].series || sources[i].bone == taken.bone;
-  });
+  std::erase_if(state_.ticked,
+                [&](std::size_t i) { return sources[i].series || sources[i].bone == taken.bone; });
   state_.ticked.push_back(state_.selected);
 }
 

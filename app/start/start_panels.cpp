@@ -48,7 +48,10 @@ bool StartView::draw_page_row(const widgets::Ui& ui, const std::string& name, st
                                                          .height = height,
                                                          .is_selected = row == state_.selected,
                                                          .scrolls_here = state_.scrolls_to_selected});
-  if (press != widgets::RowPress::None) state_.selected = row;
+  if (press != widgets::RowPress::None) {
+    state_.selected = row;
+    take_selected_volume();
+  }
   return press == widgets::RowPress::Twice;
 }
 
@@ -180,6 +183,7 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
                     into.min(), into.max());
     }
     const bool is_ticked = std::find(state_.ticked.begin(), state_.ticked.end(), i) != state_.ticked.end();
+    if (is_ticked) ui.log.note_state("taken", source.title);
     const float x = at.x + picture + ui.theme.px(30), wrap = width - picture - ui.theme.px(50);
     const Severity sign = !source.can_be_imported()  ? Severity::Bad
                           : !source.warnings.empty() ? Severity::Caution

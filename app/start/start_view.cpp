@@ -126,6 +126,7 @@ void StartView::move_selection(int by) {
   state_.selected =
       static_cast<std::size_t>(std::clamp(static_cast<long>(state_.selected) + by, 0L, count - 1));
   state_.scrolls_to_selected = true;
+  take_selected_volume();
 }
 
 void StartView::browse() {

@@ -68,6 +68,8 @@ class StartView {
   [[nodiscard]] bool asks_for_labels() const;
   [[nodiscard]] bool selects_mesh() const;
   void tick_selected();
+  // Of volumes one alone is taken: the one that somebody went to.
+  void take_selected_volume();
   void say_bone(bones::BoneKind kind);
 
   void draw_browser(const widgets::Ui& ui, const widgets::Rect& area);

@@ -21,7 +21,7 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   draw.AddLine({area.x, area.y + area.height}, area.max(), widgets::kPanelEdge);
   const float middle = area.y + area.height / 2;
   const ImFont* title = ui.theme.title;
-  const float width = ui.theme.px(146), height = ui.theme.px(50);
+  const float width = ui.theme.px(156), height = ui.theme.px(50);
   const widgets::Rect heart{area.x + ui.theme.px(14), middle - height / 2, height, height};
   widgets::draw_heartbeat(ui, heart, heartbeat_);
   // The same place in all modes: where the pictures come from, or else whose screen this is.
@@ -40,7 +40,7 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   }
   if (case_ != nullptr) {
     const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
-    const float right = area.x + area.width - ui.theme.px(448), room = right - x - ui.theme.px(8);
+    const float right = area.x + area.width - ui.theme.px(458), room = right - x - ui.theme.px(8);
     const std::vector<WhoseLine> lines = whose_knee(case_->identity(), knee.name, knee.side);
     ImFont* const font = lines.size() > 2 ? ui.theme.body : ui.theme.strong;  // three have no more room
     const float row = font->FontSize;
@@ -62,7 +62,7 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
     ui.log.note_state("whose", whole);
   }
   x = area.x + area.width - ui.theme.px(12);
-  for (const auto& [id, size] : {std::pair{"app.quit", 150.F}, {"app.keys", 126.F}, {"app.cases", 126.F}}) {
+  for (const auto& [id, size] : {std::pair{"app.quit", 150.F}, {"app.keys", 126.F}, {"app.cases", 136.F}}) {
     x -= ui.theme.px(size);
     ImGui::SetCursorScreenPos({x, middle - height / 2});
     widgets::action_button(ui, id, ui.theme.px(size), height);

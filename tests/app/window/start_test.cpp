@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_lock.h"
+#include "planning/images/volume_writer.h"
 #include "planning/phantom/phantom_case.h"
 #include "tests/app/window/display.h"
 #include "tests/temporary_folder.h"
@@ -151,6 +154,33 @@ TEST_F(StartWindow, AnImportThatAsksIsNotLost) {
   app.press("F5");
   ASSERT_TRUE(app.wait_for_state("screen", "start"));
   EXPECT_TRUE(app.wait_for_state("import", "asking"));
+}
+
+// The volume that somebody clicks on, or goes to by the arrows, is the one that is taken: what is made next
+// is made of it, and of no other.
+TEST_F(StartWindow, TheVolumeThatIsGoneToIsTaken) {
+  std::filesystem::create_directory(folder_ / "given");
+  images::Volume volume;
+  volume.size = {24, 24, 12};
+  volume.values.assign(24 * 24 * 12, 100);
+  for (const char* name : {"first.nrrd", "second.nrrd"})
+    images::write_volume(folder_ / "given" / name, volume);
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {(folder_ / "given").string()});
+  ASSERT_TRUE(app.wait_for_state("import", "choosing", 120));
+  ASSERT_TRUE(app.wait_for_widget("start.source.1"));
+  const auto taken_beside = [&](const std::string& title) {
+    for (int i = 0; i < 250 && app.state("taken") == title; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return app.state("taken");
+  };
+  const std::string first = app.state("taken");
+  app.click(app.state("selected") == "0" ? "start.source.1" : "start.source.0");
+  const std::string second = taken_beside(first);
+  EXPECT_NE(second, first);
+  app.press("space");  // it is taken, and stays so
+  app.press(app.state("selected") == "0" ? "Down" : "Up");
+  EXPECT_EQ(taken_beside(second), first);
 }
 
 // A femur in metres whose name says nothing: F says what it is, M its unit, and the bones are made.
