@@ -252,15 +252,24 @@ struct JointEnd {
   double greatest_sine = 0.75;  // of what it may be off
 };
 
-std::vector<JointEnd> joint_ends(const std::vector<SurfaceSample>& samples, const Cuts& cuts) {
-  const std::optional<Cut>& cut = cuts.shaft;
+struct PrincipalAxes {
+  Matrix3d axes;  // columns, the longest last
+  double elongation = 1;
+};
+
+PrincipalAxes principal_axes_of(const std::vector<SurfaceSample>& samples) {
   Vector3d mean = Vector3d::Zero();
   for (const auto& s : samples) mean += s.point_mm / static_cast<double>(samples.size());
   Matrix3d moment = Matrix3d::Zero();
   for (const auto& s : samples) moment += (s.point_mm - mean) * (s.point_mm - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(moment);
-  const Vector3d longest = principal.eigenvectors().col(2);
-  const double elongation = std::sqrt(principal.eigenvalues()[2] / principal.eigenvalues()[1]);
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(moment);
+  return {solver.eigenvectors(), std::sqrt(solver.eigenvalues()[2] / solver.eigenvalues()[1])};
+}
+
+std::vector<JointEnd> joint_ends(const PrincipalAxes& principal, const Cuts& cuts) {
+  const std::optional<Cut>& cut = cuts.shaft;
+  const Vector3d longest = principal.axes.col(2);
+  const double elongation = principal.elongation;
   // What parted the joint may have left its end as flat as a saw.
   if (cuts.lengthwise && elongation > kLongElongation) return {{longest}, {-longest}};
   if (cuts.is_ambiguous() && elongation <= kLongElongation) return {};
@@ -273,7 +282,7 @@ std::vector<JointEnd> joint_ends(const std::vector<SurfaceSample>& samples, cons
   if (elongation > kWholeElongation) return {{longest}, {-longest}};
   std::vector<JointEnd> ends;
   for (int k = 0; k < 3; ++k) {
-    for (const double sign : {1.0, -1.0}) ends.push_back({sign * principal.eigenvectors().col(k)});
+    for (const double sign : {1.0, -1.0}) ends.push_back({sign * principal.axes.col(k)});
   }
   return ends;
 }
@@ -285,9 +294,12 @@ std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, const g
   const auto samples = sample_surface(mesh, geometry::surface_area_mm2(mesh) / kSamples);
   if (samples.empty()) return {};
   const double area_each = geometry::surface_area_mm2(mesh) / static_cast<double>(samples.size());
-  const Cuts cuts = find_cuts(mesh, samples, area_each, bone, stop);
+  const PrincipalAxes principal = principal_axes_of(samples);
+  Cuts cuts = find_cuts(mesh, samples, area_each, bone, stop);
+  // The only cut of a stump, which is no deeper than the cut is long, is the shaft's.
+  if (!cuts.shaft && principal.elongation <= kLongElongation) std::swap(cuts.shaft, cuts.lengthwise);
   std::vector<std::pair<double, RoughFrame>> found;
-  for (const JointEnd& end : joint_ends(samples, cuts)) {
+  for (const JointEnd& end : joint_ends(principal, cuts)) {
     double tip = -1e9;
     for (const auto& s : samples) tip = std::max(tip, s.point_mm.dot(end.direction));
     std::vector<Vector3d> points;
