@@ -275,8 +275,9 @@ void Report::navigate_page() {
   const auto& header = session.header();
   const SessionFigures figures = figures_of(session);
   if (content_.check.outcome == recording::SessionCheck::Outcome::Broken)
-    pages_.sentence("NOT AS RECORDED: something of this session was changed or lost since (see Record).",
-                    {.bold = true, .ink = kWarning});
+    pages_.sentence(
+        "NOT AS RECORDED: something of this session was changed or lost since (see Record by its hashes).",
+        {.bold = true, .ink = kWarning});
   std::vector<std::vector<std::string>> rows{
       {"Session", options_.is_deidentified ? "" : header.id},
       {"Started", options_.is_deidentified ? kNotTold : files::utc_in_words(header.started_utc)},
@@ -287,7 +288,7 @@ void Report::navigate_page() {
       {"Frames", std::to_string(figures.frames) + " in " + clock_text(figures.length_s)},
       {"World marker tracked", number(figures.world_percent, " % of the frames")},
       {"Lens mark found", number(figures.mark_percent, " % of the frames")},
-      {"Record", recording::check_words(content_.check)},
+      {"Record by its hashes", recording::check_words(content_.check)},
       {"Last hash of the record", content_.last_hash.empty() ? "none" : in_groups(content_.last_hash)}};
   if (const std::string guided = guided_bundles(session); !guided.empty())
     rows.push_back({"Guided to the tunnel", guided});
