@@ -123,6 +123,8 @@ TEST_F(PoseSharingTest, Hazard3StatusSaysThatASlowSourceDoesNotGuide) {
   EXPECT_NE(std::find(heard.begin(), heard.end(), "WorldFemur"), heard.end());
   const NavigateDisplay display = display_of(&live, theatre::LiveOperation::now_s());
   EXPECT_EQ(heard.back(), "STATUS: " + display.headline);
+  sharing_.tell(live);  // no other picture yet
+  EXPECT_EQ(listener_.until_status(), std::vector<std::string>{"STATUS: " + display.headline});
 }
 
 // Of two operations the one that gives pictures is told: what becomes of the other one is no news.
