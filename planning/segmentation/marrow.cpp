@@ -70,13 +70,16 @@ Cells cells_about(const Volume& volume, const BoneSolid& solid) {
 
 enum Label : std::uint8_t { kFree = 0, kOutside = 1, kMarrow = 2 };
 
-// Where the middle of the ball can be, by whether it comes out; all free where nothing is kept in.
-std::vector<std::uint8_t> middles_of(const Volume& volume, const Box& box, const Cells& cells,
-                                     double radius_mm) {
+std::vector<float> distances_to_bone_mm(const Cells& cells) {
   std::vector<std::size_t> bone;
   for (std::size_t c = 0; c < cells.is_bone.inside.size(); ++c)
     if (cells.is_bone.inside[c]) bone.push_back(c);
-  const std::vector<float> distances_mm = images::distances_mm(cells.is_bone.size, bone, cells.spacing_mm);
+  return images::distances_mm(cells.is_bone.size, bone, cells.spacing_mm);
+}
+
+// Where the middle of the ball can be, by whether it comes out; all free where nothing is kept in.
+std::vector<std::uint8_t> middles_of(const Volume& volume, const Box& box, const Cells& cells,
+                                     const std::vector<float>& distances_mm, double radius_mm) {
   VoxelMask middles(cells.is_bone.size);
   for (std::size_t c = 0; c < distances_mm.size(); ++c)
     middles.inside[c] = distances_mm[c] > static_cast<float>(radius_mm);
@@ -169,8 +172,9 @@ void fill_marrow(const Volume& volume, BoneSolid& solid) {
 ClosedMarrow close_marrow(const Volume& volume, BoneSolid& solid) {
   ClosedMarrow closed{solid.mask};
   Cells cells = cells_about(volume, solid);
+  std::vector<float> distances_mm = distances_to_bone_mm(cells);
   for (double radius = kSmallestBall_mm; radius <= kLargestBall_mm; radius += kNextBall_mm) {
-    std::vector<std::uint8_t> labels = middles_of(volume, solid.box, cells, radius);
+    std::vector<std::uint8_t> labels = middles_of(volume, solid.box, cells, distances_mm, radius);
     if (std::ranges::find(labels, std::uint8_t{kMarrow}) == labels.end()) continue;
     grow(cells, labels);
     cells.for_each_voxel(solid, [&](std::size_t cell, std::size_t voxel) {
@@ -178,6 +182,7 @@ ClosedMarrow close_marrow(const Volume& volume, BoneSolid& solid) {
     });
     for (std::size_t c = 0; c < labels.size(); ++c)
       if (labels[c] == kMarrow) cells.is_bone.inside[c] = 1;
+    distances_mm = distances_to_bone_mm(cells);
     closed.widest_mm = 2 * radius;
   }
   if (closed.widest_mm > 0) fill_marrow(volume, solid);
