@@ -20,6 +20,11 @@ struct VoxelMask {
                (static_cast<std::size_t>(j) +
                 static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(k));
   }
+  [[nodiscard]] Eigen::Vector3i index_of(std::size_t voxel) const {  // i, j, k
+    const auto nx = static_cast<std::size_t>(size.x()), ny = static_cast<std::size_t>(size.y());
+    return {static_cast<int>(voxel % nx), static_cast<int>(voxel / nx % ny),
+            static_cast<int>(voxel / (nx * ny))};
+  }
   [[nodiscard]] std::size_t count() const;
 };
 

@@ -34,10 +34,7 @@ void close_and_fill(const Volume& volume, BoneSolid& solid, double closing_radiu
 }  // namespace
 
 Eigen::Vector3d BoneSolid::lps_of(const Volume& volume, std::size_t voxel) const {
-  const auto nx = static_cast<std::size_t>(mask.size.x()), ny = static_cast<std::size_t>(mask.size.y());
-  const Eigen::Vector3i index(static_cast<int>(voxel % nx), static_cast<int>(voxel / nx % ny),
-                              static_cast<int>(voxel / (nx * ny)));
-  return volume.lps_from_index * (box.first + index).cast<double>();
+  return volume.lps_from_index * (box.first + mask.index_of(voxel)).cast<double>();
 }
 
 BoneSolid solid_of(const Volume& volume, const std::vector<std::size_t>& voxels, double closing_radius_mm) {

@@ -9,6 +9,7 @@
 #include "planning/segmentation/bone_solid.h"
 #include "planning/segmentation/edge_surface.h"
 #include "planning/segmentation/fibula.h"
+#include "planning/segmentation/joint_parting.h"
 #include "planning/segmentation/joint_space.h"
 #include "planning/segmentation/marrow.h"
 
@@ -129,32 +130,6 @@ bool stands_below_a_bone(const Found& found, std::size_t at) {
                      });
 }
 
-// The part of the candidate above or below the joint space, its largest piece.
-Candidate part_of(const Volume& volume, const Candidate& whole, const JointSpace& joint, bool is_above,
-                  double closing_radius_mm) {
-  const BoneSolid& solid = whole.solid;
-  const auto threshold_mask = solid.mask;
-  VoxelMask part(solid.mask.size);
-  for (std::size_t v = 0; v < part.inside.size(); ++v) {
-    if (!threshold_mask.inside[v]) continue;
-    const Eigen::Vector3d p = solid.lps_of(volume, v);
-    part.inside[v] = (p.z() > joint.height_at(p.x(), p.y())) == is_above;
-  }
-  const auto pieces = images::connected_pieces(part, 1);
-  std::fill(part.inside.begin(), part.inside.end(), std::uint8_t{0});
-  if (!pieces.empty()) {
-    for (const std::size_t v : pieces.front().voxels) part.inside[v] = 1;
-  }
-  Candidate candidate;
-  candidate.solid = solid_of(volume, solid.box, part, closing_radius_mm);
-  // What closing has taken across the cut goes back.
-  for (std::size_t v = 0; v < part.inside.size(); ++v)
-    candidate.solid.mask.inside[v] =
-        candidate.solid.mask.inside[v] && (part.inside[v] || !threshold_mask.inside[v]);
-  candidate.profile = profile_of(volume, candidate.solid);
-  return candidate;
-}
-
 // The joint is looked for between the shafts, from a little above the section that may be the condyles'.
 bool part_at_joint(const Volume& volume, Found& found, std::size_t at, const CtBonesOptions& options,
                    CtBones& result) {
@@ -175,8 +150,11 @@ bool part_at_joint(const Volume& volume, Found& found, std::size_t at, const CtB
   const auto joint = find_joint_space(volume, low, high, options.threshold_for(volume));
   const bool is_needed = whole.may_hold_both();
   if (!joint || (!is_needed && joint->area_mm2 < kSureJoint_mm2)) return false;
-  Candidate femur = part_of(volume, whole, *joint, true, options.closing_radius_mm),
-            tibia = part_of(volume, whole, *joint, false, options.closing_radius_mm);
+  PartedBones parted =
+      part_bones(volume, whole.solid, *joint, options.threshold_for(volume), options.closing_radius_mm);
+  Candidate femur{std::move(parted.above), {}}, tibia{std::move(parted.below), {}};
+  femur.profile = profile_of(volume, femur.solid);
+  tibia.profile = profile_of(volume, tibia.solid);
   const double least = std::min(femur.profile.volume_mm3, tibia.profile.volume_mm3);
   if (!is_needed && least < kLeastPart_mm3) return false;
   result.notes.push_back("femur and tibia touch: parted along the joint space, of which " +

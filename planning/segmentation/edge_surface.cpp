@@ -214,6 +214,27 @@ std::vector<float> local_levels(const Work& work) {
   return std::move(sum.values);
 }
 
+// Where the outermost layer is about as bright as the threshold, noise puts some of its voxels above it, and
+// closing fills in the others. They are no gap of the cortex: before them it is dark, and right behind them
+// bright.
+void take_back_what_noise_closed(Work& work, const std::vector<float>& levels) {
+  const auto steps = steps_of(work.grey);
+  const auto threshold = static_cast<float>(work.options.threshold);
+  std::vector<std::size_t> outside;
+  for_each_inner_voxel(work.grey, [&](const Eigen::Vector3i&, std::size_t v) {
+    if (!work.solid[v] || work.grey.values[v] >= std::min(threshold, levels[v])) return;
+    const auto lies_before = [&](std::size_t outer, std::size_t inner) {
+      return !work.solid[outer] && !work.is_cut[outer] && work.grey.values[outer] < threshold - kTurn_hu &&
+             work.solid[inner] && work.grey.values[inner] >= threshold;
+    };
+    if (std::ranges::any_of(steps, [&](std::size_t step) {
+          return lies_before(v - step, v + step) || lies_before(v + step, v - step);
+        }))
+      outside.push_back(v);
+  });
+  for (const std::size_t v : outside) work.solid[v] = 0;
+}
+
 // Takes the rim away that lies between the threshold's surface and the edge: what is below the local level
 // and can be reached from outside. A closed gap of the cortex, which is below the threshold itself, stays.
 void take_rim_away(Work& work, const std::vector<float>& levels) {
@@ -252,6 +273,8 @@ geometry::TriangleMesh edge_surface(const Volume& volume, const Box& box, const 
                                     const VoxelMask& others, const EdgeOptions& options) {
   Work work = prepared(volume, box, solid, others, options);
   const std::vector<float> levels = local_levels(work);
+  // A voxel of thick slices is more than what noise adds.
+  if (!is_of_thick_slices(volume)) take_back_what_noise_closed(work, levels);
   take_rim_away(work, levels);
   Field field = std::move(work.grey);
   for (std::size_t v = 0; v < field.values.size(); ++v) {

@@ -90,11 +90,7 @@ class Parting {
 
   [[nodiscard]] std::size_t level_of(std::size_t voxel) const {
     if (depths_mm_[voxel] < kSkin_mm) return kLevels - 1;
-    const auto nx = static_cast<std::size_t>(solid_.mask.size.x()),
-               ny = static_cast<std::size_t>(solid_.mask.size.y());
-    const Eigen::Vector3i at =
-        solid_.box.first + Eigen::Vector3i(static_cast<int>(voxel % nx), static_cast<int>(voxel / nx % ny),
-                                           static_cast<int>(voxel / (nx * ny)));
+    const Eigen::Vector3i at = solid_.box.first + solid_.mask.index_of(voxel);
     const double grey = volume_.values[volume_.index(at.x(), at.y(), at.z())];
     const double share = (grey - kDarkest_hu) / (kBrightest_hu - kDarkest_hu);
     return static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * (kLevels - 1));

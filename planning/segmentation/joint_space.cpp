@@ -135,13 +135,19 @@ void improve_line(std::vector<int>& heights, const std::vector<float>& gains, in
 
 }  // namespace
 
-double JointSpace::height_at(double x_mm, double y_mm) const {
-  const auto nearest = [this](double offset, int count) {
-    return std::clamp(static_cast<int>(std::lround(offset / step_mm)), 0, count - 1);
+JointSpace::Sheet JointSpace::at(double x_mm, double y_mm) const {
+  const double x = std::clamp((x_mm - first_mm.x()) / step_mm, 0.0, columns - 1.0),
+               y = std::clamp((y_mm - first_mm.y()) / step_mm, 0.0, rows - 1.0);
+  const int column = std::min(static_cast<int>(x), columns - 2),
+            row = std::min(static_cast<int>(y), rows - 2);
+  const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                     static_cast<std::size_t>(column),
+             next = first + static_cast<std::size_t>(columns);
+  const auto between = [&](std::size_t at) {
+    return std::lerp(height_mm[at], height_mm[at + 1], x - column);
   };
-  const int x = nearest(x_mm - first_mm.x(), columns), y = nearest(y_mm - first_mm.y(), rows);
-  return height_mm[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
-                   static_cast<std::size_t>(x)];
+  return {std::lerp(between(first), between(next), y - row),
+          is_seen[first] && is_seen[first + 1] && is_seen[next] && is_seen[next + 1]};
 }
 
 std::optional<JointSpace> find_joint_space(const images::Volume& volume, const Eigen::Vector3d& low_mm,
@@ -186,8 +192,9 @@ std::optional<JointSpace> find_joint_space(const images::Volume& volume, const E
   for (int y = 0; y < columns.ny; ++y) {
     for (int x = 0; x < columns.nx; ++x) {
       const int h = heights[index(x, y)];
-      if (depths[columns.column(x, y) + static_cast<std::size_t>(h)] > kSeen_hu)
-        space.area_mm2 += kStep_mm * kStep_mm;
+      const bool is_seen = depths[columns.column(x, y) + static_cast<std::size_t>(h)] > kSeen_hu;
+      if (is_seen) space.area_mm2 += kStep_mm * kStep_mm;
+      space.is_seen.push_back(is_seen);
       space.height_mm.push_back(low_mm.z() + h * kHeightStep_mm);
     }
   }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -19,11 +20,16 @@ struct JointSpace {
   Eigen::Vector2d first_mm;  // LPS x, y of the first column
   double step_mm = 2;
   int columns = 0, rows = 0;
-  std::vector<double> height_mm;  // LPS z, columns run fastest
-  double area_mm2 = 0;            // over which a valley is to be seen
+  std::vector<double> height_mm;      // LPS z, columns run fastest
+  std::vector<std::uint8_t> is_seen;  // of each column: a valley; else the sheet only goes on
+  double area_mm2 = 0;                // over which a valley is to be seen
 
-  // Of the nearest column.
-  [[nodiscard]] double height_at(double x_mm, double y_mm) const;
+  struct Sheet {
+    double height_mm;
+    bool is_seen;  // in every column beside it
+  };
+  // Between the columns; beyond them as at the nearest.
+  [[nodiscard]] Sheet at(double x_mm, double y_mm) const;
 };
 
 // Within these bounds (LPS, mm). nullopt when less of a joint is seen than a knee has.

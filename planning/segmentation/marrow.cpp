@@ -28,10 +28,7 @@ struct Cells {
 
   // Whether it lies where the box of the solid ends and the volume goes on: the bone does not come there.
   [[nodiscard]] bool is_at_margin(const Volume& volume, const Box& box, std::size_t cell) const {
-    const auto nx = static_cast<std::size_t>(is_bone.size.x()),
-               ny = static_cast<std::size_t>(is_bone.size.y());
-    const Eigen::Array3i at(static_cast<int>(cell % nx), static_cast<int>(cell / nx % ny),
-                            static_cast<int>(cell / (nx * ny)));
+    const Eigen::Array3i at = is_bone.index_of(cell).array();
     const Eigen::Array3i low = first.array() + at * voxels_each.array(), high = low + voxels_each.array() - 1,
                          end = box.first.array() + box.size.array();
     return (box.first.array() > 0 && low <= box.first.array()).any() ||
@@ -145,9 +142,7 @@ void cap_ends(const Volume& volume, BoneSolid& solid) {
     }
   }
   const auto is_within_volume = [&](std::size_t voxel) {
-    const auto nx = static_cast<std::size_t>(mask.size.x()), ny = static_cast<std::size_t>(mask.size.y());
-    const Eigen::Array3i at(static_cast<int>(voxel % nx), static_cast<int>(voxel / nx % ny),
-                            static_cast<int>(voxel / (nx * ny)));
+    const Eigen::Array3i at = mask.index_of(voxel).array();
     const Eigen::Array3i in_volume = at + solid.box.first.array();
     return (at == 0 && in_volume > 0).any() ||
            (at == last.array() && in_volume < volume.size.array() - 1).any();
