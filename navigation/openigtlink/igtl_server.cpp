@@ -119,6 +119,12 @@ bool send_picture(igtl::Socket& socket, const camera::Frame& frame, igtl::TimeSt
   message->SetScalarTypeToUint8();
   message->SetNumComponents(3);
   message->SetCoordinateSystem(igtl::ImageMessage::COORDINATE_RAS);
+  // Columns go along the camera's x, rows along its y, both turned about as all that goes out: so it stands
+  // upright in Slicer's axial view, and to the poses as it was taken.
+  igtl::Matrix4x4 ras_from_picture;
+  igtl::IdentityMatrix(ras_from_picture);
+  ras_from_picture[0][0] = ras_from_picture[1][1] = -1;
+  message->SetMatrix(ras_from_picture);
   message->AllocateScalars();
   std::vector<std::uint8_t> made;
   const std::vector<std::uint8_t>& bgr = camera::bgr_of(frame, made);

@@ -6,7 +6,9 @@
 //                            their axes and tips lie in it)
 //   Bone_World               the registration: the bone's frame in the world, while it may guide
 //   Plan                     POINT: entry and end of the planned tunnel in the bone's frame
-//   Arthroscope              IMAGE, to who asks for it
+//   Arthroscope              IMAGE, to who asks for it: columns along the camera's x, rows along its y, a
+//   pixel
+//                            a millimetre, its middle at the origin; upright in Slicer's axial view
 //
 // The world is the frame of the bone's world marker; all of it goes out in RAS (ras_from_lps.h), so that the
 // bone as Slicer shows it, put under Bone_World, lies right to everything else.
@@ -25,7 +27,9 @@ struct NamedTransform {
   geometry::RigidTransform target_from_source;  // in RAS
 };
 
-// What is valid in the newest frame, and nothing else: a transform has no place for its validity.
+// What is valid in the newest frame, and nothing else: a transform has no place for its validity. So what is
+// not seen is not sent, and a client that goes on showing what came last shows a pose of before: it has to
+// let go what is older than the newest STATUS (in Slicer, the module Watchdog tells it).
 [[nodiscard]] std::vector<NamedTransform> named_transforms(const operation::OperationState& state);
 
 // The plan in force, in the bone's frame (RAS): "entry" and "end", where the tunnel ends. Empty without a

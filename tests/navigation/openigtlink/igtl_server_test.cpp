@@ -118,6 +118,7 @@ struct Client {
       int size[3];
       message->GetDimensions(size);
       image_size = {size[0], size[1]};
+      message->GetMatrix(matrix);
       const auto* const from = static_cast<const std::uint8_t*>(message->GetScalarPointer());
       rgb.assign(from, from + message->GetImageSize());
       return true;
@@ -180,6 +181,12 @@ TEST(NamedTransforms, HoldWhatIsValidAndNothingElse) {
     EXPECT_NE(t.name, "Bone_World");
     EXPECT_NE(t.name, "WorldFemur");
   }
+  // Guidance by the guide alone is OK, and says nothing of the probe: that one is not sent.
+  state = made_state();
+  state.frame.guidance.state = guidance::GuidanceState::Valid;
+  state.frame.tools[0].world_from_tool.is_valid = false;
+  EXPECT_TRUE(status_of(state).is_ok);
+  for (const NamedTransform& t : named_transforms(state)) EXPECT_NE(t.name, "ProbeTip_World");
   state.has_source = false;
   EXPECT_TRUE(named_transforms(state).empty());
 }
@@ -297,6 +304,14 @@ TEST(IgtlServer, SendsPicturesToWhoAsks) {
   EXPECT_EQ(asks.rgb[0], 2);
   EXPECT_EQ(asks.rgb[2], 0);
   EXPECT_EQ(asks.rgb[23], 21);
+  // The camera's x is a column's way, its y a row's; in RAS both are turned about, as the poses are. So a
+  // picture that 3D Slicer reads from a file lies, too.
+  const geometry::RigidTransform turned{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ())),
+                                        Eigen::Vector3d::Zero()};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      EXPECT_NEAR(asks.matrix[row][column], turned.matrix()(row, column), 1e-6) << row << column;
+  EXPECT_EQ(asks.matrix[0][3], 0) << "its middle";
   EXPECT_FALSE(publish_until_picture(5)) << "one was asked for";
   asks.ask<StartImages>();
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(publish_until_picture(2000)) << i;
