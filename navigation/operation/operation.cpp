@@ -44,6 +44,8 @@ void Operation::start_source(const SourceSetup& source) {
   // First what may throw: then nothing has changed.
   auto pipeline = std::make_unique<pipeline::NavigationPipeline>(source.pipeline);
   const registration::Provenance now = provenance_of(p.setup, source, p.ledger.now().placement);
+  // Nobody saw the marker between two sources, however long that was.
+  if (p.source != nullptr && source.kind == sources::SourceKind::Live) p.in_view.was_lost_for_long = true;
   p.pipeline = std::move(pipeline);
   p.source = std::make_shared<const SourceSetup>(source);
   p.has_source = true;

@@ -213,6 +213,23 @@ TEST_F(OperationRules, WhatIsNextStaysWhileTheGuideIsLostForAMoment) {
   EXPECT_EQ(run_.state()->next_action, NextAction::RecordDrilled) << "drilled, and the guide put down";
 }
 
+// Between two sources nobody saw the marker, and how long that was nobody knows: the control point is asked
+// for again before anything guides on.
+TEST_F(OperationRules, Hazard25BetweenTwoSourcesTheMarkerWasOutOfSight) {
+  give();
+  run_.touch(on_bone(6), TouchControlPoint{});
+  run_.apply(SkipVerification{});
+  ASSERT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+  run_.operation().end_source();
+  run_.start(test::scripted_source());
+  run_.show(run_.frame());
+  ASSERT_EQ(run_.in_force().standing, Standing::Stands);
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckAfterLoss);
+  EXPECT_EQ(run_.state()->next_action, NextAction::CheckControlPoint);
+  run_.touch(on_bone(6), TouchControlPoint{});
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+}
+
 // A loss that is told once is over with the touch, whatever source it was in.
 TEST_F(OperationRules, ABumpedMarkerEndsGuidanceUntilItIsSaidWhatItWas) {
   give();
