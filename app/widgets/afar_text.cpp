@@ -2,12 +2,15 @@
 
 #include <array>
 
+#include "app/widgets/wrapped_text.h"
+
 namespace arthronaut::widgets {
 
 namespace {
 
 ImVec2 size_of(ImFont* font, float width, std::string_view text) {
-  return font->CalcTextSizeA(font->FontSize, 1e9F, width, text.data(), text.data() + text.size());
+  const std::string lines = wrapped(font, text, width);
+  return font->CalcTextSizeA(font->FontSize, 1e9F, width, lines.data(), lines.data() + lines.size());
 }
 
 }  // namespace
@@ -30,7 +33,8 @@ float draw_afar(const Ui& ui, const Rect& area, ImU32 color, std::string_view te
   ImFont* const font = font_that_fits(ui.theme, area.width, area.height, text);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImVec4 clip{area.x, area.y, area.x + area.width, area.y + area.height};
-  draw.AddText(font, font->FontSize, area.min(), color, text.data(), text.data() + text.size(), area.width,
+  const std::string lines = wrapped(font, text, area.width);
+  draw.AddText(font, font->FontSize, area.min(), color, lines.data(), lines.data() + lines.size(), area.width,
                &clip);
   return size_of(font, area.width, text).y;
 }
