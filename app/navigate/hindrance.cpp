@@ -112,13 +112,16 @@ std::string hindrance_of(const operation::OperationState& state, theatre::Source
   std::string words = words_of_setup(state, needs);
   if (words.empty()) words = words_of_picture(state.frame, options.tools.tracker.has_value());
   if (words.empty() && trouble == theatre::SourceTrouble::Late) words = "the pictures are late";
-  if (words.empty() && trouble == theatre::SourceTrouble::Slow && needs == Needs::Guide)
-    words = "the pictures come too slowly";
+  const bool is_slow = trouble == theatre::SourceTrouble::Slow;
+  if (words.empty() && is_slow && needs == Needs::Guide) words = "the pictures come too slowly";
   if (const auto* const marker = options.tools.find_world_marker(options.bone);
       marker != nullptr && words.empty())
     words = why_not_tracked(state.frame, marker->marker_id, "bone marker");
   if (const tools::Tool* const tool = tool_of(options, needs); tool != nullptr && words.empty())
     words = why_not_tracked(state.frame, tool->marker_id, name_of(needs));
+  // It can be done all the same, and is all in vain unless somebody sees to the source before the guide is
+  // taken.
+  if (words.empty() && is_slow) words = "pictures come too slowly to guide by";
   return words;
 }
 
@@ -141,6 +144,14 @@ const std::string& SteadyWords::follow(const std::string& words, double now_s) {
   }
   if (coming_.empty() || now_s - since_s_ >= kLasted_s) shown_ = coming_;
   return shown_;
+}
+
+bool PassingWords::are_read(const std::string& words, double now_s) {
+  if (words != words_) {
+    words_ = words;
+    since_s_ = now_s;
+  }
+  return !words.empty() && now_s - since_s_ >= kRead_s;
 }
 
 }  // namespace arthronaut::navigate

@@ -35,4 +35,16 @@ class SteadyWords {
   double since_s_ = 0;  // that what comes has been the same
 };
 
+// What was said once, of something that was refused: it need not stand there all through an operation.
+class PassingWords {
+ public:
+  static constexpr double kRead_s = 20;
+  // True: these have stood there for as long as it takes to see and to read them.
+  [[nodiscard]] bool are_read(const std::string& words, double now_s);
+
+ private:
+  std::string words_;
+  double since_s_ = 0;
+};
+
 }  // namespace arthronaut::navigate

@@ -1,5 +1,6 @@
 // What the theatre screen asks, and what it tells the tests.
 #include "app/navigate/navigate_view.h"
+#include "app/navigate/tracking_words.h"
 
 namespace arthronaut::navigate {
 
@@ -13,6 +14,11 @@ std::string rail_in_letters(const Rail& rail) {
 }
 
 }  // namespace
+
+std::string NavigateView::notice() const {
+  const std::string of_record = record_notice(*live_, bones_.keeps_video());
+  return of_record.empty() ? notice_ : of_record;  // what was refused is less than what is not kept
+}
 
 bool NavigateView::draw_questions(const widgets::Ui& ui, const TheatreLayout& layout) {
   const widgets::Rect& area = layout.block;

@@ -8,7 +8,6 @@
 #include "app/case/case_calibration.h"
 #include "app/navigate/known_streams.h"
 #include "app/navigate/picture_keeping.h"
-#include "app/navigate/tracking_words.h"
 #include "app/scene/scene_camera.h"
 #include "navigation/camera/medium.h"
 #include "navigation/sources/connected_cameras.h"
@@ -91,10 +90,6 @@ void NavigateView::enter() {
   } catch (const std::runtime_error& error) {  // what is wrong with them is a step that is not done
     notice_ = error.what();
   }
-}
-
-std::string NavigateView::notice() const {
-  return notice_.empty() ? record_notice(*live_, bones_.keeps_video()) : notice_;
 }
 
 void NavigateView::end_source() {
@@ -347,7 +342,9 @@ void NavigateView::sound(double now_s) {
 void NavigateView::tick(double /*now_s*/) {
   if (model_ != nullptr) bones_.offer_plans();
   read_live();
-  sound(theatre::LiveOperation::now_s());
+  const double now = theatre::LiveOperation::now_s();
+  if (read_notice_.are_read(notice_, now) && is_running()) notice_.clear();
+  sound(now);
 }
 
 void NavigateView::on_screen() {

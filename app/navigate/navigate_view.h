@@ -87,9 +87,13 @@ class NavigateView : public mode::Mode {
   // One pedal: carries out what is a command, and starts nothing but the kind of source that was chosen.
   void take_next_step();
   [[nodiscard]] bool was_read();
+  // What the operation asks for, or pictures where it cannot be done without.
+  [[nodiscard]] operation::NextAction action_now() const;
   void finish_step(FinishAction action);
+  void find_anew();
   // Another pedal: one step back, to do it again; after the first step the one of now is shown again.
   void take_step_back();
+  [[nodiscard]] bool stays_there();
   void repeat_step(operation::Step step);
   [[nodiscard]] bool pedal_acts();
   [[nodiscard]] RailContext rail_context() const;
@@ -172,6 +176,7 @@ class NavigateView : public mode::Mode {
   std::function<std::string()> lent_step_;  // with that; see lend()
   double refused_s_ = -1e9;                 // when something was refused because of that
   std::string notice_;
+  PassingWords read_notice_;
 };
 
 }  // namespace arthronaut::navigate

@@ -118,6 +118,11 @@ TEST(Hindrance, IsThePictureBeforeAnythingInIt) {
   late.trouble = SourceTrouble::Slow;
   EXPECT_EQ(late.missing(NextAction::GoOnDrawing), "probe not seen");
   EXPECT_EQ(late.missing(NextAction::FollowBullseye), "the pictures come too slowly");
+  // That nothing will guide by them is said before the guide is taken.
+  Seen slow;
+  slow.trouble = SourceTrouble::Slow;
+  for (const NextAction action : kTouching)
+    EXPECT_EQ(slow.missing(action), "pictures come too slowly to guide by");
   Seen torn;
   torn.operation.frame.is_torn = true;
   torn.operation.frame.intrinsics_are_known = false;
@@ -148,6 +153,19 @@ TEST(SteadyWords, AreSaidOnceTheyHaveLasted) {
   EXPECT_EQ(words.follow("probe is covered", 1.7), "probe not seen");
   EXPECT_EQ(words.follow("probe is covered", 2.1), "probe is covered");
   EXPECT_EQ(words.follow("", 2.2), "");
+}
+
+// What was refused minutes ago stands no more over the operation; said again it stands again.
+TEST(PassingWords, AreReadOnceTheyHaveStoodThere) {
+  PassingWords words;
+  EXPECT_FALSE(words.are_read("", 0));
+  EXPECT_FALSE(words.are_read("", 100)) << "there is nothing to read";
+  EXPECT_FALSE(words.are_read("Stop the source first", 101));
+  EXPECT_FALSE(words.are_read("Stop the source first", 120));
+  EXPECT_FALSE(words.are_read("There is no video", 121)) << "another one";
+  EXPECT_TRUE(words.are_read("There is no video", 141));
+  EXPECT_FALSE(words.are_read("", 142));
+  EXPECT_FALSE(words.are_read("There is no video", 143)) << "again";
 }
 
 }  // namespace
