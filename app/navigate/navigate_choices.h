@@ -32,6 +32,8 @@ struct NavigateChoices {
   std::map<std::pair<sources::SourceKind, tunnels::TunnelKey>, operation::PlannedTunnel> drilled;
   // As it was measured, of the tunnels above.
   std::map<std::pair<sources::SourceKind, tunnels::TunnelKey>, operation::AchievedTunnel> measured;
+  // Of the same, those to which something guided that touches had verified.
+  std::set<std::pair<sources::SourceKind, tunnels::TunnelKey>> verified;
   // Whose world markers were said to be out, likewise.
   std::set<std::pair<sources::SourceKind, bones::BoneKind>> markers_out;
   std::optional<operation::Step> looked_at;     // the surgeon went back to it; empty: the one of now
@@ -55,6 +57,7 @@ struct NavigateChoices {
     };
     std::erase_if(drilled, is_of_it);
     std::erase_if(measured, is_of_it);
+    std::erase_if(verified, [&](const auto& one) { return one.first == kind && one.second.bone == bone; });
   }
   void note_next(const std::string& words, double now_s) {
     if (words == next) return;
@@ -66,8 +69,11 @@ struct NavigateChoices {
     using Outcome = operation::DrilledState::Outcome;
     if (state.plan && state.source != nullptr && state.drilled.outcome != Outcome::NotSaid)
       drilled.insert_or_assign({state.source->kind, state.plan->tunnel.key()}, *state.plan);
-    if (state.plan && state.source != nullptr && state.drilled.tunnel)
-      measured.insert_or_assign({state.source->kind, state.plan->tunnel.key()}, *state.drilled.tunnel);
+    if (!state.plan || state.source == nullptr || !state.drilled.tunnel) return;
+    const std::pair of(state.source->kind, state.plan->tunnel.key());
+    measured.insert_or_assign(of, *state.drilled.tunnel);
+    if (state.verification == operation::Verification::ByTouches) verified.insert(of);
+    if (state.verification == operation::Verification::Skipped) verified.erase(of);
   }
   // By the kind of source that `state` is of.
   [[nodiscard]] bool is_drilled(const operation::OperationState& state,

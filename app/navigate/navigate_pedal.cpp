@@ -67,6 +67,13 @@ void NavigateView::decline_resume() {
   resume_.answer(choices_.bone);
 }
 
+NextAction NavigateView::action_now() const {
+  const NextAction action = live_->operation->next_action;
+  // What is touched is touched in pictures: once they have ended, others come first.
+  const bool touches = action == NextAction::CheckWorldMarker && !must_place_anew(registration());
+  return touches && live_->phase != Phase::Starting && !is_running() ? NextAction::StartSource : action;
+}
+
 std::string NavigateView::next_step() {
   if (model_ == nullptr) return "open a case";
   if (resume_.is_looking()) return "wait: the case's last operation is looked for";
@@ -76,9 +83,12 @@ std::string NavigateView::next_step() {
   }
   if (left_behind() != nullptr) return "resume the operation that was left";
   if (const std::string own = lent_step(); !own.empty()) return own;
-  if (choices_.looked_at)
-    return words_of(repeat_of(*choices_.looked_at, *live_->operation), *choices_.looked_at);
-  const NextAction action = live_->operation->next_action;
+  if (choices_.looked_at) {
+    const Repeat repeat = repeat_of(*choices_.looked_at, *live_->operation);
+    const bool is_shown = repeat == Repeat::ShowGuide && finishes();
+    return is_shown ? words_of(NextAction::FollowBullseye) : words_of(repeat, *choices_.looked_at);
+  }
+  const NextAction action = action_now();
   if (const std::string choice = tunnel_to_choose(); !choice.empty()) return choice;
   if (choices_.goes_to_other_bone) return "wait: the pictures end";
   if (finishes())
@@ -92,7 +102,8 @@ std::string NavigateView::next_step() {
   if (is_in_wrong_medium()) return "wrong medium: hold Esc, then M for the other one, then start again";
   if (const std::string wait = words_without_pictures(); !wait.empty()) return wait;
   if (takes_guide_in_simulation()) return "take the guide (simulation)";
-  if (action == NextAction::CheckWorldMarker && must_place_anew(registration())) return place_anew_words();
+  if (action == NextAction::CheckWorldMarker && must_place_anew(registration()))
+    return place_anew_words(registration().alarm);
   if (action == NextAction::VerifyByTouch) return words_of_verifying(*live_->operation);
   if (action == NextAction::CheckControlPoint) return words_of_checking(*live_->operation);
   if (action == NextAction::RegisterAnew) return words_of_registering_anew(*live_->operation);
@@ -139,7 +150,10 @@ void NavigateView::take_next_step() {
   if (resume_.is_looking()) return;
   if (left_behind() != nullptr) return resume();
   if (!lent_step().empty()) return;
-  if (const auto step = std::exchange(choices_.looked_at, std::nullopt)) return repeat_step(*step);
+  if (choices_.looked_at) {
+    if (stays_there()) return;
+    return repeat_step(*std::exchange(choices_.looked_at, std::nullopt));
+  }
   if (choices_.goes_to_other_bone) return;
   if (tunnel_to_choose().empty() && finishes())
     return finish_step(finish_action(finished_bones(), choices_.bone, is_under_way(*live_)));
@@ -149,7 +163,7 @@ void NavigateView::take_next_step() {
     return;
   }
   if (waits_for_take_over()) return ask(operation::TakePlanOver{});
-  switch (live_->operation->next_action) {
+  switch (action_now()) {
     case NextAction::StartSource:
     case NextAction::PlanTunnel:  // of an operation that was not told yet of the plan that is there
       return must_set_up() ? go_elsewhere_(Elsewhere::SetUp) : start_same_kind();
@@ -168,7 +182,7 @@ void NavigateView::take_next_step() {
       return take_touch(false);
     case NextAction::CheckWorldMarker:
       if (!must_place_anew(registration())) return take_touch(true);
-      if (was_read()) ask(operation::MarkerPlacedAnew{});
+      if (was_read()) find_anew();
       return;
     case NextAction::SetControlPoint:
     case NextAction::CheckControlPoint:
@@ -190,18 +204,25 @@ void NavigateView::take_next_step() {
   }
 }
 
+// Both void all that was found. That the marker was placed anew is recorded where something says so.
+void NavigateView::find_anew() {
+  if (only_touches_tell(registration().alarm)) return ask(operation::ClearStrokes{});
+  ask(operation::MarkerPlacedAnew{});
+}
+
 bool NavigateView::pedal_acts() {
   if (model_ == nullptr || resume_.is_looking() || choices_.goes_to_other_bone) return false;
   if (cameras_.is_open()) return cameras_.chosen().has_value();
   if (left_behind() != nullptr) return true;
   if (!lent_step().empty()) return false;
-  if (choices_.looked_at) return repeat_of(*choices_.looked_at, *live_->operation) != Repeat::NothingNow;
+  if (choices_.looked_at)
+    return !stays_there() && repeat_of(*choices_.looked_at, *live_->operation) != Repeat::NothingNow;
   if (!tunnel_to_choose().empty()) return false;
   if (finishes())
     return finish_action(finished_bones(), choices_.bone, is_under_way(*live_)) != FinishAction::Nothing &&
            was_read();
   if (awaits_picture(*live_) || is_in_wrong_medium() || !words_without_pictures().empty()) return false;
-  switch (live_->operation->next_action) {
+  switch (action_now()) {
     case NextAction::BringGuide:
       return takes_guide_in_simulation();
     case NextAction::ConfirmTimeOut:
@@ -252,6 +273,13 @@ void NavigateView::take_step_back() {
   choices_.looked_at = step_before(choices_.looked_at.value_or(step_of_now(rail())));
 }
 
+// At the step that was gone back to: its guide is shown already, in place of the check list, or what a press
+// would record has not been read.
+bool NavigateView::stays_there() {
+  const Repeat repeat = repeat_of(*choices_.looked_at, *live_->operation);
+  return (repeat == Repeat::ShowGuide && finishes()) || (repeat == Repeat::RecordAnew && !was_read());
+}
+
 void NavigateView::repeat_step(operation::Step step) {
   switch (repeat_of(step, *live_->operation)) {
     case Repeat::ShowPlan:
@@ -269,6 +297,8 @@ void NavigateView::repeat_step(operation::Step step) {
     case Repeat::ShowGuide:
       choices_.layout = NavigateLayout::Guide;
       return;
+    case Repeat::RecordAnew:
+      return ask(operation::TunnelDrilled{});
     case Repeat::ShowFinish:
     case Repeat::NothingNow:
       return;
@@ -312,6 +342,8 @@ RailContext NavigateView::rail_context() const {
   const auto finished = finished_bones();
   context.is_drilled = is_drilled(finished);
   context.was_measured = context.is_drilled && finished.front().measured.has_value();
+  const auto& plan = live_->operation->plan;
+  context.was_verified = kind_ && plan && choices_.verified.contains({*kind_, plan->tunnel.key()});
   context.marker_is_out = kind_ && choices_.markers_out.contains({*kind_, choices_.bone});
   return context;
 }

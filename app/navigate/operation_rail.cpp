@@ -141,7 +141,11 @@ Missing rest_of(Step step, const Known& known) {
     case Step::Register:
       return known.was_guided_to() ? Missing::Nothing : missing_of_registration(known);
     case Step::Verify: {
-      if (known.was_guided_to()) return Missing::Nothing;
+      // The operation forgets it with the marker.
+      if (known.was_guided_to())
+        return state.verification == operation::Verification::ByTouches || known.context.was_verified
+                   ? Missing::Nothing
+                   : Missing::Touches;
       if (state.verification == operation::Verification::NotYet) return Missing::Touches;
       if (state.control_point_due != operation::ControlPointDue::None) return Missing::ControlPoint;
       if (!state.guide_check.may_guide()) return Missing::GuideCheck;
@@ -284,7 +288,9 @@ Repeat repeat_of(Step step, const OperationState& state) {
     case Step::Verify:
       return state.has_source ? Repeat::Touch : Repeat::NothingNow;
     case Step::Guide:
-      return Repeat::ShowGuide;
+      return state.drilled.outcome == operation::DrilledState::Outcome::Recorded && state.drilled.has_evidence
+                 ? Repeat::RecordAnew
+                 : Repeat::ShowGuide;
     case Step::Finish:
       return Repeat::ShowFinish;
   }
@@ -307,6 +313,8 @@ std::string words_of(Repeat repeat, Step step) {
       return "touch one more place that you know";
     case Repeat::ShowGuide:
       return "show the way to the plan";
+    case Repeat::RecordAnew:
+      return "drilled only now: record it anew";
     case Repeat::ShowFinish:
       return "show the check list";
     case Repeat::NothingNow:

@@ -60,6 +60,7 @@ struct RailContext {
   const tools::ToolSet* tools = nullptr;  // likewise; null: none that can be read
   bool is_drilled = false;                // said since the case was opened, of the plan in force
   bool was_measured = false;              // and the drill or the guide was seen at it, not only said
+  bool was_verified = false;              // likewise: touches had verified what guided to it
   bool marker_is_out = false;             // likewise
 };
 
@@ -85,6 +86,7 @@ enum class Repeat {
   RegisterAnew,  // all strokes
   Touch,         // one more that verifies
   ShowGuide,     // bullseye and numbers
+  RecordAnew,    // it was said to be drilled, and seen at the entry since: it was said too early
   ShowFinish,    // the check list
   NothingNow,    // what it needs is not there
 };

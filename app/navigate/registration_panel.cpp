@@ -110,21 +110,24 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
   const float line = ui.theme.afar->FontSize;
   // In the order of what matters: what does not fit any more is left out whole.
   const auto put = [&](widgets::Severity severity, ImU32 color, const std::string& text) {
-    if (text.empty()) return;
+    if (text.empty()) return true;
     const float indent = severity == widgets::Severity::Quiet ? 0 : line;
     const float height = widgets::afar_height(ui, rest.width - indent, text);
-    if (height > rest.height + 1) return;
+    if (height > rest.height + 1) return false;
     widgets::Rect row = rest.cut_top(height);
     if (indent > 0) widgets::draw_sign(draw, {row.x + line * 0.4F, row.y + line / 2}, line * 0.36F, severity);
     (void)row.cut_left(indent);
     widgets::draw_afar(ui, row, color, text);
+    return true;
   };
   const auto put_row = [&](const SeverityText& row) {
     const bool is_quiet = row.severity == widgets::Severity::Quiet;
     put(row.severity, is_quiet ? widgets::kText : widgets::color_of(row.severity), row.name + " " + row.text);
   };
-  // A picture that is not of now comes before everything else.
-  const bool is_told = !screen.display.is_live || !screen.display.world_is_placed;
+  const SeverityText& state = words.state;
+  // A picture that is not of now comes before everything else; what is said of the registration is said once.
+  const bool is_told =
+      (!screen.display.is_live || !screen.display.world_is_placed) && screen.display.headline != state.name;
   if (is_told) {
     const bool is_amiss = screen.display.has_picture;  // before there is one nothing is
     put(is_amiss ? widgets::Severity::Caution : widgets::Severity::Quiet,
@@ -132,13 +135,22 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
     put(widgets::Severity::Quiet, widgets::kText, screen.display.detail);
     (void)rest.cut_top(ui.theme.px(12));
   }
-  const SeverityText& state = words.state;
-  // That strokes are collected is no word to put behind why none can be.
-  if (!is_told || state.severity != widgets::Severity::Quiet)
-    put(state.severity,
-        state.severity == widgets::Severity::Quiet ? widgets::kText : widgets::color_of(state.severity),
-        state.name);
-  if (rest.height > ui.theme.px(24)) {
+  // That strokes are collected is no word to put behind why none can be; and a bar without its word says
+  // nothing.
+  const bool is_quiet = state.severity == widgets::Severity::Quiet;
+  const bool is_named =
+      (!is_told || !is_quiet) &&
+      put(state.severity, is_quiet ? widgets::kText : widgets::color_of(state.severity), state.name);
+  // Of what is bad there is no progress: why, and what to do, has its room, or else why alone.
+  const bool is_bad = state.severity == widgets::Severity::Bad;
+  // Without pictures nothing can be done.
+  const bool can_be_done = screen.live->phase != theatre::LiveState::Phase::Ended;
+  if (is_bad && can_be_done && !put(widgets::Severity::Quiet, widgets::kText, state.text)) {
+    const auto& in_force = screen.live->operation->registration->in_force.registration;
+    if (in_force != nullptr && !in_force->reasons.empty())
+      put(widgets::Severity::Quiet, widgets::kText, in_force->reasons.front());
+  }
+  if (is_named && !is_bad && rest.height > ui.theme.px(24)) {
     ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(24)).min());
     ImGui::BeginChild("navigate.progress", {rest.width, ui.theme.px(18)}, false,
                       ImGuiWindowFlags_NoScrollbar);
@@ -146,8 +158,7 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
     ImGui::EndChild();
   }
   if (words.touch) put_row(words.touch->number);
-  // Without pictures nothing of it can be done.
-  if (screen.live->phase != theatre::LiveState::Phase::Ended)
+  if (!is_bad && can_be_done)
     put(widgets::Severity::Quiet, widgets::kText, words.missing.empty() ? state.text : words.missing);
   for (const SeverityText& row : words.numbers) put_row(row);
   if (!screen.has_source()) return;

@@ -161,6 +161,10 @@ std::optional<TouchText> touch_of(const operation::RegistrationState& state) {
                        "Touch it again whenever the marker may have been hit."};
     case Kind::ControlAgain: {
       const bool is_good = *last.distance_mm <= limits.max_control_shift_mm;
+      // The probe is finer than the picture, and half as far off as that says is not where it was.
+      if (is_good && state.alarm.seen_drift_mm > 0)
+        return TouchText{{Severity::Caution, "Control point", tenths_of_mm(*last.distance_mm)},
+                         "Too far to deny what the picture shows."};
       return TouchText{
           {is_good ? Severity::Good : Severity::Bad, "Control point", tenths_of_mm(*last.distance_mm)},
           is_good ? "It is where it was." : "It has moved: touch it once more."};

@@ -59,5 +59,32 @@ TEST(NavigateChoices, DrilledIsSaidOfTheVeryPlanAndKindOfSource) {
   EXPECT_FALSE(choices.is_drilled(live, other)) << "planned anew";
 }
 
+// The operation forgets with the marker that touches had verified what guided; the list at the end does not,
+// and makes nothing of a verification that was skipped.
+TEST(NavigateChoices, WhatWasVerifiedIsRememberedWithTheTunnel) {
+  using operation::Verification;
+  NavigateChoices choices;
+  operation::OperationState state;
+  operation::SourceSetup source;
+  source.kind = sources::SourceKind::Live;
+  state.source = std::make_shared<const operation::SourceSetup>(source);
+  state.plan.emplace();
+  state.verification = Verification::ByTouches;
+  choices.follow(state);
+  EXPECT_TRUE(choices.verified.empty()) << "nothing is drilled";
+  state.drilled.tunnel.emplace();
+  state.verification = Verification::Skipped;
+  choices.follow(state);
+  EXPECT_TRUE(choices.verified.empty());
+  state.verification = Verification::ByTouches;
+  choices.follow(state);
+  state.verification = Verification::NotYet;
+  choices.follow(state);
+  EXPECT_EQ(choices.verified.size(), 1U);
+  choices.markers_out.insert({source.kind, choices.bone});
+  choices.begin(source.kind);
+  EXPECT_TRUE(choices.verified.empty()) << "the operation begins afresh";
+}
+
 }  // namespace
 }  // namespace arthronaut::navigate

@@ -121,6 +121,7 @@ TEST(OperationRail, LeadsThroughTheNineSteps) {
 
   // The marker is out: what was drilled is the case's to remember, and the operation is at its end.
   course.state.drilled = {};
+  course.state.verification = operation::Verification::NotYet;
   course.registration = operation::RegistrationState();
   course.context.is_drilled = course.context.was_measured = course.context.marker_is_out = true;
   rail = course.rail();
@@ -129,6 +130,9 @@ TEST(OperationRail, LeadsThroughTheNineSteps) {
   EXPECT_EQ(state_of(rail, Step::Register), StepState::Done) << "it was, and is not asked for again";
   EXPECT_EQ(state_of(rail, Step::WorldMarker), StepState::Done)
       << "it was placed, and is out as it should be";
+  EXPECT_NE(state_of(rail, Step::Verify), StepState::Done) << "nobody says that it was";
+  course.context.was_verified = true;
+  EXPECT_EQ(state_of(course.rail(), Step::Verify), StepState::Done);
 }
 
 // A tunnel that was only said to be drilled brings the finish, and no tick to a step that nobody took.
@@ -183,6 +187,10 @@ TEST(OperationRail, ASkippedVerificationIsNotTicked) {
   EXPECT_EQ(step_of_now(rail), Step::Guide);
   EXPECT_EQ(state_of(rail, Step::Verify), StepState::Open);
   EXPECT_EQ(missing_of(rail, Step::Verify), Missing::Touches);
+  // Nor does the tunnel tick it.
+  course.state.drilled.outcome = operation::DrilledState::Outcome::Recorded;
+  EXPECT_EQ(state_of(course.rail(), Step::Verify), StepState::Open);
+  EXPECT_EQ(state_of(course.rail(), Step::Register), StepState::Done);
 }
 
 // What is missing is named on the step that misses it.
@@ -263,6 +271,20 @@ TEST(OperationRail, NothingBlocksTheWayBack) {
   EXPECT_EQ(repeat_of(Step::Plan, course.state), Repeat::ShowPlan);
   EXPECT_EQ(repeat_of(Step::Tools, course.state), Repeat::ShowSetUp);
   EXPECT_EQ(repeat_of(Step::WorldMarker, course.state), Repeat::NothingNow) << "there is no control point";
+}
+
+// A press too early says that it is drilled. The guide at the entry since then is how it is recorded as it
+// was drilled in the end.
+TEST(OperationRail, WhatWasSaidTooEarlyIsRecordedAnew) {
+  Course course;
+  course.verify();
+  course.state.registration = std::make_shared<const operation::RegistrationState>(course.registration);
+  course.state.drilled.has_evidence = true;
+  EXPECT_EQ(repeat_of(Step::Guide, course.state), Repeat::ShowGuide) << "the step of now says it";
+  course.state.drilled.outcome = operation::DrilledState::Outcome::Recorded;
+  EXPECT_EQ(repeat_of(Step::Guide, course.state), Repeat::RecordAnew);
+  course.state.drilled.has_evidence = false;
+  EXPECT_EQ(repeat_of(Step::Guide, course.state), Repeat::ShowGuide) << "nothing was seen since";
 }
 
 }  // namespace

@@ -128,6 +128,20 @@ TEST(RegistrationWords, ColoursFollowTheVerdict) {
   EXPECT_EQ(numbers(Standing::Stands, 0.5, registration::kNoRivalRatio).at(1).text, "comes near");
 }
 
+// A control point that does not deny what the picture shows is not called where it was beside the alarm.
+TEST(RegistrationWords, AControlPointThatDeniesNothingIsNotCalledGood) {
+  Known known;
+  known.stand(Standing::Alarm);
+  known.registration.touches.touch_control_point({0, 0, 0}, {});
+  known.registration.touches.touch_control_point({0, 0, 0.8}, {});
+  ASSERT_TRUE(touch_of(known.registration));
+  EXPECT_EQ(touch_of(known.registration)->number.severity, Severity::Good);
+  known.registration.alarm.kind = operation::TouchAlarm::Kind::SeenInPicture;
+  known.registration.alarm.seen_drift_mm = 1.2;
+  EXPECT_EQ(touch_of(known.registration)->number.severity, Severity::Caution);
+  EXPECT_EQ(touch_of(known.registration)->sentence.find("where it was"), std::string::npos);
+}
+
 // What must not guide has no figures, whatever runs along.
 TEST(RegistrationWords, WhatDoesNotStandHasNoFigures) {
   for (const Standing standing :

@@ -66,8 +66,13 @@ std::vector<std::string> all_words() {
                                  "the pictures have ended: start the simulated operation",
                                  words_of(operation::NextAction::VerifyByTouch) + ", 3 to go",
                                  "calibrate camera and tools in Set up",
-                                 "wait: the case's last operation is looked for",
-                                 place_anew_words()};
+                                 "wait: the case's last operation is looked for"};
+  operation::TouchAlarm alarm;
+  for (const auto kind :
+       {operation::TouchAlarm::Kind::ControlPointMoved, operation::TouchAlarm::Kind::TouchesOff}) {
+    alarm.kind = kind;
+    words.push_back(place_anew_words(alarm));
+  }
   operation::OperationState state;
   for (const auto due :
        {operation::ControlPointDue::CheckBeforeDrilling, operation::ControlPointDue::CheckAfterLoss,
