@@ -85,7 +85,7 @@ std::string NavigateView::next_step() {
   if (const std::string own = lent_step(); !own.empty()) return own;
   if (choices_.looked_at) {
     const Repeat repeat = repeat_of(*choices_.looked_at, *live_->operation);
-    const bool is_shown = repeat == Repeat::ShowGuide && finishes();
+    const bool is_shown = repeat == Repeat::ShowGuide && finishes() && is_running();
     return is_shown ? words_of(NextAction::FollowBullseye) : words_of(repeat, *choices_.looked_at);
   }
   const NextAction action = action_now();
@@ -277,7 +277,8 @@ void NavigateView::take_step_back() {
 // would record has not been read.
 bool NavigateView::stays_there() {
   const Repeat repeat = repeat_of(*choices_.looked_at, *live_->operation);
-  return (repeat == Repeat::ShowGuide && finishes()) || (repeat == Repeat::RecordAnew && !was_read());
+  return (repeat == Repeat::ShowGuide && finishes() && is_running()) ||
+         (repeat == Repeat::RecordAnew && !was_read());
 }
 
 void NavigateView::repeat_step(operation::Step step) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 
 #include "app/navigate/navigate_panels.h"
 #include "app/navigate/tracking_words.h"
@@ -109,8 +110,9 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
   widgets::Rect rest = area.inset(ui.theme.px(14));
   const float line = ui.theme.afar->FontSize;
   // In the order of what matters: what does not fit any more is left out whole.
-  const auto put = [&](widgets::Severity severity, ImU32 color, const std::string& text) {
+  const auto put = [&](widgets::Severity severity, ImU32 color, std::string text) {
     if (text.empty()) return true;
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     const float indent = severity == widgets::Severity::Quiet ? 0 : line;
     const float height = widgets::afar_height(ui, rest.width - indent, text);
     if (height > rest.height + 1) return false;
