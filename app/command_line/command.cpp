@@ -11,10 +11,18 @@
 namespace arthronaut::command_line {
 
 Progress::Progress(std::string_view what, long total)
-    : what_(what), total_(total), shown_(::isatty(STDERR_FILENO) != 0) {}
+    : what_(what), total_(total), shown_(::isatty(STDERR_FILENO) != 0) {
+  if (total_ <= 0) advance_to(0);
+}
 
 Progress::~Progress() {
   if (shown_ && last_percent_ >= 0) std::cerr << "\r\033[K" << std::flush;
+}
+
+void Progress::name(std::string_view what) {
+  if (what_ == what) return;
+  what_ = what;
+  last_percent_ = -1;
 }
 
 void Progress::advance_to(long done) {
@@ -60,25 +68,31 @@ CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& nam
 
 CLI::Option* add_vector_option(CLI::App& subcommand, const std::string& name, Eigen::Vector3d& value,
                                const std::string& description) {
-  constexpr double kFarthest_mm = 1e6;  // a kilometre; what is reckoned with it stays finite
-  const auto read = [&value](const std::string& text) {
+  // What is wrong with it; empty when it was read.
+  const auto read = [&value](const std::string& text) -> std::string {
+    constexpr double kFarthest_mm = 1e6;  // a kilometre; what is reckoned with it stays finite
+    const std::string no_numbers = "must be three numbers as X,Y,Z without spaces";
     const char* at = text.data();
     const char* const end = at + text.size();
     Eigen::Vector3d parsed;
+    bool is_too_large = false;
     for (int i = 0; i < 3; ++i) {
       const auto [next, error] = std::from_chars(at, end, parsed[i]);
-      if (error != std::errc() || !(std::abs(parsed[i]) <= kFarthest_mm)) return false;
-      if (i < 2 && (next == end || *next != ',')) return false;
+      const bool is_out_of_range = error == std::errc::result_out_of_range;
+      if ((error != std::errc() && !is_out_of_range) || std::isnan(parsed[i])) return no_numbers;
+      is_too_large = is_too_large || is_out_of_range || std::abs(parsed[i]) > kFarthest_mm;
+      if (i < 2 && (next == end || *next != ',')) return no_numbers;
       at = next + (i < 2 ? 1 : 0);
     }
-    if (at != end) return false;
+    if (at != end) return no_numbers;
+    if (is_too_large) return "must be numbers of -1000000 to 1000000";
     value = parsed;
-    return true;
+    return "";
   };
   const auto parse = [read, name](const CLI::results_t& results) {
-    if (read(results.front())) return true;
-    throw CLI::ValidationError(name,
-                               "\"" + results.front() + "\" must be three numbers as X,Y,Z without spaces");
+    const std::string wrong = read(results.front());
+    if (wrong.empty()) return true;
+    throw CLI::ValidationError(name, "\"" + results.front() + "\" " + wrong);
   };
   return subcommand.add_option(name, parse, description)->type_name("X,Y,Z")->expected(1);
 }

@@ -20,9 +20,11 @@ enum ExitCode : int { kDone = 0, kInternalError = 1, kWrongUsage = 2, kInvalidIn
 // Progress on a terminal, silence in a pipe. One line, rewritten; removed at the end.
 class Progress {
  public:
-  explicit Progress(std::string_view what, long total);  // total <= 0: unknown
+  // total <= 0: unknown; that it goes on is then shown at once.
+  explicit Progress(std::string_view what, long total);
   ~Progress();
   void advance_to(long done);
+  void name(std::string_view what);  // another part of the same work, from the next advance on
 
  private:
   std::string what_;

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -38,30 +37,13 @@ importing::BoneImportOptions options_of(const ImportArguments& arguments) {
   return options;
 }
 
-class ProgressLine {
- public:
-  void show(const importing::ImportProgress& progress) {
-    if (progress.stage.empty()) return;
-    if (progress.stage != stage_) {
-      line_.reset();
-      const bool is_known = progress.fraction >= 0;
-      line_.emplace(progress.stage, is_known ? 100 : 0);
-      stage_ = progress.stage;
-    }
-    line_->advance_to(std::lround(100 * std::max(progress.fraction, 0.0)));
-  }
-
- private:
-  std::string stage_;
-  std::optional<Progress> line_;
-};
-
 // Waits, shows how far it is, and passes an interruption on.
 void watch(importing::ImportProcess& process, const Interruption& interruption) {
   constexpr double kLongestWait_s = 0.1;
-  ProgressLine line;
+  Progress line("", 100);  // of all stages
   while (process.wait_for(kLongestWait_s) == importing::ImportProcess::State::Running) {
-    line.show(process.progress());
+    line.name(importing::in_words(process.progress().stage));
+    line.advance_to(std::lround(100 * process.done_fraction()));
     if (interruption.caught() != 0) process.cancel();
   }
 }

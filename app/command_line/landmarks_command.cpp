@@ -77,13 +77,14 @@ const bones::Bone& bone_of(const cases::Case& knee, BoneKind kind, const std::st
   return found->second;
 }
 
-void refuse_far_off(const bones::Bone& bone, const NamedPlace& place) {
+void refuse_far_off(const bones::Bone& bone, const NamedPlace& place, const std::string& folder) {
   constexpr double kFarOff_mm = 60;  // long axes and centres lie inside; further off it is another frame
   const auto bounds = geometry::bounds_of(bone.mesh);
   const Eigen::Vector3d nearest = place.at_mm.cwiseMax(bounds.min_mm).cwiseMin(bounds.max_mm);
   if ((nearest - place.at_mm).norm() > kFarOff_mm) {
-    throw InvalidInput(files::format("landmarks: --set %s.%s lies %.0f mm off the bone",
-                                     std::string(bones::to_text(place.bone)).c_str(), place.name.c_str(),
+    const std::string name(bones::to_text(place.bone));
+    throw InvalidInput(folder, name,
+                       files::format("--set %s.%s lies %.0f mm off it", name.c_str(), place.name.c_str(),
                                      (nearest - place.at_mm).norm()));
   }
 }
@@ -151,8 +152,9 @@ bool change(const LandmarkArguments& arguments, cases::Case& knee,
   for (const std::string& text : arguments.set) placed.push_back(placed_from(text));
   for (const std::string& text : arguments.confirm) confirmed.push_back(place_from(text));
   for (const NamedPlace& place : placed)
-    refuse_far_off(bone_of(knee, place.bone, arguments.case_folder), place);
+    refuse_far_off(bone_of(knee, place.bone, arguments.case_folder), place, arguments.case_folder);
   if (arguments.propose) {
+    const Progress progress("Looking for landmarks", 0);
     for (const auto& [kind, bone] : knee.bones) {
       proposals[kind] =
           landmarks::propose(bone.mesh, kind,

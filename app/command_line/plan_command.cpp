@@ -88,6 +88,7 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
 // how far it may be relied on.
 tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee, bones::BoneKind kind,
                                const geometry::Surface& surface, PlanVerdict& verdict) {
+  const Progress progress("Making the default plan", 0);
   landmarks::Landmarks& marks = knee.landmarks[kind];
   landmarks::LandmarkStates& states = knee.landmark_states[kind];
   default_plan::BoneInput input{
@@ -240,8 +241,15 @@ void refuse_export(const std::string& folder) {
   plan_export::refuse_foreign(folder);
 }
 
+plan_export::ExportSummary exported(const PlanArguments& arguments, const cases::Case& knee) {
+  if (knee.plan.tunnels.empty())
+    throw InvalidInput(arguments.case_folder, "plan.json", "plans nothing, so there is nothing to export");
+  const Progress progress("Drilling the bones", 0);
+  return plan_export::export_plan(knee, arguments.export_folder);
+}
+
 void export_to(const PlanArguments& arguments, Context& context, const cases::Case& knee) {
-  const auto summary = plan_export::export_plan(knee, arguments.export_folder);
+  const auto summary = exported(arguments, knee);
   if (!arguments.as_json)
     for (const auto& file : summary.files) context.say("Wrote " + file.string());
   if (!summary.doubts.empty()) context.say_unreliable("The exported plan", summary.doubts);

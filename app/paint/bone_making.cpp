@@ -46,6 +46,7 @@ void BoneMaking::start(const cases::Case& knee, const std::filesystem::path& cas
   failure_.clear();
   qualities_.clear();
   progress_ = {};
+  done_fraction_ = 0;
   result_ = {};
   folder_ = case_folder;
   side_ = knee.side;
@@ -116,6 +117,7 @@ void BoneMaking::poll() {
   if (state_ == State::Making) {
     const Process::State state = process_->poll();
     progress_ = process_->progress();
+    done_fraction_ = process_->done_fraction();
     if (state == Process::State::Running) return;
     if (state == Process::State::Done) {
       result_ = process_->take_result();

@@ -45,6 +45,7 @@ class BoneMaking {
 
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] const importing::ImportProgress& progress() const { return progress_; }
+  [[nodiscard]] double done_fraction() const { return done_fraction_; }  // Making: of all, never back
   [[nodiscard]] const std::vector<importing::BoneQuality>& qualities() const {
     return qualities_;
   }                                                                              // Judging
@@ -59,6 +60,7 @@ class BoneMaking {
   State state_ = State::Idle;
   std::unique_ptr<importing::ImportProcess> process_;
   importing::ImportProgress progress_;
+  double done_fraction_ = 0;
   importing::BoneImport result_;
   std::vector<importing::BoneQuality> qualities_;  // the painted volume is known from the start
   std::shared_ptr<const images::Volume> images_;   // that it was painted in

@@ -136,12 +136,10 @@ void PaintView::draw_model(const widgets::Ui& ui, const widgets::Rect& area) {
 void PaintView::draw_work(const widgets::Ui& ui) {
   if (making_.state() == State::Making || making_.state() == State::Saving) {
     const bool saves = making_.state() == State::Saving;
-    const std::string stage = making_.progress().stage;
-    widgets::text_in(ui.theme.strong, widgets::kText,
-                     saves           ? "Writing the bones"
-                     : stage.empty() ? "Starting"
-                                     : stage + " ...");
-    draw_bar(ui, saves ? 1 : making_.progress().fraction);
+    widgets::text_in(
+        ui.theme.strong, widgets::kText,
+        saves ? "Writing the bones" : std::string(importing::in_words(making_.progress().stage)) + " ...");
+    draw_bar(ui, saves ? 1 : making_.done_fraction());
     if (!saves) widgets::action_button(ui, "paint.stop", ImGui::GetContentRegionAvail().x);
   } else if (job_.is_running()) {
     widgets::text_in(ui.theme.strong, widgets::kText,

@@ -30,8 +30,11 @@ void add_mesh(ImportSources& found, const fs::path& file) {
   if (part.empty()) mesh.bone = importing::bone_kind_in_name(file);
   mesh.title = "Mesh: " + file.filename().string();
   std::error_code error;
-  mesh.detail = files::format("%.1f MB", static_cast<double>(fs::file_size(file, error)) / 1e6);
-  if (mesh.bone)
+  const auto bytes = fs::file_size(file, error);
+  mesh.detail = error ? "" : files::format("%.1f MB", static_cast<double>(bytes) / 1e6);
+  if (!error && bytes == 0)
+    mesh.refusal = "the file is empty";
+  else if (mesh.bone)
     mesh.detail += ", the " + std::string(bones::to_text(*mesh.bone)) + " by its name";
   else if (!part.empty())
     mesh.refusal = part + " by its name: nothing is planned on it";

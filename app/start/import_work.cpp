@@ -1,8 +1,6 @@
 #include "app/start/import_work.h"
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 #include <utility>
 
 #include "app/case/case_opening.h"
@@ -12,23 +10,6 @@
 namespace arthronaut::start {
 
 namespace fs = std::filesystem;
-
-double share_of_all(const importing::ImportProgress& progress) {
-  struct Stage {
-    std::string_view begins;  // its name
-    double from, to;
-  };
-  // A process of its own reads, and hands over: of a CT the bones take longest.
-  constexpr std::array<Stage, 5> kStages{{{"Reading", 0, 0.3},
-                                          {"Finding the bones", 0.3, 0.8},
-                                          {"Making the surface", 0.5, 0.8},
-                                          {"Mending the mesh", 0.8, 0.9},
-                                          {"Looking at the bones", 0.9, 0.98}}};
-  for (const Stage& stage : kStages)
-    if (progress.stage.starts_with(stage.begins))
-      return stage.from + (stage.to - stage.from) * std::clamp(progress.fraction, 0.0, 1.0);
-  return 0;
-}
 
 ImportWork::ImportWork(std::function<void()> wake, fs::path program)
     : wake_(std::move(wake)), program_(std::move(program)) {}
@@ -121,6 +102,7 @@ void ImportWork::begin() {
   said_side_.reset();
   failure_ = {};
   state_ = State::Running;
+  done_fraction_ = 0;
   start_next();
 }
 
@@ -149,7 +131,6 @@ void ImportWork::start_next(std::optional<bones::LengthUnit> unit) {
   if (const auto space = spaces_.find(wishes_.sources[next_]); space != spaces_.end())
     options.space = space->second;
   progress_ = {};
-  done_fraction_ = 0;
   try {
     process_ = std::make_unique<importing::ImportProcess>(
         importing::ImportRequest{.source = source.source, .options = options, .program = program_});
@@ -189,7 +170,8 @@ void ImportWork::take_bones() {
   using Process = importing::ImportProcess;
   const Process::State state = process_->poll();
   progress_ = process_->progress();
-  done_fraction_ = std::max(done_fraction_, share_of_all(progress_));
+  done_fraction_ = std::max(done_fraction_, (static_cast<double>(next_) + process_->done_fraction()) /
+                                                static_cast<double>(wishes_.sources.size()));
   if (state == Process::State::Running) return;
   if (state != Process::State::Done) return take_refusal();
   importing::BoneImport made = process_->take_result();

@@ -36,9 +36,6 @@ struct ImportWishes {
   std::optional<bones::LengthUnit> unit = {};
 };
 
-// How far an import is as a whole, 0 to 1, by the share that its stages take of a CT's.
-[[nodiscard]] double share_of_all(const importing::ImportProgress& progress);
-
 class ImportWork {
  public:
   enum class State { Idle, Looking, Choosing, Running, Asking, Saving, Done };
@@ -74,7 +71,7 @@ class ImportWork {
   [[nodiscard]] bool makes_pictures() const;     // after the list
   [[nodiscard]] double looked_fraction() const;  // Looking: 0 to 1
   [[nodiscard]] const importing::ImportProgress& progress() const { return progress_; }
-  // Of all its stages, 0 to 1, and never back.
+  // Of all its stages and sources, 0 to 1, and never back.
   [[nodiscard]] double done_fraction() const { return done_fraction_; }
   // Asking: what was made, and what should be looked at before it is relied on.
   [[nodiscard]] const importing::BoneImport& result() const { return result_; }

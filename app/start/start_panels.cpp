@@ -73,10 +73,8 @@ void StartView::draw_import(const widgets::Ui& ui, const widgets::Rect& area) {
       return;
     case State::Running:
     case State::Saving: {
-      const importing::ImportProgress& progress = work_.progress();
-      const std::string stage = work_.state() == State::Saving ? "Writing the case"
-                                : progress.stage.empty()       ? "Starting"
-                                                               : progress.stage;
+      const std::string stage(work_.state() == State::Saving ? "Writing the case"
+                                                             : importing::in_words(work_.progress().stage));
       widgets::Rect rest = area;
       const widgets::Rect words = rest.cut_top(area.height / 2);
       widgets::text_centered(ui, words, ui.theme.title, widgets::kText, stage);

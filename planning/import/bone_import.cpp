@@ -24,8 +24,7 @@ using bones::BoneKind;
 using bones::Side;
 using namespace images;
 
-using Tell = std::function<void(std::string_view, double)>;
-constexpr double kUnknown = -1;  // of the time that a stage takes
+using Tell = std::function<void(const ImportProgress&)>;
 
 // Air in a CT; no other modality has values this low that means anything.
 constexpr float kAir_hu = -500;
@@ -72,7 +71,7 @@ struct BoneImages {
 // images: that it was made of; null for a mesh.
 ImportedBone finished(BoneKind kind, const std::string& source, const geometry::TriangleMesh& mesh,
                       BoneImages* images, const Tell& tell) {
-  tell("Mending the mesh", kUnknown);
+  tell({ImportStage::MendingMesh});
   bones::MeshRepair repair = bones::mend_mesh(mesh);
   ImportedBone imported;
   imported.repair = repair.report;
@@ -119,9 +118,10 @@ void import_mesh(const std::filesystem::path& source, const BoneImportOptions& o
   if (!options.labels.empty() || options.threshold || !options.series.empty()) {
     throw InvalidInput(source, "", "is a mesh: --label, --threshold and --series are for volumes");
   }
+  refuse_empty_file(source);  // before anything is asked about it
   const auto kind = options.kind ? options.kind : bone_kind_in_name(source);
   if (!kind) ask_for_kind(source);
-  tell("Reading", kUnknown);
+  tell({ImportStage::Reading});
   const bones::MeshFile file = read_asking_for_unit(source, options);
   const char* said_by = options.space             ? "as --space says"
                         : file.space_was_declared ? "as the file says"
@@ -184,7 +184,7 @@ std::map<BoneKind, int> labels_by_name(const Volume& volume, std::vector<std::st
 std::optional<Volume> ct_of(const Volume& labels, const BoneImportOptions& options, const Tell& tell) {
   if (options.edges_in.empty()) return std::nullopt;
   VolumeFileOptions reading{.series = {}, .most_bytes = options.most_bytes};
-  reading.on_progress = [&](double fraction) { tell("Reading the images", fraction); };
+  reading.on_progress = [&](double fraction) { tell({ImportStage::ReadingImages, fraction}); };
   Volume grey = read_volume(options.edges_in, reading);
   if (grey.modality != "CT") return std::nullopt;
   if (grey.size != labels.size || !grey.lps_from_index.isApprox(labels.lps_from_index, 1e-5))
@@ -198,7 +198,7 @@ void import_labels(BoneImages& images, const std::map<BoneKind, int>& labels,
   const std::optional<Volume> ct = ct_of(volume, options, tell);
   for (const auto& [kind, label] : labels) {
     if (options.kind && *options.kind != kind) continue;
-    tell("Making the surface", kUnknown);
+    tell({ImportStage::MakingSurface});
     BoneSurface surface;
     if (ct) {
       surface.mesh = segmentation::label_surface_at_edges(*ct, volume, label);
@@ -226,7 +226,7 @@ bool import_ct(BoneImages& images, const BoneImportOptions& options, BoneImport&
   ct.threshold = options.threshold;
   ct.only = options.kind;
   ct.side = result.side;
-  ct.tell = tell;
+  ct.tell = [&](std::string_view, double fraction) { tell({ImportStage::FindingBones, fraction}); };
   const segmentation::CtBones found = segmentation::bones_of_ct(images.volume, ct);
   result.lines.insert(result.lines.end(), found.notes.begin(), found.notes.end());
   for (const segmentation::CtBone& bone : found.bones) {
@@ -260,7 +260,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
         source, "", "is a volume, which says its space and unit itself: --space and --unit are for meshes");
   }
   VolumeFileOptions reading{.series = options.series, .most_bytes = options.most_bytes};
-  reading.on_progress = [&](double fraction) { tell("Reading", fraction); };
+  reading.on_progress = [&](double fraction) { tell({ImportStage::Reading, fraction}); };
   reading.on_origin = [&](const DicomOrigin& origin) { result.origin = origin; };
   const Volume volume = read_volume(source, reading);
   const Eigen::Vector3d spacing = volume.spacing_mm();
@@ -310,7 +310,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
                                          .size = volume.size,
                                          .spacing_mm = spacing},
                                .volume = encoded(volume)};
-  tell("Looking at the bones", kUnknown);
+  tell({ImportStage::LookingAtBones});
   check_shapes(result, fibula_was_seen);
   // After the shapes, which are looked at where nothing speaks against a bone yet.
   for (ImportedBone& imported : result.bones)
@@ -342,8 +342,8 @@ void say_side(BoneImport& import, bones::Side side) {
 
 BoneImport import_bones(const std::filesystem::path& source, const BoneImportOptions& options,
                         const Tell& listener) {
-  const Tell tell = [&](std::string_view stage, double fraction) {
-    if (listener) listener(stage, fraction);
+  const Tell tell = [&](const ImportProgress& progress) {
+    if (listener) listener(progress);
   };
   if (!std::filesystem::exists(source)) throw IoError(source, "does not exist");
   BoneImport result;
@@ -351,7 +351,7 @@ BoneImport import_bones(const std::filesystem::path& source, const BoneImportOpt
   result.side_was_guessed = !options.side && result.side;
   if (bones::is_mesh_file(source) && !std::filesystem::is_directory(source)) {
     import_mesh(source, options, result, tell);
-    tell("Looking at the bones", kUnknown);
+    tell({ImportStage::LookingAtBones});
     check_shapes(result, false);
   } else if (is_volume_source(source)) {
     import_volume(source, options, result, tell);
@@ -362,6 +362,13 @@ BoneImport import_bones(const std::filesystem::path& source, const BoneImportOpt
         "MetaImage)");
   }
   return result;
+}
+
+void refuse_empty_file(const std::filesystem::path& source) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(source, error) && std::filesystem::file_size(source, error) == 0 &&
+      !error)
+    throw InvalidInput(source, "", "is empty");
 }
 
 std::optional<BoneKind> bone_kind_in_name(const std::filesystem::path& source) {

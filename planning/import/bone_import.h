@@ -8,7 +8,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "planning/bones/bone.h"
@@ -17,6 +16,7 @@
 #include "planning/cases/case_image.h"
 #include "planning/cases/identity.h"
 #include "planning/images/dicom_origin.h"
+#include "planning/import/import_progress.h"
 
 namespace arthronaut::importing {
 
@@ -40,12 +40,6 @@ struct BoneImportOptions {
   std::filesystem::path edges_in = {};
   // Volumes: what reading may take, as images::VolumeFileOptions has it.
   std::size_t most_bytes = std::size_t{2} << 30;
-};
-
-struct ImportProgress {
-  std::string stage;     // "Reading", "Finding the bones", "Making the surface", "Mending the mesh",
-                         // "Looking at the bones"
-  double fraction = -1;  // of this stage, 0 to 1; below 0: not known
 };
 
 struct ImportedBone {
@@ -102,7 +96,10 @@ void say_side(BoneImport& import, bones::Side side);
 // progress. For files from elsewhere use ImportProcess, which does this where it can do no harm.
 [[nodiscard]] BoneImport import_bones(
     const std::filesystem::path& source, const BoneImportOptions& options = {},
-    const std::function<void(std::string_view stage, double fraction)>& tell = nullptr);
+    const std::function<void(const ImportProgress& progress)>& tell = nullptr);
+
+// Throws InvalidInput of a file without a byte, as reading it would: before anything is asked about it.
+void refuse_empty_file(const std::filesystem::path& source);
 
 // From words in a name such as "3_RIGHT_femur.vtk" or "knee-L-tibia.stl"; nullopt when there is none, or
 // both.

@@ -187,6 +187,7 @@ void refuse_folder(const fs::path& folder) {
 void refuse_missing_side(const fs::path& folder, const fs::path& source, const BoneImportOptions& options) {
   if (options.side || side_in_name(source) || fs::exists(folder / "case.json") || !fs::exists(source)) return;
   const bool is_mesh = bones::is_mesh_file(source) && !fs::is_directory(source);
+  if (is_mesh) refuse_empty_file(source);
   if (is_mesh && !options.kind && !bone_kind_in_name(source))
     throw InvalidInput(source, "",
                        "its name says neither which bone it is nor of which knee: add --bone femur or --bone "

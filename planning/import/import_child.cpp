@@ -81,10 +81,9 @@ std::string needs_more(const ChildRequest& request) {
 }
 
 void make_bones(int socket, const ChildRequest& request) {
-  BoneImport import =
-      import_bones(request.source, request.options, [&](std::string_view stage, double fraction) {
-        send_all(socket, message_of(ImportProgress{std::string(stage), fraction}));
-      });
+  BoneImport import = import_bones(request.source, request.options, [&](const ImportProgress& progress) {
+    send_all(socket, message_of(progress));
+  });
   if (import.image && !put_voxels(kSharedDescriptor, import.image->volume.voxels)) import.image.reset();
   send_all(socket, message_of(import));
 }
@@ -106,7 +105,7 @@ SeriesPicture picture_of(const images::ImageSeries& series, const ChildRequest& 
 void look_through(int socket, const ChildRequest& request) {
   images::VolumeFileOptions reading{.series = {}, .most_bytes = request.memory_limit_bytes};
   reading.on_progress = [&](double fraction) {
-    send_all(socket, message_of(ImportProgress{"Looking", fraction}));
+    send_all(socket, message_of(ImportProgress{ImportStage::LookingThrough, fraction}));
   };
   const images::SeriesList list = images::find_series(request.source, reading);
   const std::string message = message_of(list);

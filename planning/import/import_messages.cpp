@@ -285,7 +285,7 @@ T read(std::string_view contents) {
 }
 
 void refuse_unsound(const ImportProgress& progress) {
-  if (progress.stage.size() > kLongestText_bytes || !std::isfinite(progress.fraction))
+  if (progress.stage > ImportStage::LookingAtBones || !std::isfinite(progress.fraction))
     throw InvalidInput("the importing process sent a progress that is none");
 }
 

@@ -1,5 +1,6 @@
 #include "planning/import/import_process.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "planning/geometry/error.h"
@@ -44,6 +45,7 @@ ImportProcess::State ImportProcess::wait_for(double seconds) {
 bool ImportProcess::take(const Message& message) {
   if (message.kind == MessageKind::Progress) {
     progress_ = progress_from(message.contents);
+    done_fraction_ = std::max(done_fraction_, share_of_all(progress_));
     return false;
   }
   if (message.kind != MessageKind::Result)

@@ -45,6 +45,8 @@ class ImportProcess {
 
   [[nodiscard]] State state() const { return child_.state(); }
   [[nodiscard]] const ImportProgress& progress() const { return progress_; }
+  // Of all its stages, 0 to 1, and never back.
+  [[nodiscard]] double done_fraction() const { return done_fraction_; }
   // Why it failed or was cancelled, for a person; empty otherwise.
   [[nodiscard]] const std::string& message() const { return child_.message(); }
   [[nodiscard]] const Failure& failure() const { return child_.failure(); }  // with these words
@@ -60,6 +62,7 @@ class ImportProcess {
   ImportRequest request_;
   ChildProcess child_;
   ImportProgress progress_;
+  double done_fraction_ = 0;
   BoneImport result_;
 };
 

@@ -96,6 +96,14 @@ TEST_F(BadInput, EmptyFolderToImport) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "knee.arthro"));
 }
 
+// Nobody is sent to find out which bone a file without a byte is of.
+TEST_F(BadInput, MeshWithoutAByte) {
+  test::write_file(folder_ / "bone.stl", "");
+  const auto result = run_program({"import", folder_ / "bone.stl", "-o", folder_ / "knee.arthro"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, AllOf(HasSubstr("bone.stl: is empty"), Not(HasSubstr("--bone"))));
+}
+
 // The volume is there: it only has to be named.
 TEST_F(BadInput, FolderOfVolumesThatAreNoDicom) {
   std::filesystem::create_directory(folder_ / "scans");

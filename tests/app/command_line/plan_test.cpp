@@ -118,6 +118,11 @@ TEST_F(PlanCommand, WhatWouldDoNothingIsRefused) {
   const auto two = run({"plan", "--bone", "femur", "--entry", "1,2", "--direction", "1,0,0"});
   EXPECT_EQ(two.exit_code, 2);
   EXPECT_THAT(two.errors, HasSubstr("--entry: \"1,2\" must be three numbers"));
+  for (const char* large : {"1e9,0,0", "0,0,-1e999"}) {
+    const auto beyond = run({"plan", "--bone", "femur", "--entry", large, "--direction", "1,0,0"});
+    EXPECT_EQ(beyond.exit_code, 2) << large;
+    EXPECT_THAT(beyond.errors, HasSubstr("must be numbers of -1000000 to 1000000")) << large;
+  }
   EXPECT_THAT(run({"plan", "--take", "0"}).errors, HasSubstr("--take: \"0\" must be a number, above 0"));
   EXPECT_EQ(run({"plan", "--bone", "femur", "--direction", "1,0,0"}).exit_code, 2);
   EXPECT_EQ(run({"plan", "--bone", "femur", "--at-footprint", "--direction", "0,0,0"}).exit_code, 2);
@@ -129,10 +134,22 @@ TEST_F(PlanCommand, WhatWouldDoNothingIsRefused) {
   const auto off = run({"plan", "--bone", "femur", "--entry", "500,0,0", "--direction", "1,0,0"});
   EXPECT_EQ(off.exit_code, 3);
   EXPECT_THAT(off.errors, HasSubstr("knee.arthro: femur: --entry lies"));
+  EXPECT_THAT(run({"landmarks", "--set", "femur.notch_apex=500,0,0"}).errors,
+              HasSubstr("knee.arthro: femur: --set femur.notch_apex lies"));
   EXPECT_EQ(run({"landmarks", "--roof", "flat"}).exit_code, 2) << "nothing is proposed";
   const auto set = run({"landmarks", "--set", "femur.notch_apex=1,2,nan"});
   EXPECT_EQ(set.exit_code, 2);
   EXPECT_THAT(set.errors, HasSubstr("--set: \"femur.notch_apex=1,2,nan\" is not BONE.NAME=x,y,z"));
+}
+
+// What takes seconds says so on a terminal.
+TEST_F(PlanCommand, WhatTakesLongSaysWhatItDoes) {
+  const std::string knee = folder_ / "knee.arthro";
+  EXPECT_THAT(run_program({"landmarks", knee, "--propose"}, {.errors_on_terminal = true}).errors,
+              HasSubstr("Looking for landmarks"));
+  EXPECT_THAT(
+      run_program({"plan", knee, "--bone", "femur", "--default"}, {.errors_on_terminal = true}).errors,
+      HasSubstr("Making the default plan"));
 }
 
 // A knee without landmarks: they are proposed, and that is a reason to look before relying on it. They stay

@@ -49,6 +49,29 @@ std::string contents_of(const fs::path& file) {
   ::_exit(127);
 }
 
+// Both ends of a terminal.
+struct Terminal {
+  int ours = -1, theirs = -1;
+};
+
+Terminal new_terminal() {
+  Terminal terminal;
+  terminal.ours = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  if (::grantpt(terminal.ours) == 0 && ::unlockpt(terminal.ours) == 0)
+    terminal.theirs = ::open(::ptsname(terminal.ours), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  return terminal;
+}
+
+// Until nobody has the other end any more.
+std::string all_of(int terminal) {
+  std::string text;
+  char chunk[4096];
+  for (ssize_t count = 0; (count = ::read(terminal, chunk, sizeof(chunk))) > 0;)
+    text.append(chunk, static_cast<std::size_t>(count));
+  ::close(terminal);
+  return text;
+}
+
 // Nothing is sent to a program that has ended.
 void interrupt_when(const std::function<bool()>& is_time, pid_t child) {
   siginfo_t ended{};
@@ -68,20 +91,24 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const Progr
   const TemporaryFolder folder;
   const fs::path output_file = limits.output.empty() ? fs::path(folder / "out") : limits.output;
   const int output = ::open(output_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  const int errors = ::open((folder / "err").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  const Terminal terminal = limits.errors_on_terminal ? new_terminal() : Terminal{};
+  const int errors = limits.errors_on_terminal
+                         ? terminal.theirs
+                         : ::open((folder / "err").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   const pid_t child = ::fork();
   if (child == 0)
     become_program(arguments, limits, limits.data_home.empty() ? folder / "data" : limits.data_home, output,
                    errors);
+  ::close(errors);  // ours: the terminal has ended when the program has
+  ProgramResult result;
+  if (limits.errors_on_terminal) result.errors = all_of(terminal.ours);
   int status = 0;
   if (limits.interrupts_when) interrupt_when(limits.interrupts_when, child);
   ::waitpid(child, &status, 0);
   ::close(output);
-  ::close(errors);
-  ProgramResult result;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   if (limits.output.empty()) result.output = contents_of(output_file);
-  result.errors = contents_of(folder / "err");
+  if (!limits.errors_on_terminal) result.errors = contents_of(folder / "err");
   return result;
 }
 

@@ -22,6 +22,8 @@ struct ProgramLimits {
   std::filesystem::path data_home = {};
   // Ctrl+C once this is true; asked all the while.
   std::function<bool()> interrupts_when = {};
+  // Standard error is a terminal: progress is shown.
+  bool errors_on_terminal = false;
   std::filesystem::path output = {};  // where standard output goes in place of ProgramResult::output
 };
 

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "planning/images/series_list.h"
 #include "tests/app/command_line/program.h"
+#include "tests/planning/images/large_volume.h"
 #include "tests/planning/images/volume_forms.h"
 #include "tests/temporary_folder.h"
 
@@ -81,6 +83,25 @@ TEST_F(SeriesCommand, WhatCannotBeLookedIntoIsSaid) {
   expect_refused({"series", folder_ / "disc", "--memory-limit-gib", "0.001"},
                  (folder_ / "disc").string() + ": ");
   EXPECT_EQ(run_program({"series", folder_ / "disc", "--memory-limit-gib", "0"}).exit_code, 2);
+}
+
+// On a terminal one line says how far an import is as a whole: it does not begin anew with each stage.
+TEST(ImportCommand, ItsProgressNeverGoesBack) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "knee.nrrd", test::uniform_nrrd({100, 100, 100}, 700));
+  const auto result = run_program({"import", folder / "knee.nrrd", "--threshold", "300", "--side", "left",
+                                   "--bone", "femur", "-o", folder / "Knee.arthro"},
+                                  {.errors_on_terminal = true});
+  const std::regex percent("([0-9]+) %");
+  int before = 0, count = 0;
+  for (std::sregex_iterator at(result.errors.begin(), result.errors.end(), percent), end; at != end; ++at) {
+    const int now = std::stoi((*at)[1]);
+    EXPECT_GE(now, before) << result.errors;
+    before = now;
+    ++count;
+  }
+  EXPECT_GE(count, 3) << result.errors;
+  EXPECT_GE(before, 80) << result.errors;
 }
 
 }  // namespace

@@ -56,18 +56,13 @@ class ImportWorkTest : public ::testing::Test {
   ImportWork work_{[] {}, ARTHRONAUT_PROGRAM};
 };
 
-// One bar for all stages of an import: it does not begin anew with each.
-TEST(ImportProgress, NoStageBeginsBeforeTheOneBeforeItHasEnded) {
-  double before = 0;
-  for (const char* stage :
-       {"Reading the images", "Finding the bones", "Mending the mesh", "Looking at the bones"})
-    for (const double fraction : {-1.0, 0.5, 1.0}) {
-      const double share = share_of_all({stage, fraction});
-      EXPECT_GE(share, before) << stage;
-      before = share;
-    }
-  EXPECT_GT(before, 0.9);
-  EXPECT_LE(before, 1);
+// A file without a byte is listed with that reason, whatever its name says.
+TEST_F(ImportWorkTest, AnEmptyMeshIsSaidToBeEmpty) {
+  test::write_bytes(folder_ / "femur.stl", "");
+  work_.look_into(folder_.path());
+  ASSERT_TRUE(reach(State::Choosing));
+  ASSERT_EQ(work_.sources().sources.size(), 1U);
+  EXPECT_EQ(work_.sources().sources[0].refusal, "the file is empty");
 }
 
 // From a folder with two meshes to a case with two bones; the side that no name tells is asked for and the
@@ -96,6 +91,26 @@ TEST_F(ImportWorkTest, MakesACaseOfTwoMeshesAndAsksForTheSide) {
   EXPECT_EQ(made.side, bones::Side::Right);
   EXPECT_EQ(made.bones.size(), 2U);
   EXPECT_NE(new_case_folder(folder_ / "cases", "Knee"), target) << "the next one gets a folder of its own";
+}
+
+// One bar for all that is imported: it does not begin anew with the second mesh.
+TEST_F(ImportWorkTest, TheBarNeverGoesBack) {
+  write_meshes("right_femur.stl", "right_tibia.stl");
+  work_.look_into(folder_.path());
+  ASSERT_TRUE(reach(State::Choosing));
+  work_.start({.sources = {0, 1}});
+  double before = 0, at_second = 0;
+  const auto follow = [&] {
+    EXPECT_GE(work_.done_fraction(), before);
+    before = work_.done_fraction();
+    if (at_second == 0 && work_.result().bones.size() == 1) at_second = before;
+    return work_.state() == State::Asking;
+  };
+  ASSERT_TRUE(reach(work_, follow)) << work_.failure();
+  EXPECT_GE(at_second, 0.4) << "half of two meshes";
+  EXPECT_LE(at_second, 0.5);
+  EXPECT_GT(before, 0.9);
+  EXPECT_LE(before, 1);
 }
 
 // That both knees are there is told by the import, not by words that a folder's name may have, too.

@@ -89,6 +89,16 @@ TEST(CaseImport, BoneAndSideAreAskedForAtOnce) {
   EXPECT_NO_THROW(refuse_missing_side(folder / "Old.arthro", folder / "bone.stl", {})) << "the case has one";
 }
 
+// Nobody is asked which bone it is that a file without a byte holds.
+TEST(CaseImport, AnEmptyMeshIsRefusedForBeingEmpty) {
+  const TemporaryFolder folder;
+  test::write_bytes(folder / "bone.stl", "");
+  EXPECT_THAT(message_of<InvalidInput>([&] { refuse_missing_side(folder / "a", folder / "bone.stl", {}); }),
+              HasSubstr("bone.stl: is empty"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)import_bones(folder / "bone.stl"); }),
+              HasSubstr("bone.stl: is empty"));
+}
+
 TEST(CaseImport, WhatItRefusesStaysAsItWas) {
   const TemporaryFolder folder;
   test::write_bytes(folder / "letter.txt", "Dear colleague");

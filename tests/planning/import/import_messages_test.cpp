@@ -74,7 +74,7 @@ struct Kind {
 };
 
 std::vector<Kind> kinds() {
-  return {{"progress", contents_of(message_of(ImportProgress{"Looking", 0.5})),
+  return {{"progress", contents_of(message_of(ImportProgress{ImportStage::LookingThrough, 0.5})),
            [](std::string_view c) { (void)progress_from(c); }},
           {"bones", contents_of(message_of(an_import())), [](std::string_view c) { (void)import_from(c); }},
           {"list", contents_of(message_of(a_list())),

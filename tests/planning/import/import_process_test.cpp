@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <set>
 
 #include "planning/geometry/error.h"
 #include "planning/images/volume_writer.h"
@@ -116,11 +115,15 @@ TEST_F(ImportProcessTest, TellsHowFarItIs) {
   ImportRequest asked = request(folder_ / "knee.nrrd");
   asked.options.threshold = 300;
   ImportProcess process(asked);
-  std::set<std::string> stages;
-  while (process.wait_for(60) == State::Running) stages.insert(process.progress().stage);
+  double before = 0;
+  while (process.wait_for(60) == State::Running) {
+    EXPECT_GE(process.done_fraction(), before) << in_words(process.progress().stage);
+    before = process.done_fraction();
+  }
   EXPECT_EQ(process.state(), State::Done) << process.message();
+  EXPECT_GT(process.done_fraction(), 0.85);
   // Quick stages may pass between two looks; the last one that was told stays.
-  EXPECT_EQ(process.progress().stage, "Looking at the bones");
+  EXPECT_EQ(process.progress().stage, ImportStage::LookingAtBones);
 }
 
 TEST_F(ImportProcessTest, ARefusalComesBackWithFilePlaceAndReason) {

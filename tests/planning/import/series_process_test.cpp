@@ -177,7 +177,7 @@ TEST_F(SeriesProcessTest, AChildThatTalksNonsenseIsAClearError) {
   const std::string list = message_of(list_of(2));
   for (const std::string& messages :
        {std::string(100'000, '\0'), message_of(kPicture), message_of(BoneImport{}), list + list,
-        list + message_of(ImportProgress{"Looking", 0.5})}) {
+        list + message_of(ImportProgress{ImportStage::LookingThrough, 0.5})}) {
     SeriesProcess process(request_to(messages, "exec sleep 60"));
     EXPECT_EQ(finished(process), State::Failed);
     EXPECT_THAT(process.message(), AllOf(HasSubstr("disc: "), HasSubstr("the importing process sent")));
@@ -193,7 +193,7 @@ TEST_F(SeriesProcessTest, AChildThatTalksNonsenseIsAClearError) {
 // A window goes on with its frames beside it.
 TEST_F(SeriesProcessTest, AChildThatNeverStopsTalkingHoldsNobodyUp) {
   std::string much;
-  for (int i = 0; i < 20'000; ++i) much += message_of(ImportProgress{"Looking", 0.5});
+  for (int i = 0; i < 20'000; ++i) much += message_of(ImportProgress{ImportStage::LookingThrough, 0.5});
   SeriesProcess process(
       request_to(much, "while :; do cat " + (folder_ / "messages").string() + "; done >&0"));
   const auto start = std::chrono::steady_clock::now();
