@@ -5,6 +5,7 @@
 
 #include "planning/cases/case.h"
 #include "planning/files/private_folder.h"
+#include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
 
 namespace arthronaut::open_case {
@@ -22,12 +23,22 @@ std::filesystem::path built_in_case_folder() {
 
 namespace {
 
-void load(OpenedCase& opened, const std::stop_token& stop) {
+using Tell = std::function<void(double)>;
+
+// Meshes from the disk are about a fifth of it.
+constexpr double kReadingShare = 0.2;
+
+void load(OpenedCase& opened, const std::stop_token& stop, const Tell& tell) {
   cases::Case knee = cases::load_case(opened.folder);
-  if (knee.bones.empty() && !knee.images.empty()) {
+  if (tell) tell(kReadingShare);
+  if (knee.bones.empty() && knee.images.empty())
+    throw InvalidInput(opened.folder, "case.json", "holds neither a bone to show nor images to paint one in");
+  if (knee.bones.empty()) {
     opened.unpainted = std::move(knee);
   } else {
-    opened.model = std::make_unique<PlanModel>(std::move(knee), stop);
+    opened.model = std::make_unique<PlanModel>(std::move(knee), stop, [&tell](double done) {
+      if (tell) tell(kReadingShare + (1 - kReadingShare) * done);
+    });
     opened.model->set_measurements(cases::load_measurements(opened.folder));
   }
   opened.identity = cases::load_identity(opened.folder);
@@ -35,7 +46,7 @@ void load(OpenedCase& opened, const std::stop_token& stop) {
 
 }  // namespace
 
-OpenedCase open_folder(const std::filesystem::path& folder, const std::stop_token& stop) {
+OpenedCase open_folder(const std::filesystem::path& folder, const std::stop_token& stop, const Tell& tell) {
   OpenedCase opened;
   opened.folder = folder.empty() ? built_in_case_folder() : folder;
   if (folder.empty()) files::create_private_folder(opened.folder);
@@ -43,23 +54,32 @@ OpenedCase open_folder(const std::filesystem::path& folder, const std::stop_toke
     opened.lock = cases::CaseLock(opened.folder);
   if (folder.empty() && opened.lock.is_held() && !std::filesystem::exists(opened.folder / "case.json"))
     cases::save_case(opened.folder, phantom::case_of(phantom::make_phantom_knee(), "Phantom knee"));
-  load(opened, stop);
+  load(opened, stop, tell);
   return opened;
 }
 
 CaseOpening::CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end) {
-  opening_.start([folder, stop = stop_.get_token()] { return open_folder(folder, stop); }, std::move(on_end));
+  opening_.start(
+      [this, folder, stop = stop_.get_token()] {
+        return open_folder(folder, stop, [this](double done) { note_done(done); });
+      },
+      std::move(on_end));
+}
+
+void CaseOpening::note_done(double done) {
+  for (double before = done_; before < done && !done_.compare_exchange_weak(before, done);) {
+  }
 }
 
 CaseOpening::CaseOpening(CaseOpening& before, std::function<void()> on_end) {
   open_.lock = std::move(before.open_.lock);
   const bool is_ours = open_.lock.is_held();
   opening_.start(
-      [folder = before.folder(), is_ours, stop = stop_.get_token()] {
+      [this, folder = before.folder(), is_ours, stop = stop_.get_token()] {
         OpenedCase opened;
         opened.folder = folder;
         if (!is_ours) opened.lock = cases::CaseLock(folder);  // read-only, unless it has become free
-        load(opened, stop);
+        load(opened, stop, [this](double done) { note_done(done); });
         return opened;
       },
       std::move(on_end));
@@ -69,13 +89,14 @@ bool CaseOpening::take() {
   if (!opening_.is_ready()) return false;
   try {  // the top of the opening thread: a case that cannot be read is said on the screen
     OpenedCase opened = opening_.take();
+    if (is_cancelled()) return false;  // it was ready in the same moment
     if (open_.lock.is_held())
       opened.lock = std::move(open_.lock);
     else
       locked_at_ = Clock::now();
     open_ = std::move(opened);
   } catch (const std::exception& error) {
-    failure_ = error.what();
+    if (!is_cancelled()) failure_ = error.what();
     return false;
   }
   return true;

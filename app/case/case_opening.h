@@ -1,6 +1,7 @@
 // From a folder to what the workstation works on.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -32,8 +33,9 @@ struct OpenedCase {
 // Takes the case (cases::CaseLock), loads it and makes its bones ready, which takes seconds: for a job. A
 // case that another program has open, or that cannot be written, is loaded all the same. An empty path is the
 // built-in case, made anew when it is not there. Throws IoError or InvalidInput, also once `stop` asks for
-// it.
-[[nodiscard]] OpenedCase open_folder(const std::filesystem::path& folder, const std::stop_token& stop = {});
+// it. tell: from any thread, which share is done, 0 to 1.
+[[nodiscard]] OpenedCase open_folder(const std::filesystem::path& folder, const std::stop_token& stop = {},
+                                     const std::function<void(double done)>& tell = nullptr);
 
 // The one case of a window: being opened on a thread of its own, then open for good, or refused with a
 // reason. While it is open it is this program's to write, or read-only, and stays so.
@@ -57,6 +59,12 @@ class CaseOpening {
   // Takes over what the thread has made, without waiting; true once, when the case has become open just now.
   bool take();
   [[nodiscard]] bool is_busy() const { return opening_.is_busy(); }
+  // 0 to 1, and never back.
+  [[nodiscard]] double done_fraction() const { return done_; }
+  // Busy: it ends as soon as it can, and no case becomes open, nor is there a failure. The lock of a case
+  // that was open before goes back by keep_lock().
+  void cancel() { stop_.request_stop(); }
+  [[nodiscard]] bool is_cancelled() const { return stop_.stop_requested(); }
   // Null until it is open, and in a case whose bones are still to be painted.
   [[nodiscard]] PlanModel* model() const { return open_.model.get(); }
   // That case; null where there are bones.
@@ -77,7 +85,10 @@ class CaseOpening {
   [[nodiscard]] const std::optional<cases::Identity>& identity() const { return open_.identity; }
 
  private:
+  void note_done(double done);  // any thread
+
   OpenedCase open_;
+  std::atomic<double> done_ = 0;
   Clock::time_point locked_at_;
   std::string failure_;
   std::stop_source stop_;

@@ -1,6 +1,7 @@
 #include "app/case/plan_model.h"
 
 #include <algorithm>
+#include <atomic>
 #include <future>
 #include <map>
 #include <utility>
@@ -26,21 +27,35 @@ constexpr std::size_t kMovingTriangles = 6000;
 
 }  // namespace
 
-PlanModel::PlanModel(cases::Case knee, const std::stop_token& stop) : knee_(std::move(knee)) {
+PlanModel::PlanModel(cases::Case knee, const std::stop_token& stop,
+                     const std::function<void(double done)>& tell)
+    : knee_(std::move(knee)) {
+  // Of each bone: drawn, its surface, its landmarks.
+  const auto pieces =
+      3 * std::ranges::count_if(knee_.bones, [](const auto& b) { return !b.second.mesh.empty(); });
+  std::atomic<int> pieces_done = 0;
+  const auto piece_done = [&] {
+    const int done = ++pieces_done;
+    if (tell) tell(static_cast<double>(done) / static_cast<double>(pieces));
+  };
   // Beside the proposals, which take seconds.
   auto made_ready = std::async(std::launch::async, [&] {
     for (const auto& [kind, bone] : std::as_const(knee_.bones)) {
-      if (bone.mesh.empty()) continue;
+      if (bone.mesh.empty() || stop.stop_requested()) continue;
       BoneModel& made = bones_[kind];
       made.drawn = scene::simplified(bone.mesh);
+      piece_done();
+      if (stop.stop_requested()) continue;
       made.review.surface = std::make_shared<const geometry::Surface>(bone.mesh);
       made.bounds = geometry::bounds_of(bone.mesh);
       made.mesh_sha256 = bones::mesh_sha256(bone.mesh);
+      piece_done();
     }
   });
   // A default plan asks for the proposal, too, as long as somebody has to look at the grid: not then, when a
   // key is pressed.
-  auto proposed = plan_review::propose_landmarks(knee_, plan_review::Proposing::WithoutConfirmed, stop);
+  auto proposed =
+      plan_review::propose_landmarks(knee_, plan_review::Proposing::WithoutConfirmed, stop, piece_done);
   made_ready.get();
   if (stop.stop_requested()) throw InvalidInput("the case \"" + knee_.name + "\" is no longer wanted");
   for (auto& [kind, made] : bones_) {

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -30,8 +31,10 @@ namespace arthronaut::open_case {
 class PlanModel {
  public:
   // Proposes landmarks of a bone that the case has no grid for, or one that nobody confirmed: two seconds
-  // each, for a job. Throws InvalidInput when the case has no bone, and once `stop` asks for it.
-  explicit PlanModel(cases::Case knee, const std::stop_token& stop = {});
+  // each, for a job. Throws InvalidInput when the case has no bone, and once `stop` asks for it. tell: from
+  // any thread, which share of this is done, 0 to 1.
+  explicit PlanModel(cases::Case knee, const std::stop_token& stop = {},
+                     const std::function<void(double done)>& tell = nullptr);
 
   [[nodiscard]] const cases::Case& knee() const { return knee_; }
   [[nodiscard]] bool has_bone(bones::BoneKind kind) const { return bones_.contains(kind); }

@@ -33,6 +33,25 @@ void WorkstationWindow::open(const std::filesystem::path& folder) {
                                 : std::make_unique<open_case::CaseOpening>(folder, wake);
 }
 
+// While the bones of the open case are others now there is no way back to those that were.
+bool WorkstationWindow::can_stop_opening() const {
+  return opening_ != nullptr && !opening_->is_cancelled() && (lender_ == nullptr || lender_ != case_.get());
+}
+
+void WorkstationWindow::draw_opening(const widgets::Ui& ui, const widgets::Rect& area) const {
+  widgets::Rect rest = area;
+  widgets::text_centered(ui, rest.cut_top(area.height / 2), ui.theme.title, widgets::kText,
+                         opening_->is_cancelled() ? "Stopping" : "Opening the case");
+  const float width = area.width / 2, height = ui.theme.px(24);
+  const ImVec2 at(area.x + area.width / 4, rest.y + ui.theme.px(20));
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddRectFilled(at, {at.x + width, at.y + height}, widgets::kPanelEdge, ui.theme.px(6));
+  draw.AddRectFilled(at, {at.x + width * static_cast<float>(opening_->done_fraction()), at.y + height},
+                     widgets::kAccent, ui.theme.px(6));
+  if (can_stop_opening())
+    widgets::draw_buttons(ui, {at.x, at.y + ui.theme.px(60), width, ui.theme.px(56)}, {"app.stop_opening"});
+}
+
 void WorkstationWindow::take_opened_case() {
   if (opening_ == nullptr) return;
   const bool is_open = opening_->take();
@@ -85,7 +104,7 @@ void WorkstationWindow::take_dropped() {
   const auto dropped = window_.take_dropped();
   if (dropped.empty()) return;
   if (has_running_work() || opening_ != nullptr) {
-    failure_ = "Stop what runs before another case is opened";
+    failure_ = "Nothing that is dropped is taken while something runs: stop it first, then drop it again";
     return;
   }
   failure_.clear();

@@ -74,6 +74,15 @@ void WorkstationWindow::add_actions() {
                   shows_start_ = true;
                   start_.enter(true);
                 }});
+  actions_.add({"app.stop_opening",
+                "Stop opening",
+                "The case stays closed; one that was open stays so",
+                GLFW_KEY_ESCAPE,
+                0,
+                false,
+                [this] { return can_stop_opening(); },
+                {},
+                [this] { opening_->cancel(); }});
   actions_.add({"app.keys",
                 "Keys",
                 "Every key of this mode",
@@ -310,7 +319,7 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
     widgets::status_row(ui, widgets::Severity::Bad, "Not opened", failure_);
   }
   if (opening_ != nullptr)
-    widgets::text_centered(ui, inner, ui.theme.title, widgets::kText, "Opening the case");
+    draw_opening(ui, inner);
   else if (shows_start())
     start_.draw(ui, inner);
   else if (shows_paint())

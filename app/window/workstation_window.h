@@ -51,6 +51,8 @@ class WorkstationWindow {
   // Empty: the built-in case. The one that is open stays open until the other one is.
   void open(const std::filesystem::path& folder);
   void take_opened_case();
+  [[nodiscard]] bool can_stop_opening() const;
+  void draw_opening(const widgets::Ui& ui, const widgets::Rect& area) const;
   void let_go(std::unique_ptr<open_case::CaseOpening> closed);
   void take_dropped();
   void close_start();

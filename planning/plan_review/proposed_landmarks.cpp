@@ -19,18 +19,27 @@ bool has_grid(const cases::Case& knee, bones::BoneKind kind) {
 }  // namespace
 
 std::map<bones::BoneKind, ProposedBone> propose_landmarks(cases::Case& knee, Proposing proposing,
-                                                          const std::stop_token& stop) {
+                                                          const std::stop_token& stop,
+                                                          const std::function<void()>& bone_done) {
+  const auto done = [&bone_done] {
+    if (bone_done) bone_done();
+  };
   std::map<bones::BoneKind, std::future<landmarks::Proposal>> coming;
   for (const auto& [kind, bone] : knee.bones) {
     knee.landmarks[kind];  // there for every bone, if empty
     knee.landmark_states[kind];
     if (bone.mesh.empty()) continue;
     if (has_grid(knee, kind) && (proposing == Proposing::WithoutGrid ||
-                                 state_of_grid(knee, kind) == landmarks::LandmarkState::Confirmed))
+                                 state_of_grid(knee, kind) == landmarks::LandmarkState::Confirmed)) {
+      done();
       continue;
-    coming[kind] = std::async(std::launch::async, [&mesh = bone.mesh, kind = kind, side = knee.side, stop] {
-      return landmarks::propose(mesh, kind, {.side = side, .stop = stop});
-    });
+    }
+    coming[kind] =
+        std::async(std::launch::async, [&mesh = bone.mesh, kind = kind, side = knee.side, stop, done] {
+          landmarks::Proposal proposal = landmarks::propose(mesh, kind, {.side = side, .stop = stop});
+          done();
+          return proposal;
+        });
   }
   std::map<bones::BoneKind, ProposedBone> proposed;
   for (auto& [kind, proposal] : coming) {

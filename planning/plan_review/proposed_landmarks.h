@@ -2,6 +2,7 @@
 // wherever the case is looked at.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <stop_token>
 
@@ -22,9 +23,11 @@ struct ProposedBone {
 
 // Bones without a grid take what is proposed, as proposed; landmarks that somebody confirmed stay. What was
 // proposed, by bone. Afterwards every bone has landmarks and states, if empty ones. Nothing is saved.
-// Once it is to stop nothing more is taken.
+// Once it is to stop nothing more is taken. bone_done: for every bone with a mesh, from any thread, when what
+// is to be proposed of it is made.
 std::map<bones::BoneKind, ProposedBone> propose_landmarks(cases::Case& knee, Proposing proposing,
-                                                          const std::stop_token& stop = {});
+                                                          const std::stop_token& stop = {},
+                                                          const std::function<void()>& bone_done = nullptr);
 
 // Of the landmarks that the bone's grid follows from, and mostly its axes, the one least looked at.
 [[nodiscard]] landmarks::LandmarkState state_of_grid(const cases::Case& knee, bones::BoneKind kind);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <set>
 #include <thread>
 
 #include "planning/phantom/phantom_case.h"
@@ -48,6 +49,62 @@ TEST(CaseOpening, SaysWhyACaseCannotBeOpened) {
   EXPECT_EQ(ends, 1);
   EXPECT_EQ(opening.model(), nullptr);
   EXPECT_NE(opening.failure().find("absent.arthro"), std::string::npos) << opening.failure();
+}
+
+// A large case takes seconds: how far it is never goes back, and ends where the case is open.
+TEST(CaseOpening, TellsHowFarItIs) {
+  const test::TemporaryFolder folder;
+  cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3}), "test");
+  knee.landmarks.clear();  // they are proposed, which takes longest
+  cases::save_case(folder.path(), knee);
+  CaseOpening opening(folder.path(), [] {});
+  std::set<double> told;
+  double before = 0;
+  while (!opening.take() && opening.is_busy()) {
+    EXPECT_GE(opening.done_fraction(), before);
+    told.insert(before = opening.done_fraction());
+    std::this_thread::yield();
+  }
+  ASSERT_NE(opening.model(), nullptr) << opening.failure();
+  EXPECT_EQ(opening.done_fraction(), 1);
+  EXPECT_GE(told.size(), 3U);
+}
+
+// What is not wanted any more is neither a case nor a failure, ends soon, and holds no lock.
+TEST(CaseOpening, OneThatIsCancelledIsNoCaseAndNoFailure) {
+  const test::TemporaryFolder folder;
+  cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 2}), "test");
+  knee.landmarks.clear();
+  cases::save_case(folder.path(), knee);
+  {
+    CaseOpening opening(folder.path(), [] {});
+    while (opening.done_fraction() == 0) std::this_thread::yield();
+    opening.cancel();
+    EXPECT_EQ(take_until_done(opening), 0);
+    EXPECT_LT(opening.done_fraction(), 1);
+    EXPECT_EQ(opening.model(), nullptr);
+    EXPECT_EQ(opening.failure(), "");
+  }
+  CaseOpening again(folder.path(), [] {});
+  EXPECT_EQ(take_until_done(again), 1);
+  EXPECT_FALSE(again.is_read_only());
+}
+
+// One case lends its lock to the next opening: cancelled, that gives it back.
+TEST(CaseOpening, Hazard15ACancelledOpeningGivesTheLockBack) {
+  const test::TemporaryFolder folder;
+  cases::save_case(folder.path(),
+                   phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "test"));
+  CaseOpening first(folder.path(), [] {});
+  ASSERT_EQ(take_until_done(first), 1);
+  CaseOpening again(first, [] {});
+  again.cancel();
+  EXPECT_EQ(take_until_done(again), 0);
+  first.keep_lock(again);
+  EXPECT_FALSE(first.is_read_only());
+  CaseOpening other(folder.path(), [] {});
+  EXPECT_EQ(take_until_done(other), 1);
+  EXPECT_TRUE(other.is_read_only());
 }
 
 // That a case was left behind by a program that died is news, and no state of the case.

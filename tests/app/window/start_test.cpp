@@ -33,6 +33,24 @@ class StartWindow : public ::testing::Test {
   const TemporaryFolder folder_;
 };
 
+// A case that takes long to open is left by Esc: the start is there again, with nothing to complain of, and
+// the case can be opened then.
+TEST_F(StartWindow, AnOpeningIsStoppedByEsc) {
+  cases::Case slow = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 0.8}), "Slow knee");
+  slow.landmarks.clear();  // so that they are looked for
+  cases::save_case(folder_ / "Slow.arthro", slow);
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {(folder_ / "Slow.arthro").string()});
+  ASSERT_TRUE(app.wait_for_state("case", "opening", 120));
+  ASSERT_TRUE(app.wait_for_widget("app.stop_opening"));
+  app.press("Escape");
+  ASSERT_TRUE(app.wait_for_state("case", "none", 60));
+  EXPECT_EQ(app.state("screen"), "start");
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(60), 0);
+  EXPECT_TRUE(cases::CaseLock(folder_ / "Slow.arthro").is_held()) << "it holds the case no longer";
+}
+
 // A folder with two meshes: named on the command line, looked into, made, the side asked for, written, open.
 // Next time the case is the first of the list, and Enter opens it.
 TEST_F(StartWindow, ImportsAFolderAsksForTheSideAndFindsTheCaseAgain) {
