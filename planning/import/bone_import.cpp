@@ -364,13 +364,6 @@ BoneImport import_bones(const std::filesystem::path& source, const BoneImportOpt
   return result;
 }
 
-void refuse_empty_file(const std::filesystem::path& source) {
-  std::error_code error;
-  if (std::filesystem::is_regular_file(source, error) && std::filesystem::file_size(source, error) == 0 &&
-      !error)
-    throw InvalidInput(source, "", "is empty");
-}
-
 std::optional<BoneKind> bone_kind_in_name(const std::filesystem::path& source) {
   return only_one(words_of(source), BoneKind::Femur, BoneKind::Tibia,
                   [](const std::string& word, BoneKind kind) {

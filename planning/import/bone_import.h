@@ -98,9 +98,6 @@ void say_side(BoneImport& import, bones::Side side);
     const std::filesystem::path& source, const BoneImportOptions& options = {},
     const std::function<void(const ImportProgress& progress)>& tell = nullptr);
 
-// Throws InvalidInput of a file without a byte, as reading it would: before anything is asked about it.
-void refuse_empty_file(const std::filesystem::path& source);
-
 // From words in a name such as "3_RIGHT_femur.vtk" or "knee-L-tibia.stl"; nullopt when there is none, or
 // both.
 [[nodiscard]] std::optional<bones::BoneKind> bone_kind_in_name(const std::filesystem::path& source);

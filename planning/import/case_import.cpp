@@ -10,6 +10,7 @@
 #include "planning/files/utc_clock.h"
 #include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
+#include "planning/import/failure_reason.h"
 
 namespace arthronaut::importing {
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -37,5 +39,12 @@ class ImportRefused : public InvalidInput {
  private:
   Failure failure_;
 };
+
+// Throws InvalidInput of a file without a byte, as reading it would: before anything is asked about it.
+inline void refuse_empty_file(const std::filesystem::path& source) {
+  std::error_code none;
+  if (std::filesystem::is_regular_file(source, none) && std::filesystem::file_size(source, none) == 0)
+    throw InvalidInput(source, "", "is empty");
+}
 
 }  // namespace arthronaut::importing
