@@ -122,14 +122,17 @@ void LateralView::draw_grid(const widgets::Ui& ui, const widgets::Rect& area) co
   for (const tunnels::TunnelKey& key : model_->knee().plan.of(BoneKind::Femur)) {
     const auto tunnel = model_->tunnel(key);
     const ImU32 color = widgets::color_of(scene::kPlanColor);
-    const ImVec2 entry = at(tunnel->entry_mm);
+    // On the bone, as the checks take it: a plan from elsewhere may begin some mm before it.
+    const tunnels::TunnelGeometry& measured = model_->measured(key);
+    const Eigen::Vector3d entry_mm = measured.enters_bone ? measured.entry_on_surface_mm : tunnel->entry_mm;
+    const ImVec2 entry = at(entry_mm);
     const double length = model_->drawn_length_mm(key);
-    draw.AddLine(entry, at(tunnel->entry_mm + length * tunnel->direction), color, ui.theme.px(2));
+    draw.AddLine(entry, at(entry_mm + length * tunnel->direction), color, ui.theme.px(2));
     const auto radius = static_cast<float>(tunnel->diameter_mm / 2 / plane_.mm_per_px);
     draw.AddCircle(entry, radius, color, 40, ui.theme.px(2.5F));
     draw.AddCircleFilled(entry, ui.theme.px(4), color);
     if (quadrant) {
-      const std::string percent = percent_text(quadrant->percent_of(tunnel->entry_mm));
+      const std::string percent = percent_text(quadrant->percent_of(entry_mm));
       const bool is_single = key.bundle == norms::Bundle::Whole;
       text += (is_single ? ". Entry: " : "\nEntry of the " + tunnels::name_of(key) + ": ") + percent;
       percents += (percents.empty() ? "" : "; ") + percent;

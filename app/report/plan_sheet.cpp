@@ -47,6 +47,11 @@ struct PlanePicture {
   }
 };
 
+// On the bone, as the checks take it: a plan from elsewhere may begin some mm before it.
+Vector3d entry_of(const plan_review::MeasuredTunnel& planned) {
+  return planned.geometry.enters_bone ? planned.geometry.entry_on_surface_mm : planned.tunnel.entry_mm;
+}
+
 class Sheet {
  public:
   Sheet(PdfDocument& pdf, const SheetFrame& frame, const Content& content, norms::Bundle graft)
@@ -145,7 +150,7 @@ double Sheet::lateral(double x_mm, double y_mm, double width_mm) {
   tunnel_outlines(picture, BoneKind::Femur);
   if (const auto* femoral = planned(BoneKind::Femur); femoral != nullptr) {
     if (quadrant) {
-      const auto percent = quadrant->percent_of(femoral->tunnel.entry_mm);
+      const auto percent = quadrant->percent_of(entry_of(*femoral));
       caption += files::format(". Entry at %.1f %% deep to shallow, %.1f %% high to low",
                                percent.deep_shallow, percent.high_low);
     }
@@ -168,7 +173,7 @@ void Sheet::plateau(double x_mm, double y_mm, double width_mm) {
   std::string caption = "The tibial plateau from above";
   const auto* tibial = planned(BoneKind::Tibia);
   if (const auto& grid = review_.bone(BoneKind::Tibia).surroundings.plateau; grid && tibial != nullptr) {
-    const auto percent = grid->percent_of(tibial->tunnel.entry_mm);
+    const auto percent = grid->percent_of(entry_of(*tibial));
     caption += files::format(". Entry at %.1f %% from anterior, %.1f %% from medial",
                              percent.anterior_posterior, percent.medial_lateral);
   }
@@ -184,7 +189,7 @@ void Sheet::tunnel_outlines(const PlanePicture& picture, BoneKind kind) {
     const Vector3d side =
         tunnel.diameter_mm / 2 * tunnel.direction.cross(picture.plane.normal()).normalized();
     const double length_mm = geometry.enters_bone ? geometry.length_mm : 30;
-    const Vector3d from = tunnel.entry_mm, to = from + length_mm * tunnel.direction;
+    const Vector3d from = entry_of(planned_tunnel), to = from + length_mm * tunnel.direction;
     const double width = &planned_tunnel == planned(kind) ? 0.4 : 0.15;
     line(picture, from + side, to + side, width, kPlan);
     line(picture, from - side, to - side, width, kPlan);

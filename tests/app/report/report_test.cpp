@@ -1,6 +1,8 @@
 // The report of a plan, and what it is printed on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <regex>
 #include <tuple>
 
 #include "navigation/recording/session_marks.h"
@@ -38,6 +40,32 @@ TEST_F(Report, HasThePlanOnOneSheet) {
     expect_contains(text, "Checks of the " + std::string(bones::to_text(kind)));
     for (const auto& check : review.checks(kind)) expect_contains(text, check.name + ":");
   }
+}
+
+// A plan of another program may begin before the bone: picture and checks say the same of it all the same.
+TEST_F(Report, TheSheetsPicturesSayTheEntryThatTheChecksSay) {
+  for (auto& [key, tunnel] : knee_.plan.tunnels)
+    tunnel.entry_mm += -3 * tunnel.direction + Eigen::Vector3d(0, 0.4, 0);
+  cases::save_case(knee_folder(), knee_);
+  write(pdf());
+  const std::string text = pdf_text();
+  const plan_review::CaseReview review(cases::load_case(knee_folder()));
+  const auto expect_said = [&](bones::BoneKind bone, const char* along, const char* across,
+                               const std::string& words) {
+    std::smatch said;
+    ASSERT_TRUE(std::regex_search(text, said, std::regex(words))) << text;
+    const auto checks = review.checks(bone);
+    const char* const names[] = {along, across};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto check = std::ranges::find(checks, names[i], &tunnels::PlanCheck::name);
+      ASSERT_NE(check, checks.end()) << names[i];
+      EXPECT_NEAR(std::stod(said[i + 1]), *check->value, 0.051) << names[i];
+    }
+  };
+  expect_said(bones::BoneKind::Femur, "Deep to shallow", "High to low",
+              R"(Entry\s+at\s+([0-9.]+)\s+%\s+deep\s+to\s+shallow,\s+([0-9.]+)\s+%)");
+  expect_said(bones::BoneKind::Tibia, "Anterior to posterior", "Medial to lateral",
+              R"(Entry\s+at\s+([0-9.]+)\s+%\s+from\s+anterior,[\s\S]*?([0-9.]+)\s+%\s+from\s+medial)");
 }
 
 // A lateral view is called true where the condyles tell it, here as on the screen.
