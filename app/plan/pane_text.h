@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "app/widgets/controls.h"
 
@@ -16,6 +18,27 @@ namespace arthronaut::plan {
   };
   return {within(point.x + gap, picture.x, picture.width - text.x),
           within(point.y, picture.y, picture.height - text.y)};
+}
+
+// The same for a measurement of two points or three: beside the middle of a distance's line, outside of an
+// angle at its vertex, so that the word covers none of its own lines and points.
+[[nodiscard]] inline ImVec2 beside_measured(const std::vector<ImVec2>& points, const ImVec2& text, float gap,
+                                            const widgets::Rect& picture) {
+  const auto unit = [](float x, float y) {
+    const float length = std::hypot(x, y);
+    return length > 0 ? ImVec2(x / length, y / length) : ImVec2(0, -1);
+  };
+  const ImVec2 &a = points[0], &b = points[1];
+  ImVec2 from((a.x + b.x) / 2, (a.y + b.y) / 2), away = unit(b.y - a.y, a.x - b.x);
+  if (points.size() == 3) {
+    const ImVec2 to_a = unit(a.x - b.x, a.y - b.y), to_c = unit(points[2].x - b.x, points[2].y - b.y);
+    from = b;
+    away = unit(-to_a.x - to_c.x, -to_a.y - to_c.y);
+  }
+  // As far as the word's corners reach towards the line.
+  const float off = gap + (std::abs(away.x) * text.x + std::abs(away.y) * text.y) / 2;
+  const ImVec2 corner(from.x + off * away.x - text.x / 2, from.y + off * away.y - text.y / 2);
+  return beside(corner, text, 0, picture);
 }
 
 }  // namespace arthronaut::plan

@@ -67,7 +67,10 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
   const auto wrong = std::find_if(checks.begin(), checks.end(), [](const tunnels::PlanCheck& check) {
     return check.verdict == Verdict::Wrong;
   });
-  if (wrong != checks.end()) return {"Mend the " + adjective(state.key) + " tunnel: " + wrong->name, ""};
+  if (wrong != checks.end())
+    return {"Mend the " + adjective(state.key) + " tunnel: " + wrong->name +
+                ". Drag its entry or its aim, or take another diameter",
+            ""};
   if (beside) {
     if (!model.tunnel(*beside))
       return {"Plan the " + adjective(*beside) + " tunnel too: press B", "plan.other_bundle"};

@@ -219,13 +219,11 @@ void SlicePane::draw_overlay(const widgets::Ui& ui, const widgets::Rect& rect, c
     for (const Eigen::Vector3d& point : line.points_mm)
       draw.AddCircleFilled(at(point), ui.theme.px(4), kMeasured);
     if (line.word.empty()) continue;
-    // A distance's beside the middle of its line, an angle's beside its vertex: two that end at one place are
-    // told apart.
-    const ImVec2 first = at(line.points_mm[0]), second = at(line.points_mm[1]);
-    const ImVec2 point =
-        line.points_mm.size() == 3 ? second : ImVec2((first.x + second.x) / 2, (first.y + second.y) / 2);
+    std::vector<ImVec2> points;
+    for (const Eigen::Vector3d& point : line.points_mm) points.push_back(at(point));
     const ImVec2 size = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, line.word.c_str());
-    shadowed(draw, ui.theme.strong, beside(point, size, ui.theme.px(9), rect), kMeasured, line.word);
+    shadowed(draw, ui.theme.strong, beside_measured(points, size, ui.theme.px(6), rect), kMeasured,
+             line.word);
   }
 }
 

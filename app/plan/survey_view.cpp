@@ -52,13 +52,16 @@ void PlanView::add_map_marks(std::vector<PaneMark>& marks) const {
 
 void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const {
   const bool is_shown = state_.shows_map || state_.shows_aims;
-  ui.log.note_state("survey", !is_shown ? "none" : state_.survey == nullptr ? "working" : "shown");
+  const bool waits = state_.survey == nullptr || (state_.shows_aims && !state_.survey->has_aims);
+  ui.log.note_state("survey", !is_shown ? "none" : waits ? "working" : "shown");
+  const std::string share = widgets::fixed(100 * survey_.done_fraction(), 0) + " % ...";
   std::vector<std::string> lines;
   if (volume_.is_on()) lines.push_back(volume_.in_words(slices_.reason()));
   if (!is_shown) {
     // What is drawn of the images alone.
   } else if (state_.survey == nullptr) {
-    lines.emplace_back(model_->tunnel(state_.key) ? "Looking about the entry ..." : "There is no tunnel yet");
+    lines.emplace_back(model_->tunnel(state_.key) ? "Looking about the entry: " + share
+                                                  : "There is no tunnel yet");
   } else {
     if (state_.shows_map) {
       const auto count = [&](tunnels::PlanCheck::Verdict verdict) {
@@ -70,7 +73,9 @@ void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& ar
                       count(Verdict::Fine) + "); ring, to be looked at (" + count(Verdict::Look) +
                       "); cross, wrong (" + count(Verdict::Wrong) + ")");
     }
-    if (state_.shows_aims && state_.key.bone == bones::BoneKind::Femur) {
+    if (state_.shows_aims && !state_.survey->has_aims) {
+      lines.push_back("Looking for the ways to drill it: " + share);
+    } else if (state_.shows_aims && state_.key.bone == bones::BoneKind::Femur) {
       const auto& aims = state_.survey->portal;
       const auto clear = std::ranges::count(aims, true, &tunnels::PortalAim::is_clear);
       const double off_deg = tunnels::off_portal_deg(model_->tunnel(state_.key)->direction, aims);
@@ -85,15 +90,17 @@ void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& ar
   }
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float font = ui.theme.body->FontSize, step = font * 1.25F;
-  float y = area.y + area.height - ui.theme.px(14) - step * static_cast<float>(lines.size());
+  // Above the word at the picture's lower edge, which says where that is.
+  const float bottom = area.y + area.height - ui.theme.px(14) - step;
+  float y = bottom - step * static_cast<float>(lines.size());
   // Read over the bone and the lines of aims, too.
   float wide = 0;
   for (const std::string& line : lines)
     wide = std::max(wide, ui.theme.body->CalcTextSizeA(font, 1e9F, 0, line.c_str()).x);
   if (!lines.empty())
     draw.AddRectFilled({area.x + ui.theme.px(10), y - ui.theme.px(4)},
-                       {area.x + ui.theme.px(22) + wide, area.y + area.height - ui.theme.px(10)},
-                       IM_COL32(12, 16, 20, 210), ui.theme.px(6));
+                       {area.x + ui.theme.px(22) + wide, bottom + ui.theme.px(4)}, IM_COL32(12, 16, 20, 210),
+                       ui.theme.px(6));
   for (const std::string& line : lines) {
     const ImVec2 at{area.x + ui.theme.px(16), y};
     draw.AddText(ui.theme.body, font, {at.x + 1, at.y + 1}, widgets::kBackground, line.c_str());

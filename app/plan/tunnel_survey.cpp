@@ -1,5 +1,6 @@
 #include "app/plan/tunnel_survey.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace arthronaut::plan {
@@ -13,6 +14,7 @@ constexpr double kDrill_mm = 4.5;       // the cannulated drill's guide wire and
 constexpr double kShownBefore_mm = 45;  // of the way from a portal
 constexpr double kShownBeyond_mm = 25;  // of the way from outside in, beyond the cortex
 constexpr double kAimLine_mm = 0.5;
+constexpr double kAimsAsked = 21.0 * 21.0;  // by outside_in_aims, at most
 constexpr scene::Color kOutsideInColor{0.80F, 0.47F, 0.65F};
 
 }  // namespace
@@ -33,7 +35,9 @@ std::optional<SurveyRequest> survey_request(const open_case::PlanModel& model,
   return request;
 }
 
-Survey survey(const SurveyRequest& request, const std::function<bool()>& is_cancelled) {
+Survey survey(const SurveyRequest& request, const std::function<bool()>& is_cancelled,
+              const std::function<void(double done)>& tell,
+              const std::function<void(const Survey& map)>& map_made) {
   const tunnels::TunnelKey key = request.tunnel.key();
   Survey found{.revision = request.revision,
                .key = key,
@@ -47,19 +51,29 @@ Survey survey(const SurveyRequest& request, const std::function<bool()>& is_canc
     plan.insert_or_assign(key, plan_review::MeasuredTunnel{tunnel, measured});
     return plan_review::further_checks(key, plan, request.knee);
   };
+  auto entries = tunnels::entries_around(bone, request.tunnel.entry_mm, kMapRadius_mm, kMapSpacing_mm);
+  const bool asks_for_aims = key.bone == BoneKind::Femur && request.surroundings.axes;
+  // Each entry and each aim from outside in asks once, and costs about the same.
+  const double all = static_cast<double>(entries.size()) + (asks_for_aims ? kAimsAsked : 0.0);
+  double asked = 0;
+  const auto is_cancelled_now = [&] {
+    if (tell) tell(std::min(1.0, asked++ / all));
+    return is_cancelled && is_cancelled();
+  };
   found.entries = tunnels::map_entries(
-      {.entries_mm = tunnels::entries_around(bone, request.tunnel.entry_mm, kMapRadius_mm, kMapSpacing_mm),
-       .like = request.tunnel,
-       .aim_at = {},
-       .further = knee_checks},
-      bone, request.surroundings, {}, is_cancelled);
-  if (key.bone != BoneKind::Femur || !request.surroundings.axes) return found;
+      {.entries_mm = std::move(entries), .like = request.tunnel, .aim_at = {}, .further = knee_checks}, bone,
+      request.surroundings, {}, is_cancelled_now);
+  found.has_aims = !asks_for_aims;
+  if (!asks_for_aims) return found;
+  if (map_made) map_made(found);
   if (request.knee.axis)
     found.portal =
         tunnels::portal_aims(request.tunnel.entry_mm, kDrill_mm,
                              tunnels::anteromedial_portal(*request.knee.axis, *request.surroundings.axes),
                              *request.knee.axis, bone);
-  found.outside_in = tunnels::outside_in_aims(request.tunnel, bone, request.surroundings, {}, is_cancelled);
+  found.outside_in =
+      tunnels::outside_in_aims(request.tunnel, bone, request.surroundings, {}, is_cancelled_now);
+  found.has_aims = true;
   return found;
 }
 
@@ -84,10 +98,15 @@ void add_aims(scene::SceneContent& content, const Survey& survey, const tunnels:
 TunnelSurvey::TunnelSurvey(const std::function<void()>& wake)
     : worker_(
           worker::Backlog::NewestWins,
-          [](auto& inbox) {
+          [this](auto& inbox) {
             while (const auto request = inbox.next()) {
-              Survey found = survey(*request, [&] { return inbox.stops() || inbox.has_message(); });
-              if (!inbox.stops() && !inbox.has_message()) inbox.publish(std::move(found));
+              const auto is_stale = [&] { return inbox.stops() || inbox.has_message(); };
+              const auto publish = [&](Survey found) {
+                if (!is_stale()) inbox.publish(std::move(found));
+              };
+              done_ = 0;
+              publish(survey(
+                  *request, is_stale, [this](double done) { done_ = done; }, publish));
             }
           },
           wake) {}

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
 namespace arthronaut::plan {
 namespace {
 
@@ -19,6 +22,38 @@ TEST(PaneText, StandsToTheRightOfItsPoint) { expect_at(beside({200, 150}, kText,
 TEST(PaneText, IsNeverCutOffByTheEdge) {
   expect_at(beside({480, 345}, kText, 9, kPicture), 440, 330);
   expect_at(beside({20, 10}, kText, 9, kPicture), 100, 50);
+}
+
+bool covers(const ImVec2& corner, const ImVec2& p) {
+  return p.x > corner.x && p.x < corner.x + kText.x && p.y > corner.y && p.y < corner.y + kText.y;
+}
+
+// A number over its own line hid where the line ends; over an angle's sides, how they run.
+TEST(PaneText, OfAMeasurementCoversNoneOfItsLines) {
+  const ImVec2 vertex(300, 200);
+  for (int turn = 0; turn < 36; ++turn)
+    for (const int opening : {0, 4, 9, 14}) {  // in tens of degrees; 0: a distance
+      const auto on = [&](int tens, float length) {
+        const auto angle = static_cast<float>(tens) * 3.14159265F / 18;
+        return ImVec2(vertex.x + length * std::cos(angle), vertex.y + length * std::sin(angle));
+      };
+      std::vector<ImVec2> points{on(turn, 45), vertex};
+      if (opening > 0) points.push_back(on(turn + opening, 45));
+      const ImVec2 at = beside_measured(points, kText, 6, kPicture);
+      for (std::size_t side = 0; side + 1 < points.size(); ++side)
+        for (int i = 0; i <= 90; ++i) {
+          const float share = static_cast<float>(i) / 90;
+          const ImVec2 p(points[side].x + share * (points[side + 1].x - points[side].x),
+                         points[side].y + share * (points[side + 1].y - points[side].y));
+          ASSERT_FALSE(covers(at, p)) << "turned by " << 10 * turn << ", opening " << 10 * opening;
+        }
+    }
+}
+
+TEST(PaneText, OfAMeasurementIsNeverCutOffByTheEdge) {
+  const ImVec2 at = beside_measured({{480, 60}, {495, 120}}, kText, 6, kPicture);
+  EXPECT_GE(at.x, kPicture.x);
+  EXPECT_LE(at.x + kText.x, kPicture.x + kPicture.width);
 }
 
 // A picture that is smaller than the word shows its beginning.

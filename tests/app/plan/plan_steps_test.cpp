@@ -88,7 +88,9 @@ TEST(NextStep, OfTwoBundlesBothAreWanted) {
   EXPECT_EQ(on_landmarks.action, "plan.checks_page") << "P is the landmarks' there";
   EXPECT_TRUE(on_landmarks.text.ends_with("press C, then P")) << on_landmarks.text;
   model.set_tunnel(pl, single);
-  EXPECT_EQ(next_step(model, {.key = am}).text, "Mend the femoral AM tunnel: Between the tunnels");
+  EXPECT_EQ(
+      next_step(model, {.key = am}).text,
+      "Mend the femoral AM tunnel: Between the tunnels. Drag its entry or its aim, or take another diameter");
 }
 
 // Two bundles in one bone and a single tunnel in the other is more often forgotten than meant.

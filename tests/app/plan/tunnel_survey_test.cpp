@@ -81,6 +81,33 @@ TEST_F(TunnelSurveyed, DrawsOnlyWaysThatAreClear) {
   EXPECT_TRUE(content.rods.empty());
 }
 
+// The map stands while the ways to drill are still looked for, and how far all of it is never goes back.
+TEST_F(TunnelSurveyed, ShowsTheMapBeforeTheAims) {
+  const auto request = survey_request(model_, BoneKind::Femur);
+  ASSERT_TRUE(request);
+  std::optional<Survey> map;
+  double done = 0, done_at_map = 0;
+  const Survey found = survey(
+      *request, {},
+      [&](double now) {
+        EXPECT_GE(now, done);
+        EXPECT_LE(now, 1);
+        done = now;
+      },
+      [&](const Survey& made) {
+        map = made;
+        done_at_map = done;
+      });
+  ASSERT_TRUE(map);
+  EXPECT_FALSE(map->has_aims);
+  EXPECT_TRUE(map->outside_in.empty());
+  EXPECT_EQ(map->entries.size(), found.entries.size());
+  EXPECT_TRUE(found.has_aims);
+  EXPECT_GT(done_at_map, 0.1);
+  EXPECT_LT(done_at_map, 0.7);
+  EXPECT_GT(done, 0.7);
+}
+
 TEST_F(TunnelSurveyed, NothingIsAskedWithoutATunnel) {
   model_.set_tunnel(BoneKind::Femur, std::nullopt);
   EXPECT_FALSE(survey_request(model_, BoneKind::Femur));
