@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <random>
+#include <regex>
 #include <set>
 
 #include "planning/phantom/phantom_case.h"
@@ -37,6 +40,65 @@ TEST_F(PlanReview, AsksEverythingOnceOfAWholeKnee) {
   }
   EXPECT_TRUE(has(review.checks(BoneKind::Femur), "Graft length"));
   EXPECT_TRUE(has(review.checks(BoneKind::Femur), "Footprint opened"));
+}
+
+std::vector<double> numbers_in(const std::string& text) {
+  static const std::regex number("-?[0-9]+(\\.[0-9]+)?");
+  std::vector<double> numbers;
+  for (std::sregex_iterator at(text.begin(), text.end(), number), end; at != end; ++at)
+    numbers.push_back(std::stod(at->str()));
+  return numbers;
+}
+
+// What is read on the screen is the number that was judged, rounded: a tenth where the words have tenths.
+TEST_F(PlanReview, TheWordsSayTheNumberThatIsJudged) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> turn(-0.2, 0.2), wider(-2, 3);
+  std::set<std::string> seen;
+  for (int trial = 0; trial < 12; ++trial) {
+    cases::Case knee = knee_;
+    for (auto& [key, tunnel] : knee.plan.tunnels) {
+      const Eigen::Vector3d by(turn(random), turn(random), turn(random));
+      tunnel.direction = (tunnel.direction + by).normalized();
+      tunnel.diameter_mm = std::round(20 * (tunnel.diameter_mm + wider(random))) / 20;
+    }
+    const CaseReview review(knee);
+    for (const auto& [key, planned] : review.tunnels())
+      for (const auto& check : review.checks(key)) {
+        if (!check.value) continue;
+        seen.insert(check.name);
+        if (check.text.starts_with("the same within 0.1 mm")) {
+          EXPECT_LT(std::abs(*check.value), 0.1) << check.name;
+          continue;
+        }
+        const auto numbers = numbers_in(check.text);
+        const double within = check.unit == "deg" || check.unit == "%" ? 0.501 : 0.0501;
+        EXPECT_TRUE(std::ranges::any_of(
+            numbers, [&](double number) { return std::abs(number - *check.value) < within; }))
+            << check.name << " of " << *check.value << ' ' << check.unit << ": " << check.text;
+      }
+  }
+  EXPECT_GE(seen.size(), 15U);
+}
+
+// The ellipse that a cylinder cuts out of a plane, from diameter and angle alone.
+TEST_F(PlanReview, TheOpeningIsTheCylindersEllipse) {
+  for (const double diameter_mm : {5.5, 9.0, 12.0}) {
+    for (auto& [key, tunnel] : knee_.plan.tunnels) tunnel.diameter_mm = diameter_mm;
+    const CaseReview review(knee_);
+    for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
+      const auto checks = review.checks(kind);
+      const auto opening = std::ranges::find(checks, "Opening", &tunnels::PlanCheck::name);
+      ASSERT_NE(opening, checks.end());
+      const auto numbers = numbers_in(opening->text);  // 14.0 x 9.0 mm, 99 mm2, at 40 deg
+      ASSERT_GE(numbers.size(), 5U) << opening->text;
+      const double sine = std::sin(*opening->value * std::acos(-1.0) / 180);
+      EXPECT_NEAR(numbers[0], diameter_mm / sine, 0.051) << opening->text;
+      EXPECT_NEAR(numbers[1], diameter_mm, 0.051) << opening->text;
+      EXPECT_NEAR(numbers[2], std::acos(-1.0) / 4 * diameter_mm * diameter_mm / sine, 0.51) << opening->text;
+      EXPECT_NEAR(numbers[4], *opening->value, 0.51) << opening->text;
+    }
+  }
 }
 
 // What a bone's shape alone does not tell is said to be unchecked; it is no tick.
