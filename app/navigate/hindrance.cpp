@@ -60,7 +60,7 @@ Needs needs_of(const operation::OperationState& state) {
     case NextAction::ShowWorldMarker:
       return Needs::Marker;
     case NextAction::CheckWorldMarker:
-      return must_place_anew(*state.registration) ? Needs::Nothing : Needs::Probe;
+      return state.registration->must_be_found_anew() ? Needs::Nothing : Needs::Probe;
     case NextAction::Draw:
     case NextAction::GoOnDrawing:
     case NextAction::RegisterAnew:

@@ -125,30 +125,9 @@ std::string words_of_checking(const operation::OperationState& state) {
   return words;
 }
 
-bool must_place_anew(const operation::RegistrationState& registration) {
-  using operation::TouchAlarm;
-  using operation::Touches;
-  // Nearer than this share of what the picture shows, the control point takes the alarm away.
-  constexpr double kContradicts = 0.5;
-  const TouchAlarm& alarm = registration.alarm;
-  if (!alarm) return false;
-  const Touches::Last last = registration.touches.last();
-  const bool was_asked = last.kind == Touches::Last::Kind::ControlAgain;
-  if (alarm.seen_drift_mm > 0)
-    return !alarm.control_point_decides ||
-           (was_asked && last.distance_mm && *last.distance_mm > kContradicts * alarm.seen_drift_mm);
-  if (!registration.touches.has_control_point()) return true;
-  // Of one touch and one of the control point the latter may still be taken back.
-  return alarm.kind != TouchAlarm::Kind::Both && (was_asked || last.kind == Touches::Last::Kind::ControlSet);
-}
-
-bool only_touches_tell(const operation::TouchAlarm& alarm) {
-  return alarm.kind == operation::TouchAlarm::Kind::TouchesOff && alarm.seen_drift_mm <= 0;
-}
-
-std::string place_anew_words(const operation::TouchAlarm& alarm) {
-  return only_touches_tell(alarm) ? "touches lie off the bone: clear all, then draw anew"
-                                  : "check, then place the marker anew";
+std::string place_anew_words(operation::WayOut way_out) {
+  return way_out == operation::WayOut::StrokesAnew ? "touches lie off the bone: clear all, then draw anew"
+                                                   : "check, then place the marker anew";
 }
 
 namespace {
@@ -181,10 +160,18 @@ std::string refusal_notice(const theatre::LiveState& live, double now_s) {
 
 namespace {
 // Short: with its reason it has four lines on the smallest screen.
-std::string way_out_of(const operation::RegistrationState& registration) {
-  if (!must_place_anew(registration)) return "Touch the control point again, or clear the points (C)";
-  if (only_touches_tell(registration.alarm)) return "On soft tissue: forget them (Shift+T); else clear (C)";
-  return "Fix the marker, clear the points (C) and draw anew";
+std::string words_of(operation::WayOut way_out) {
+  switch (way_out) {
+    case operation::WayOut::None:
+      return "";
+    case operation::WayOut::ControlPoint:
+      return "Touch the control point again, or clear the points (C)";
+    case operation::WayOut::StrokesAnew:
+      return "On soft tissue: forget them (Shift+T); else clear (C)";
+    case operation::WayOut::MarkerPlacedAnew:
+      return "Fix the marker, clear the points (C) and draw anew";
+  }
+  return "";
 }
 }  // namespace
 
@@ -204,7 +191,7 @@ Trouble trouble_of(const operation::RegistrationState& registration) {
               why + (in_force.can_be_confirmed ? ". Touch the bone with the probe once (T) to confirm it"
                                                : ". Register anew")};
     case Standing::Alarm:
-      return {"World marker may have moved", why + ". " + way_out_of(registration)};
+      return {"World marker may have moved", why + ". " + words_of(registration.way_out())};
     case Standing::InDoubt:
       return {"Registration in doubt", why + ". Draw more, or exclude the strokes that are wrong"};
   }

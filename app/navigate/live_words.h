@@ -15,13 +15,8 @@ namespace arthronaut::navigate {
 [[nodiscard]] std::string words_of_registering_anew(const operation::OperationState& state);
 // "touch the control point again", with why it is asked for.
 [[nodiscard]] std::string words_of_checking(const operation::OperationState& state);
-// An alarm holds that no touch of the control point can take away: none was set before, or it was touched
-// last and said nothing better. What was found is of a place that nobody knows, and is to be found anew.
-[[nodiscard]] bool must_place_anew(const operation::RegistrationState& registration);
-// Of such an alarm: whether the touches alone tell it, so that the marker may sit where it sat; and what is
-// to be done.
-[[nodiscard]] bool only_touches_tell(const operation::TouchAlarm& alarm);
-[[nodiscard]] std::string place_anew_words(const operation::TouchAlarm& alarm);
+// What is to be done about an alarm that no touch of the control point can take away.
+[[nodiscard]] std::string place_anew_words(operation::WayOut way_out);
 // What to do instead of something that needs pictures while the source gives none that show anything; empty
 // where that is no hindrance.
 [[nodiscard]] std::string words_without_pictures(theatre::SourceTrouble trouble,

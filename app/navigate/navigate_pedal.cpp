@@ -70,7 +70,7 @@ void NavigateView::decline_resume() {
 NextAction NavigateView::action_now() const {
   const NextAction action = live_->operation->next_action;
   // What is touched is touched in pictures: once they have ended, others come first.
-  const bool touches = action == NextAction::CheckWorldMarker && !must_place_anew(registration());
+  const bool touches = action == NextAction::CheckWorldMarker && !registration().must_be_found_anew();
   return touches && live_->phase != Phase::Starting && !is_running() ? NextAction::StartSource : action;
 }
 
@@ -102,8 +102,8 @@ std::string NavigateView::next_step() {
   if (is_in_wrong_medium()) return "wrong medium: hold Esc, then M for the other one, then start again";
   if (const std::string wait = words_without_pictures(); !wait.empty()) return wait;
   if (takes_guide_in_simulation()) return "take the guide (simulation)";
-  if (action == NextAction::CheckWorldMarker && must_place_anew(registration()))
-    return place_anew_words(registration().alarm);
+  if (action == NextAction::CheckWorldMarker && registration().must_be_found_anew())
+    return place_anew_words(registration().way_out());
   if (action == NextAction::VerifyByTouch) return words_of_verifying(*live_->operation);
   if (action == NextAction::CheckControlPoint) return words_of_checking(*live_->operation);
   if (action == NextAction::RegisterAnew) return words_of_registering_anew(*live_->operation);
@@ -181,7 +181,7 @@ void NavigateView::take_next_step() {
     case NextAction::VerifyByTouch:
       return take_touch(false);
     case NextAction::CheckWorldMarker:
-      if (!must_place_anew(registration())) return take_touch(true);
+      if (!registration().must_be_found_anew()) return take_touch(true);
       if (was_read()) find_anew();
       return;
     case NextAction::SetControlPoint:
@@ -206,7 +206,7 @@ void NavigateView::take_next_step() {
 
 // Both void all that was found. That the marker was placed anew is recorded where something says so.
 void NavigateView::find_anew() {
-  if (only_touches_tell(registration().alarm)) return ask(operation::ClearStrokes{});
+  if (registration().way_out() == operation::WayOut::StrokesAnew) return ask(operation::ClearStrokes{});
   ask(operation::MarkerPlacedAnew{});
 }
 
@@ -229,7 +229,7 @@ bool NavigateView::pedal_acts() {
     case NextAction::RecordDrilled:
       return was_read();
     case NextAction::CheckWorldMarker:
-      return !must_place_anew(registration()) || was_read();
+      return !registration().must_be_found_anew() || was_read();
     case NextAction::ShowWorldMarker:
     case NextAction::GoOnDrawing:
     case NextAction::WaitForRegistration:
@@ -317,7 +317,7 @@ bool NavigateView::is_in_wrong_medium() const {
 
 std::string NavigateView::words_without_pictures() const {
   const NextAction action = live_->operation->next_action;
-  const bool needs_none = action == NextAction::CheckWorldMarker && must_place_anew(registration());
+  const bool needs_none = action == NextAction::CheckWorldMarker && registration().must_be_found_anew();
   return is_running() && !needs_none ? navigate::words_without_pictures(live_->trouble, action) : "";
 }
 

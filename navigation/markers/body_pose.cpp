@@ -33,8 +33,8 @@ constexpr double kLeastCornerSigma_px = 0.01;  // no pose is better than this te
 // corners, costs what it would cost.
 struct Reading {
   RigidTransform camera_from_marker;
-  Vector8d corners_px;
-  Matrix8d weight;
+  Vector8d corners_px = Vector8d::Zero();
+  Matrix8d weight = Matrix8d::Zero();
 };
 
 struct Sight {

@@ -50,6 +50,12 @@ struct RegistrationState {
   std::string bone_trouble;  // why nothing can be registered to this bone; empty else
   // Strokes that were set aside because the pictures are of something else now.
   std::size_t set_aside_count = 0;
+
+  [[nodiscard]] WayOut way_out() const { return way_out_of(alarm, touches); }
+  // An alarm holds that no touch of the control point can take away.
+  [[nodiscard]] bool must_be_found_anew() const {
+    return way_out() == WayOut::StrokesAnew || way_out() == WayOut::MarkerPlacedAnew;
+  }
 };
 using RegistrationStatePtr = std::shared_ptr<const RegistrationState>;
 

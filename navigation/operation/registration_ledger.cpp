@@ -149,11 +149,9 @@ void RegistrationLedger::touch_control_point(const Eigen::Vector3d& tip_in_marke
   if (seen_drift_mm_ && !control_point_is_older_) return;
   touches_.touch_control_point(tip_in_marker_mm, now_);
   judge();
-  // A touch outranks what was seen, as far as it is finer than that.
-  constexpr double kContradicts = 0.5;
   const Touches::Last last = touches_.last();
   if (!seen_drift_mm_ || last.kind != Touches::Last::Kind::ControlAgain || !last.distance_mm ||
-      *last.distance_mm > kContradicts * *seen_drift_mm_)
+      !denies_drift(*last.distance_mm, *seen_drift_mm_))
     return;
   seen_drift_mm_.reset();
   judge();

@@ -57,6 +57,30 @@ std::string in_words(const TouchAlarm& alarm) {
   return "";
 }
 
+bool denies_drift(double control_shift_mm, double seen_drift_mm) {
+  constexpr double kFiner = 0.5;
+  return control_shift_mm <= kFiner * seen_drift_mm;
+}
+
+WayOut way_out_of(const TouchAlarm& alarm, const Touches& touches) {
+  if (!alarm) return WayOut::None;
+  using Last = Touches::Last::Kind;
+  const Touches::Last last = touches.last();
+  const bool has_answered = last.kind == Last::ControlAgain;
+  const bool is_seen = alarm.seen_drift_mm > 0;
+  const bool may_still_tell =
+      is_seen
+          ? alarm.control_point_decides &&
+                !(has_answered && last.distance_mm && !denies_drift(*last.distance_mm, alarm.seen_drift_mm))
+          // Of one touch and one of the control point the latter may still be taken back; one that is set
+          // now tells nothing of before.
+          : touches.has_control_point() &&
+                (alarm.kind == TouchAlarm::Kind::Both || (!has_answered && last.kind != Last::ControlSet));
+  if (may_still_tell) return WayOut::ControlPoint;
+  return alarm.kind == TouchAlarm::Kind::TouchesOff && !is_seen ? WayOut::StrokesAnew
+                                                                : WayOut::MarkerPlacedAnew;
+}
+
 void Touches::add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of) {
   // The same place touched again verifies nothing more; one that was touched under another provenance was not
   // touched yet.

@@ -61,6 +61,10 @@ struct TouchAlarm {
 };
 [[nodiscard]] std::string in_words(const TouchAlarm& alarm);
 
+// A touch outranks what the picture shows as far as it is finer than that: whether a control point that lies
+// so far from where it was takes that alarm away.
+[[nodiscard]] bool denies_drift(double control_shift_mm, double seen_drift_mm);
+
 class Touches {
  public:
   struct Last {
@@ -133,5 +137,14 @@ class Touches {
   registration::Provenance last_of_;
   bool last_is_of_now_ = true;  // as it was judged last
 };
+
+// What ends an alarm.
+enum class WayOut {
+  None,             // there is no alarm
+  ControlPoint,     // touched again it says whether the marker has moved
+  StrokesAnew,      // the touches alone tell it: the marker may sit where it sat
+  MarkerPlacedAnew  // no touch can take it away: what was found is of a place that nobody knows
+};
+[[nodiscard]] WayOut way_out_of(const TouchAlarm& alarm, const Touches& touches);
 
 }  // namespace arthronaut::operation

@@ -68,17 +68,17 @@ TEST(RecordRows, SayWhatIsKeptAndHowFastPicturesCome) {
 // yes.
 TEST(PlaceAnew, IsWhatLeadsOnWhereNoControlPointWasSet) {
   operation::RegistrationState state;
-  EXPECT_FALSE(must_place_anew(state));
+  EXPECT_FALSE(state.must_be_found_anew());
   state.alarm.kind = operation::TouchAlarm::Kind::SeenInPicture;
   state.alarm.seen_drift_mm = 1.2;
   state.in_force.standing = operation::Standing::Alarm;
-  EXPECT_TRUE(must_place_anew(state));
+  EXPECT_TRUE(state.must_be_found_anew());
   EXPECT_NE(trouble_of(state).advice.find("draw anew"), std::string::npos);
   EXPECT_EQ(trouble_of(state).advice.find("again"), std::string::npos);
   state.touches.touch_control_point(Eigen::Vector3d::Zero(), {});
-  EXPECT_TRUE(must_place_anew(state)) << "set on a bone that may have moved already";
+  EXPECT_TRUE(state.must_be_found_anew()) << "set on a bone that may have moved already";
   state.alarm.control_point_decides = true;
-  EXPECT_FALSE(must_place_anew(state));
+  EXPECT_FALSE(state.must_be_found_anew());
   EXPECT_NE(trouble_of(state).advice.find("Touch the control point again"), std::string::npos);
 }
 
@@ -90,22 +90,22 @@ TEST(PlaceAnew, IsWhatLeadsOnWhereTheControlPointHasSaidAll) {
   state.alarm.kind = operation::TouchAlarm::Kind::ControlPointMoved;
   state.touches.touch_control_point(Eigen::Vector3d::Zero(), {});
   state.touches.add_touch({5, 0, 0}, {});
-  EXPECT_FALSE(must_place_anew(state)) << "it was not the last that was touched";
+  EXPECT_FALSE(state.must_be_found_anew()) << "it was not the last that was touched";
   EXPECT_NE(trouble_of(state).advice.find("Touch the control point again"), std::string::npos);
   state.touches.touch_control_point({0, 0, 2.4}, {});
-  EXPECT_TRUE(must_place_anew(state));
+  EXPECT_TRUE(state.must_be_found_anew());
   EXPECT_EQ(trouble_of(state).advice.find("again"), std::string::npos);
-  EXPECT_NE(place_anew_words(state.alarm).find("marker"), std::string::npos);
+  EXPECT_NE(place_anew_words(state.way_out()).find("marker"), std::string::npos);
   state.alarm.kind = operation::TouchAlarm::Kind::Both;
-  EXPECT_FALSE(must_place_anew(state)) << "back where it was it takes the alarm away";
+  EXPECT_FALSE(state.must_be_found_anew()) << "back where it was it takes the alarm away";
   state.alarm.kind = operation::TouchAlarm::Kind::TouchesOff;
-  EXPECT_TRUE(must_place_anew(state));
-  EXPECT_EQ(place_anew_words(state.alarm).find("marker"), std::string::npos);
+  EXPECT_TRUE(state.must_be_found_anew());
+  EXPECT_EQ(place_anew_words(state.way_out()).find("marker"), std::string::npos);
   EXPECT_NE(trouble_of(state).advice.find("forget them"), std::string::npos);
   state.touches.add_touch({5, 0, 0}, {});
-  EXPECT_FALSE(must_place_anew(state)) << "whether the marker has moved it tells all the same";
+  EXPECT_FALSE(state.must_be_found_anew()) << "whether the marker has moved it tells all the same";
   state.touches.clear();
-  EXPECT_TRUE(must_place_anew(state)) << "one that is set now tells nothing of before";
+  EXPECT_TRUE(state.must_be_found_anew()) << "one that is set now tells nothing of before";
 }
 
 // The picture tells it, and the control point decides: touched again and half as far off, it has decided.
@@ -115,9 +115,9 @@ TEST(PlaceAnew, IsWhatLeadsOnWhereTheControlPointDoesNotDenyThePicture) {
   state.alarm.seen_drift_mm = 1.2;
   state.alarm.control_point_decides = true;
   state.touches.touch_control_point(Eigen::Vector3d::Zero(), {});
-  EXPECT_FALSE(must_place_anew(state));
+  EXPECT_FALSE(state.must_be_found_anew());
   state.touches.touch_control_point({0, 0, 0.8}, {});
-  EXPECT_TRUE(must_place_anew(state));
+  EXPECT_TRUE(state.must_be_found_anew());
 }
 
 // Never a good sign, since it makes nothing more sure; not checked is said with its reason, a drift in bad.
