@@ -1,7 +1,6 @@
 #include "app/report/postop_section.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "planning/files/format.h"
 
@@ -20,15 +19,6 @@ std::string planned_length(const Content& content, const tunnels::TunnelKey& key
   if (plan == content.knee.plan.tunnels.end() || bone == content.knee.bones.end()) return {};
   const auto geometry = tunnels::measure(plan->second, geometry::Surface(bone->second.mesh));
   return geometry.enters_bone ? format("; planned %.1f mm", geometry.length_mm) : "";
-}
-
-std::string along_the_wall(const std::vector<postop::Width>& widths) {
-  if (widths.empty()) return "not seen";
-  const auto [least, most] = std::minmax_element(
-      widths.begin(), widths.end(),
-      [](const postop::Width& a, const postop::Width& b) { return a.diameter_mm < b.diameter_mm; });
-  return format("%.1f to %.1f mm, widest %.0f mm from the entry", least->diameter_mm, most->diameter_mm,
-                most->from_entry_mm);
 }
 
 // A cell for each row below, in their order.
@@ -55,7 +45,8 @@ std::vector<std::string> column(const Content& content, const tunnels::TunnelKey
                     (plan == content.knee.plan.tunnels.end()
                          ? ""
                          : format("; planned %.1f mm", plan->second.diameter_mm)));
-    cells.push_back(along_the_wall(found.widths));
+    const std::string widths = postop::widths_in_words(found.widths);
+    cells.push_back(widths.empty() ? "not seen" : widths);
     cells.push_back(postop::length_in_words(found) + planned_length(content, key));
     cells.push_back(told(postop::wall_in_words));
     cells.push_back(format("%.0f %%", 100 * found.metal_share));

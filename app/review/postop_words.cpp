@@ -18,13 +18,8 @@ void fill_found(const postop::AchievedTunnel& found, AchievedRow& row) {
                      std::max(geometry::deg_from_rad(found.direction_sigma_rad), 0.1));
   row.diameter = format("%.1f mm", found.tunnel.diameter_mm);
   row.length = postop::length_in_words(found);
-  if (found.widths.empty()) return;
-  const auto by_width = [](const postop::Width& a, const postop::Width& b) {
-    return a.diameter_mm < b.diameter_mm;
-  };
-  const auto [least, most] = std::minmax_element(found.widths.begin(), found.widths.end(), by_width);
-  row.diameter += format("; along the wall %.1f to %.1f mm, widest %.0f mm from the entry",
-                         least->diameter_mm, most->diameter_mm, most->from_entry_mm);
+  if (const std::string widths = postop::widths_in_words(found.widths); !widths.empty())
+    row.diameter += "; along the wall " + widths;
 }
 
 }  // namespace

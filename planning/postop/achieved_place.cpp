@@ -114,4 +114,12 @@ std::string length_in_words(const AchievedTunnel& achieved) {
   return words;
 }
 
+std::string widths_in_words(const std::vector<Width>& widths) {
+  if (widths.empty()) return {};
+  const auto [least, most] = std::ranges::minmax_element(widths, {}, &Width::diameter_mm);
+  std::string from = files::format("%.1f", least->diameter_mm), to = files::format("%.1f", most->diameter_mm);
+  if (from == to) return to + " mm";
+  return from + " to " + to + files::format(" mm, widest %.0f mm from the entry", most->from_entry_mm);
+}
+
 }  // namespace arthronaut::postop

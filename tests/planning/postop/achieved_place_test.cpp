@@ -117,6 +117,13 @@ TEST(AchievedLength, SaysWhatGoesOnBeyondASocket) {
   EXPECT_EQ(length_in_words(achieved), "22.0 mm, a socket; beyond it a bore of 4.5 mm");
 }
 
+// A bore that is equally wide all along was said to be "9.1 to 9.1 mm".
+TEST(AchievedWidths, SayOnceWhatRoundsToTheSame) {
+  EXPECT_EQ(widths_in_words({}), "");
+  EXPECT_EQ(widths_in_words({{2, 9.06}, {10, 9.14}}), "9.1 mm");
+  EXPECT_EQ(widths_in_words({{2, 9.0}, {10, 9.9}, {20, 9.2}}), "9.0 to 9.9 mm, widest 10 mm from the entry");
+}
+
 // Without landmarks there is no grid, and axes come from the bone's shape.
 TEST_F(AchievedPlaceTest, SaysNothingOfAGridThatIsNotThere) {
   const auto shape_alone = around(knee_.femur, {});
