@@ -57,6 +57,8 @@ class PostopPage {
   void stop();
   [[nodiscard]] bool is_running() const { return run_ != nullptr && !run_->has_ended(); }
   [[nodiscard]] bool has_any() const { return !comparisons_.empty(); }
+  // Nothing of a CT is known yet, not even why what the case keeps cannot be read.
+  [[nodiscard]] bool is_blank() const { return comparisons_.empty() && problem_.empty() && !is_running(); }
   void choose_next();  // of the tunnels
   void ask_for_path();
   // The images are looked for in the folders of this machine, in the place of what is compared.

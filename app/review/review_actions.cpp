@@ -306,7 +306,7 @@ void ReviewView::add_actions(widgets::Actions& actions) {
                false,
                [this] { return chosen_ && *chosen_ > 0 && !browses(); },
                {},
-               [this] { choose(*chosen_ - 1); }});
+               [this] { look_at(*chosen_ - 1); }});
   actions.add({"review.older",
                "Older",
                "The session before this one",
@@ -315,7 +315,7 @@ void ReviewView::add_actions(widgets::Actions& actions) {
                false,
                [this] { return chosen_ && *chosen_ + 1 < sessions_.folders().size() && !browses(); },
                {},
-               [this] { choose(*chosen_ + 1); }});
+               [this] { look_at(*chosen_ + 1); }});
 }
 
 }  // namespace arthronaut::review

@@ -58,7 +58,10 @@ void ReviewView::case_opened(const mode::OpenCase& opened) {
 void ReviewView::enter() {
   sessions_.read();
   const auto& folders = sessions_.folders();
-  if (folders.empty()) return;
+  if (folders.empty()) {
+    shows_postop_ = shows_postop_ || !postop_.is_blank();  // all that there is to look at
+    return;
+  }
   // What was chosen keeps its place in the list as new sessions come.
   const auto same = open_ ? std::find(folders.begin(), folders.end(), open_->review.folder) : folders.end();
   if (same != folders.end())
@@ -74,6 +77,11 @@ void ReviewView::choose(std::size_t session) {
   note_ = {};
   notice_.clear();
   opening_.start([folder = sessions_.folders()[session]] { return read_review(folder); }, wake_);
+}
+
+void ReviewView::look_at(std::size_t session) {
+  shows_postop_ = false;
+  if (!open_ || chosen_ != session) choose(session);
 }
 
 void ReviewView::take_opened() {
@@ -180,7 +188,7 @@ void ReviewView::draw_numbers(const widgets::Ui& ui, widgets::Rect area) {
 
 void ReviewView::draw_side(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::begin_panel(ui, "review.sessions", area, "Sessions of this case");
-  if (const auto pressed = sessions_.draw(ui, chosen_)) choose(*pressed);
+  if (const auto pressed = sessions_.draw(ui, chosen_)) look_at(*pressed);
   ImGui::Separator();
   draw_buttons(ui);
   if (open_) {

@@ -66,6 +66,7 @@ class ReviewView : public mode::Mode {
     std::string text;
   };
   void choose(std::size_t session);
+  void look_at(std::size_t session);  // as the user chooses one: in the place of a CT after the operation
   void take_opened();
   void look_at_tunnel();
   void step(long frames);

@@ -8,6 +8,7 @@
 
 #include "navigation/recording/session_marks.h"
 #include "planning/cases/case.h"
+#include "planning/postop/achieved_file.h"
 #include "tests/app/window/built_in_case.h"
 #include "tests/app/window/display.h"
 #include "tests/navigation/recording/recorded_frames.h"
@@ -204,6 +205,38 @@ TEST_F(ReviewWindow, AsksWhichOfTwoCtsIsMeant) {
   ASSERT_TRUE(app.wait_for_state("postop", "asks", 60));
   app.click("review.postop_series_1");
   EXPECT_TRUE(app.wait_for_state("postop", "compared", 120));
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(30), 0);
+}
+
+// A case without a session that keeps a comparison: Review shows it, and not that a CT might be compared. It
+// makes way for the session that the user chooses.
+TEST_F(ReviewWindow, ShowsTheComparisonThatACaseKeeps) {
+  const auto plan = cases::load_case(case_folder_).plan.tunnels.at(bones::BoneKind::Femur);
+  postop::Comparison kept;
+  kept.bone.is_found = kept.bone.reliable = kept.tunnel.is_found = kept.tunnel.reliable = true;
+  kept.bone.reasons.clear();
+  kept.tunnel.reasons.clear();
+  kept.tunnel.tunnel = plan;
+  kept.tunnel.length_mm = 30;
+  postop::write_achieved_file(case_folder_ / "achieved.json", {{bones::BoneKind::Femur, kept}});
+  const auto aside = folder_ / "aside";
+  std::filesystem::rename(session_, aside);
+  const VirtualDisplay display(1920, 1080);
+  RunningWorkstation app(display, folder_.path(), {case_folder_.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F3");
+  EXPECT_TRUE(app.wait_for_state("review_page", "achieved"));
+  EXPECT_TRUE(app.wait_for_state("postop", "kept"));
+
+  std::filesystem::rename(aside, session_);
+  app.press("F1");
+  ASSERT_TRUE(app.wait_for_state("mode", "plan"));
+  app.press("F3");
+  const std::string shown = "review.session." + session_.filename().string();
+  ASSERT_TRUE(app.wait_for_widget(shown));
+  app.click(shown);
+  EXPECT_TRUE(app.wait_for_state("review_page", "session"));
   app.press("ctrl+q");
   EXPECT_EQ(app.wait_for_exit(30), 0);
 }
