@@ -1,6 +1,7 @@
 // Prints how near tunnels found in a post-operative CT come to those that were drilled in it:
-//   postop_accuracy [-n TRIALS] [-s SEED] [-k KIND] [FEMUR...]
-// Femora as meshes, LPS, mm; default: the built-in knee. KIND: the CTs whose name holds this word.
+//   postop_accuracy [-n TRIALS] [-s SEED] [-k KIND] [-e] [FEMUR...]
+// Femora as meshes, LPS, mm; default: the built-in knee. KIND: the CTs whose name holds this word. -e: each
+// trial, too, with what it is off by and what it was said to be known to.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -132,7 +133,8 @@ double middle(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-void try_one(const Subject& subject, const Kind& kind, std::mt19937_64& random, Figures& figures) {
+void try_one(const Subject& subject, const Kind& kind, bool prints, std::mt19937_64& random,
+             Figures& figures) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> even(-1, 1);
   const geometry::Surface bone(subject.mesh);
@@ -157,9 +159,14 @@ void try_one(const Subject& subject, const Kind& kind, std::mt19937_64& random, 
   const double entry = (found.tunnel.entry_mm - how.tunnel.entry_mm).norm(),
                angle = geometry::deg_from_rad(
                    geometry::angle_between_rad(found.tunnel.direction, how.tunnel.direction));
+  const double off_mm = std::abs(found.tunnel.diameter_mm - how.tunnel.diameter_mm);
+  if (prints)
+    std::fprintf(
+        stderr, "%s, %s: %s, off by %.2f mm (%.2f), %.2f deg (%.2f), diameter %.2f mm; %.0f mm long\n",
+        kind.name, subject.name.c_str(), found.reliable ? "reliable" : "refused", entry, found.entry_sigma_mm,
+        angle, geometry::deg_from_rad(found.direction_sigma_rad), off_mm, found.length_mm);
   if (!found.reliable) return;
   ++figures.reliable;
-  const double off_mm = std::abs(found.tunnel.diameter_mm - how.tunnel.diameter_mm);
   const bool has_metal = how.screw_diameter_mm > 0;
   const bool is_wrong = entry > (has_metal ? 0.6 : 0.3) || angle > (has_metal ? 1 : 0.5) ||
                         (how.widened_mm == 0 && off_mm > 0.3);
@@ -197,6 +204,7 @@ std::vector<Subject> subjects_of(const std::vector<std::string>& files) {
 int run(int argc, char** argv) {
   int trials = 6;
   std::uint64_t seed = 1;
+  bool prints = false;
   std::string kind_word;
   std::vector<std::string> files;
   for (int i = 1; i < argc; ++i) {
@@ -206,6 +214,8 @@ int run(int argc, char** argv) {
       kind_word = argv[++i];
     } else if (std::string(argv[i]) == "-s" && i + 1 < argc) {
       seed = std::strtoull(argv[++i], nullptr, 10);
+    } else if (std::string(argv[i]) == "-e") {
+      prints = true;
     } else {
       files.emplace_back(argv[i]);
     }
@@ -220,7 +230,7 @@ int run(int argc, char** argv) {
     std::mt19937_64 random(seed);
     Figures f;
     for (int trial = 0; trial < trials; ++trial)
-      try_one(subjects[static_cast<std::size_t>(trial) % subjects.size()], kind, random, f);
+      try_one(subjects[static_cast<std::size_t>(trial) % subjects.size()], kind, prints, random, f);
     std::printf("| %s | %d | %d | %d | %d | %.2f / %.2f | %.2f / %.2f | %.2f / %.2f | %.2f / %.2f | %.1f |\n",
                 kind.name, f.trials, f.found, f.reliable, f.wrong, middle(f.entry_mm), worst(f.entry_mm),
                 middle(f.angle_deg), worst(f.angle_deg), middle(f.diameter_mm), worst(f.diameter_mm),
