@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/review/freed_memory.h"
 #include "app/widgets/list_rows.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -104,6 +105,7 @@ void PostopPage::take_answer() {
   problem_ = run_->error();
   PostopProgress progress = run_->progress();
   run_.reset();
+  give_freed_memory_back();
   if (!problem_.empty()) return;
   which_ = std::move(progress.which);
   auto answer = std::move(progress.answer);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/review/freed_memory.h"
 #include "app/widgets/source_banner.h"
 #include "navigation/recording/cut_short.h"
 #include "planning/cases/case.h"
@@ -97,6 +98,7 @@ void ReviewView::take_opened() {
     notice_ = error.what();
     return;
   }
+  give_freed_memory_back();
   OpenSession& open = *open_;
   open.marks = MarkBook(open.review.folder, read_only_);
   open.check = std::make_unique<CheckRun>(open.review.folder, wake_);
