@@ -67,12 +67,8 @@ std::vector<std::string> all_words() {
                                  words_of(operation::NextAction::VerifyByTouch) + ", 3 to go",
                                  "calibrate camera and tools in Set up",
                                  "wait: the case's last operation is looked for"};
-  operation::TouchAlarm alarm;
-  for (const auto kind :
-       {operation::TouchAlarm::Kind::ControlPointMoved, operation::TouchAlarm::Kind::TouchesOff}) {
-    alarm.kind = kind;
-    words.push_back(place_anew_words(alarm));
-  }
+  for (const auto way_out : {operation::WayOut::StrokesAnew, operation::WayOut::MarkerPlacedAnew})
+    words.push_back(place_anew_words(way_out));
   operation::OperationState state;
   for (const auto due :
        {operation::ControlPointDue::CheckBeforeDrilling, operation::ControlPointDue::CheckAfterLoss,
