@@ -4,6 +4,7 @@
 
 #include "navigation/markers/code_reader.h"
 #include "navigation/markers/code_search.h"
+#include "navigation/markers/corner_search.h"
 #include "navigation/markers/declaration.h"
 #include "navigation/markers/linear_image.h"
 #include "navigation/markers/marker_track.h"
@@ -22,6 +23,7 @@ constexpr int kFitsAFrame = 80;
 // Squares with its code in which a marker is looked for, in one frame.
 constexpr int kMostSquares = 3;
 constexpr std::size_t kSearchesForCovered = 3;
+constexpr int kMostSupposed = 2;  // squares of which a corner is seen that are measured in one frame
 constexpr std::int64_t kUsualIntervalNs = 33'333'333;
 // A marker that was sought in every frame for so long, and is not there, is sought in every few frames.
 constexpr std::int64_t kSoughtOftenNs = 1'000'000'000;
@@ -112,6 +114,9 @@ class EdgeTracker final : public MarkerTracker {
     smear_.bloom.sigma_px = options_.bloom_sigma_px;
     frames_to_search_ = 0;
     search_.start_over();
+    corner_search_.start_over();
+    is_sought_.assign(tracks_.size(), 0);
+    seen_.reserve(tracks_.size());
     company_.assign(tracks_.size(), Company());
     attempts_.assign(tracks_.size(), 0);
     sought_since_ns_.assign(tracks_.size(), -1);
@@ -147,8 +152,9 @@ class EdgeTracker final : public MarkerTracker {
       const std::size_t i = (frames_ + k) % tracks_.size();
       if (!observations_[i].is_tracked()) recover(i, frame);
     }
-    if (is_for_covered && is_missing())
-      take_squares(search_.find_covered(frame.camera), frame, Pass::Covered);
+    if (!is_missing()) return;
+    if (is_for_covered) take_squares(search_.find_covered(frame.camera), frame, Pass::Covered);
+    if (searches_ % kSearchesForCovered == 2) take_corners(frame);
   }
 
   void look_at(const TrackedFrame& frame) {
@@ -218,6 +224,29 @@ class EdgeTracker final : public MarkerTracker {
         continue;
       }
       if (attempts_[code->index]++ < kMostSquares) acquire(track, square, code->turn, frame, known);
+    }
+  }
+
+  // Of which hardly more than a corner is seen: nothing stands yet, the next frame goes on from there.
+  void take_corners(const TrackedFrame& frame) {
+    seen_.clear();
+    bool is_any_calm = false;
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      is_sought_[i] = !observations_[i].is_tracked() && !tracks_[i].is_gone_on_from();
+      if (observations_[i].is_tracked()) seen_.push_back(observations_[i].corners_px);
+      is_any_calm |= tracks_[i].is_calm(frame, observations_[i]);
+    }
+    // Through a smear a corner leads to another tilt as well: something has to be seen that hardly moves.
+    if (!is_any_calm) return;
+    const auto all = corner_search_.find(search_.small_picture(), frame.camera, codes_, is_sought_, seen_);
+    int left = kMostSupposed;
+    for (std::size_t k = 0; k < tracks_.size(); ++k) {
+      MarkerTrack& track = tracks_[(searches_ + k) % tracks_.size()];
+      for (const SupposedSquare& supposed : all) {
+        if (&track != &tracks_[supposed.index] || is_of_another(supposed.square) || left-- <= 0) continue;
+        const auto starts = poses_of_square(supposed.square.tangent, supposed.turn, track.marker().size_mm);
+        for (const RigidTransform& start : starts) track.suppose(frame, start);
+      }
     }
   }
 
@@ -318,13 +347,8 @@ class EdgeTracker final : public MarkerTracker {
 
   static void acquire(MarkerTrack& track, const FoundSquare& square, int turn, const TrackedFrame& frame,
                       MarkerObservation& observation) {
-    Corners tangent;
-    for (int i = 0; i < 4; ++i) tangent[i] = square.tangent[(turn + i) % 4];
-    const auto homography = square_homography(tangent, track.marker().size_mm);
-    if (!homography) return;
-    for (const RigidTransform& start : poses_from_homography(*homography)) {
-      if (!(start.translation_mm.z() > 0)) continue;
-      if (track.measure(frame, start, true, observation)) return;
+    for (const RigidTransform& start : poses_of_square(square.tangent, turn, track.marker().size_mm)) {
+      if (start.translation_mm.z() > 0 && track.measure(frame, start, true, observation)) return;
     }
   }
 
@@ -349,6 +373,9 @@ class EdgeTracker final : public MarkerTracker {
   std::vector<MarkerCandidate> candidates_;  // of this frame's search
   SquareSearch search_;
   CodeSearch code_search_;
+  CornerSearch corner_search_;
+  std::vector<char> is_sought_;  // by marker
+  std::vector<Corners> seen_;
   std::vector<Company> company_;
   std::vector<int> attempts_;                  // of this frame's search, by marker
   std::vector<std::int64_t> sought_since_ns_;  // by marker: when it was last tracked; below 0: no frame yet

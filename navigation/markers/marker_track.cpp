@@ -79,6 +79,19 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
   return false;
 }
 
+void MarkerTrack::suppose(const TrackedFrame& frame, const RigidTransform& start) {
+  if (!(start.translation_mm.z() > 0) || cell_px(frame, start) < options_.min_cell_px) return;
+  Smear picture;
+  SmearTrend trend;
+  const EdgePose fit = fit_edges(frame, start, true, picture, trend);
+  frame.fits_left -= kEdgesAsFits;
+  if (!fit.converged || fit.share[0] + fit.share[1] < kMinStartShare) return;
+  MarkerObservation seen;
+  report_edges(frame, fit, picture, true, seen);
+  if (seen.is_tracked() && is_confirmed_by_code(frame, fit.camera_from_marker))
+    go_on_from(fit.camera_from_marker, misfit_of(fit));
+}
+
 bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTransform& start, bool is_found,
                                      const EdgePose& fit, const Smear& picture, const SmearTrend& trend,
                                      MarkerObservation& observation) {

@@ -85,6 +85,13 @@ class MarkerTrack {
   bool measure_recovered(const TrackedFrame& frame, const geometry::RigidTransform& start,
                          MarkerObservation& observation);
 
+  // The edges about a pose that little speaks for. What they lead to, if they and the cells say that it is
+  // the marker, is good enough to go on from in the next frame.
+  void suppose(const TrackedFrame& frame, const geometry::RigidTransform& start);
+  // Tracked, and since the frame before moved by too little to be smeared; before there was one: not known.
+  [[nodiscard]] bool is_calm(const TrackedFrame& frame, const MarkerObservation& observation) const;
+  [[nodiscard]] bool is_gone_on_from() const { return guess_.has_value(); }  // in this frame
+
   // The observation of this frame is final: remembers it.
   void follow(const MarkerObservation& observation, std::int64_t timestamp_ns);
   void forget();

@@ -52,6 +52,12 @@ double MarkerTrack::moved_px(const Vector6d& motion, double px_per_mm) const {
   return px_per_mm * std::hypot(motion.head<3>().norm(), 0.5 * marker_.size_mm * motion.tail<3>().norm());
 }
 
+bool MarkerTrack::is_calm(const TrackedFrame& frame, const MarkerObservation& observation) const {
+  if (!observation.is_tracked() || !stood_lately(frame)) return false;
+  const double px_per_mm = cell_px(frame, observation.camera_from_marker) * cells_ / marker_.size_mm;
+  return moved_px(motion_to(frame, observation.camera_from_marker), px_per_mm) < options_.smeared_px;
+}
+
 bool MarkerTrack::is_fast(const TrackedFrame& frame, const RigidTransform& pose) const {
   const Vector6d twist = motion_.twist_to(pose, frame.timestamp_ns, frame.interval_ns);
   return twist.head<3>().norm() * cells_ > marker_.size_mm;

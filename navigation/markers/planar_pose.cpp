@@ -135,6 +135,13 @@ std::array<RigidTransform, 2> poses_from_homography(const Eigen::Matrix3d& h) {
   return poses;
 }
 
+std::array<RigidTransform, 2> poses_of_square(const Corners& tangent, int turn, double size_mm) {
+  Corners turned;
+  for (int i = 0; i < 4; ++i) turned[i] = tangent[(turn + i) % 4];
+  const auto homography = square_homography(turned, size_mm);
+  return homography ? poses_from_homography(*homography) : std::array<RigidTransform, 2>();
+}
+
 RigidTransform tilted_back(const RigidTransform& camera_from_marker) {
   const Eigen::Vector3d normal = camera_from_marker.rotate(Eigen::Vector3d::UnitZ());
   const Eigen::Vector3d to_eye = -camera_from_marker.translation_mm.normalized();

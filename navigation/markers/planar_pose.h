@@ -27,6 +27,11 @@ using Corners =
 [[nodiscard]] std::array<geometry::RigidTransform, 2> poses_from_homography(
     const Eigen::Matrix3d& homography);
 
+// The same of a square of this side whose corners are these, the marker's top-left the one of index `turn`.
+// Where there are none they are the camera's own place.
+[[nodiscard]] std::array<geometry::RigidTransform, 2> poses_of_square(const Corners& tangent, int turn,
+                                                                      double size_mm);
+
 // The pose whose face is tilted the other way about the line of sight: near the other planar solution.
 [[nodiscard]] geometry::RigidTransform tilted_back(const geometry::RigidTransform& camera_from_marker);
 

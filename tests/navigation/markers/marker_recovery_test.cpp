@@ -114,6 +114,20 @@ TEST_F(MarkerRecovery, FindsAMarkerBehindAVeil) {
   expect_found(shown);
 }
 
+// From nothing, though something dark lies over one side and a corner beside it, so that no outline closes
+// and what is dark of the marker is a part of it. Another marker says that nothing moves.
+TEST_F(MarkerRecovery, FindsAMarkerOfWhichSomethingDarkLeavesTwoSides) {
+  const RigidTransform beside = facing_pose(5.7, -1.2, 15, 20, 12, 25);
+  RenderedPicture shown(camera_, {{codes_[0], 4, pose_}, {codes_[2], 4, beside}});
+  const Eigen::Vector2d left = seen_at(pose_, -1.0, 0), low = seen_at(pose_, 0, -1.0);
+  shown.cover(0, 0, static_cast<int>(left.x()), 600, 30);
+  shown.cover(0, static_cast<int>(low.y()), 800, 600, 30);
+  for (int frame = 0; frame < 3; ++frame) (void)tracker_->track(shown.view(), camera_, frame * kFrameNs);
+  const auto seen = tracker_->track(shown.view(), camera_, 3 * kFrameNs);
+  expect_near(seen[0], pose_);
+  expect_near(seen[1], beside);
+}
+
 // Out of sight for four frames, then half a side away and under a highlight.
 TEST_F(MarkerRecovery, FindsALostMarkerWhereItWentUnderAHighlight) {
   for (int frame = 0; frame < 2; ++frame)
