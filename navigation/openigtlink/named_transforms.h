@@ -6,9 +6,8 @@
 //                            their axes and tips lie in it)
 //   Bone_World               the registration: the bone's frame in the world, while it may guide
 //   Plan                     POINT: entry and end of the planned tunnel in the bone's frame
-//   Arthroscope              IMAGE, to who asks for it: columns along the camera's x, rows along its y, a
-//   pixel
-//                            a millimetre, its middle at the origin; upright in Slicer's axial view
+//   Arthroscope              IMAGE, to who asks for it: columns along the camera's x, rows along its y,
+//                            a pixel a millimetre, its middle at the origin; upright in Slicer's axial view
 //
 // The world is the frame of the bone's world marker; all of it goes out in RAS (ras_from_lps.h), so that the
 // bone as Slicer shows it, put under Bone_World, lies right to everything else.

@@ -226,7 +226,7 @@ bool import_ct(BoneImages& images, const BoneImportOptions& options, BoneImport&
   ct.threshold = options.threshold;
   ct.only = options.kind;
   ct.side = result.side;
-  ct.tell = [&](std::string_view, double fraction) { tell({ImportStage::FindingBones, fraction}); };
+  ct.tell = [&](double fraction) { tell({ImportStage::FindingBones, fraction}); };
   const segmentation::CtBones found = segmentation::bones_of_ct(images.volume, ct);
   result.lines.insert(result.lines.end(), found.notes.begin(), found.notes.end());
   for (const segmentation::CtBone& bone : found.bones) {

@@ -61,7 +61,7 @@ struct Found {
 };
 
 void tell(const CtBonesOptions& options, double fraction) {
-  if (options.tell) options.tell("Finding the bones", fraction);
+  if (options.tell) options.tell(fraction);
 }
 
 Found found_pieces(const Volume& volume, const CtBonesOptions& options) {

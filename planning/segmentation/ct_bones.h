@@ -8,7 +8,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "planning/bones/bone.h"
@@ -23,9 +22,9 @@ struct CtBonesOptions {
   std::optional<double> threshold;
   // Gaps of the cortex up to twice this are closed, then the marrow is filled in.
   double closing_radius_mm = 2.0;
-  std::optional<bones::BoneKind> only;  // this bone alone
-  std::optional<bones::Side> side;      // which knee, where the volume shows both
-  std::function<void(std::string_view stage, double fraction)> tell = nullptr;  // may throw, to stop
+  std::optional<bones::BoneKind> only;                  // this bone alone
+  std::optional<bones::Side> side;                      // which knee, where the volume shows both
+  std::function<void(double fraction)> tell = nullptr;  // may throw, to stop
 
   [[nodiscard]] double threshold_for(const images::Volume& volume) const;
 };
