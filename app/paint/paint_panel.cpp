@@ -161,9 +161,6 @@ void PaintView::draw_quality(const widgets::Ui& ui) {
     for (const importing::QualityLine& line : importing::quality_lines(quality))
       widgets::status_row(ui, severity_of(line.verdict), line.name, line.text);
   }
-  const float width = ImGui::GetContentRegionAvail().x;
-  widgets::action_button(ui, "paint.accept", width, ui.theme.px(52));
-  widgets::action_button(ui, "paint.put_aside", width, ui.theme.px(44));
 }
 
 void PaintView::draw_steps(const widgets::Ui& ui) {
@@ -186,13 +183,21 @@ void PaintView::draw_steps(const widgets::Ui& ui) {
 }
 
 void PaintView::draw_panel(const widgets::Ui& ui, const widgets::Rect& area) {
-  widgets::begin_panel(ui, "paint.panel", area, "Paint the bones");
+  widgets::Rect rest = area;
   if (is_judging()) {
+    // However long the list: how it is decided stays on the screen.
+    const widgets::Rect buttons = rest.cut_bottom(ui.theme.px(104), ui.theme.px(8));
+    widgets::begin_panel(ui, "paint.panel", rest, "Paint the bones");
     if (!making_.failure().empty()) widgets::status_row(ui, Severity::Bad, "Not taken", making_.failure());
     draw_quality(ui);
     widgets::end_panel();
+    ImGui::SetCursorScreenPos(buttons.min());
+    widgets::action_button(ui, "paint.accept", buttons.width, ui.theme.px(52));
+    ImGui::SetCursorScreenPos({buttons.x, buttons.y + ui.theme.px(60)});
+    widgets::action_button(ui, "paint.put_aside", buttons.width, ui.theme.px(44));
     return;
   }
+  widgets::begin_panel(ui, "paint.panel", rest, "Paint the bones");
   widgets::text_in(ui.theme.strong, widgets::kAccent,
                    next_step(*painting_, previewing_.kind, job_.is_running(), store_.is_of_case(*painting_)));
   ImGui::Dummy({0, ui.theme.px(6)});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "planning/cases/private_json.h"
 #include "planning/files/json_document.h"
@@ -39,7 +40,12 @@ std::string date_of(const std::string& date) {
 
 std::string Identity::name_in_words() const { return name_of(patient_name); }
 
-std::string Identity::birth_date_in_words() const { return date_of(birth_date); }
+std::string Identity::birth_date_in_words() const {
+  const std::string words = date_of(birth_date);
+  // "00010101" and the like is what a program leaves that took the patient's data out.
+  constexpr std::string_view kEarliestYear = "1850";
+  return words.substr(0, kEarliestYear.size()) < kEarliestYear ? std::string() : words;
+}
 
 std::string Identity::in_words() const {
   std::string words;

@@ -20,7 +20,7 @@ struct Identity {
     return patient_name.empty() && patient_id.empty() && birth_date.empty();
   }
   [[nodiscard]] std::string name_in_words() const;        // "Muster, Anna"
-  [[nodiscard]] std::string birth_date_in_words() const;  // "1990-01-31"
+  [[nodiscard]] std::string birth_date_in_words() const;  // "1990-01-31"; empty before 1850
   // "Muster, Anna · 4711 · 1990-01-31": what a title or a report shows.
   [[nodiscard]] std::string in_words() const;
   bool operator==(const Identity&) const = default;

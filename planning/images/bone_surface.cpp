@@ -5,6 +5,7 @@
 
 #include "planning/geometry/error.h"
 #include "planning/images/contour.h"
+#include "planning/images/thick_slices.h"
 
 namespace arthronaut::images {
 
@@ -12,25 +13,6 @@ namespace {
 
 // Blur of a label's mask, in voxels: without it marching cubes finds nothing but half-way points.
 constexpr double kMaskBlur_voxels = 0.6;
-
-template <typename IsInside>
-Field field_around(const Volume& volume, int margin, const IsInside& is_inside) {
-  Eigen::Vector3i low = volume.size, high = Eigen::Vector3i::Constant(-1);
-  for (int k = 0; k < volume.size.z(); ++k) {
-    for (int j = 0; j < volume.size.y(); ++j) {
-      for (int i = 0; i < volume.size.x(); ++i) {
-        if (!is_inside(volume.index(i, j, k))) continue;
-        low = low.cwiseMin(Eigen::Vector3i(i, j, k));
-        high = high.cwiseMax(Eigen::Vector3i(i, j, k));
-      }
-    }
-  }
-  Field field;
-  field.first_index = low.array() - margin;
-  field.size = (high - low).array() + 1 + 2 * margin;
-  field.values.assign(static_cast<std::size_t>(field.size.cast<std::int64_t>().prod()), 0.0F);
-  return field;
-}
 
 void blur(Field& field) {
   const double side = std::exp(-0.5 / (kMaskBlur_voxels * kMaskBlur_voxels));
@@ -52,6 +34,21 @@ void blur(Field& field) {
   }
 }
 
+// Precondition: the volume holds the label.
+geometry::TriangleMesh surface_of_even_grid(const Volume& volume, int label) {
+  const auto bounds = bounds_of_label(volume, label);
+  constexpr int kMargin = 2;
+  Field field;
+  field.first_index = bounds->low.array() - kMargin;
+  field.size = (bounds->high - bounds->low).array() + 1 + 2 * kMargin;
+  field.values.assign(static_cast<std::size_t>(field.size.cast<std::int64_t>().prod()), 0.0F);
+  for_each_shared_voxel(field, volume.size, [&](std::size_t here, std::size_t there) {
+    field.values[here] = volume.values[there] == static_cast<float>(label) ? 1.0F : 0.0F;
+  });
+  blur(field);
+  return contour(field, 0.5F, volume.lps_from_index);
+}
+
 }  // namespace
 
 BoneSurface surface_of_label(const Volume& volume, int label) {
@@ -65,14 +62,13 @@ BoneSurface surface_of_label(const Volume& volume, int label) {
     for (const auto& [value, count] : labels) list += (list.empty() ? "" : ", ") + std::to_string(value);
     throw InvalidInput("the volume holds no label " + std::to_string(label) + ", but " + list);
   }
-  const auto is_label = [&](std::size_t voxel) { return volume.values[voxel] == static_cast<float>(label); };
-  Field field = field_around(volume, 2, is_label);
-  for_each_shared_voxel(field, volume.size, [&](std::size_t here, std::size_t there) {
-    field.values[here] = is_label(there) ? 1.0F : 0.0F;
-  });
-  blur(field);
   BoneSurface surface;
-  surface.mesh = contour(field, 0.5F, volume.lps_from_index);
+  if (const auto axis = axis_of_thick_slices(volume)) {
+    const LabelDepths depths = depths_between_slices(volume, label, *axis);
+    surface.mesh = contour(depths.field, 0, depths.lps_from_index);
+  } else {
+    surface.mesh = surface_of_even_grid(volume, label);
+  }
   if (surface.mesh.empty())
     throw InvalidInput("label " + std::to_string(label) + " is too small for a surface");
   surface.notes.push_back("label " + std::to_string(label) + ": " + std::to_string(wanted->second) +

@@ -1,8 +1,8 @@
 // From a label map to the surface of one bone.
 //
 // The surface is taken by marching cubes in the volume's own grid, carried to the patient by the whole affine
-// (oblique and sheared grids included) and smoothed there. Where the bone runs out of the volume it is closed
-// with a flat cap.
+// (oblique and sheared grids included) and smoothed there; between thick slices, where the label goes over
+// from one to the next (thick_slices.h). Where the bone runs out of the volume it is closed with a flat cap.
 #pragma once
 
 #include <string>

@@ -12,6 +12,22 @@
 
 namespace arthronaut::images {
 
+std::optional<VoxelBounds> bounds_of_label(const Volume& volume, int label) {
+  const auto wanted = static_cast<float>(label);
+  VoxelBounds bounds{volume.size, Eigen::Vector3i::Constant(-1)};
+  for (int k = 0; k < volume.size.z(); ++k) {
+    for (int j = 0; j < volume.size.y(); ++j) {
+      for (int i = 0; i < volume.size.x(); ++i) {
+        if (volume.at(i, j, k) != wanted) continue;
+        bounds.low = bounds.low.cwiseMin(Eigen::Vector3i(i, j, k));
+        bounds.high = bounds.high.cwiseMax(Eigen::Vector3i(i, j, k));
+      }
+    }
+  }
+  if (bounds.high.x() < 0) return std::nullopt;
+  return bounds;
+}
+
 geometry::TriangleMesh contour(const Field& field, float level, const Eigen::Affine3d& lps_from_index,
                                const Smoothing& smoothing) {
   vtkNew<vtkImageData> image;

@@ -3,12 +3,20 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "planning/geometry/triangle_mesh.h"
 #include "planning/images/volume.h"
 
 namespace arthronaut::images {
+
+// The voxels from the first to the last, both within.
+struct VoxelBounds {
+  Eigen::Vector3i low = Eigen::Vector3i::Zero(), high = Eigen::Vector3i::Zero();
+};
+// Of the voxels that hold the label; nullopt where none does.
+[[nodiscard]] std::optional<VoxelBounds> bounds_of_label(const Volume& volume, int label);
 
 // A part of a volume with room around it.
 struct Field {

@@ -16,6 +16,7 @@ BoneQuality quality_of(const ImportedBone& made, double labelled_ml, const image
           .edges_not_manifold = made.repair.edges_not_manifold,
           .triangles = made.repair.triangles_now,
           .cortex_outside_mm = rim.is_seen() ? rim.thickness_mm : 0,
+          .slice_mm = images.spacing_mm().maxCoeff(),
           .beneath = segmentation::bone_beneath(made.bone.mesh, images),
           .doubts = made.doubts};
 }
@@ -35,25 +36,31 @@ std::vector<QualityLine> quality_lines(const BoneQuality& quality) {
                    files::format("%.1f ml, painted %.1f ml", quality.surface_ml, quality.labelled_ml) +
                        (is_off ? ": parts of it were left out, or rounded off" : "")});
   lines.push_back({quality.is_closed ? Good : Bad, "Closed",
-                   quality.is_closed ? std::to_string(quality.triangles) + " triangles without a hole"
-                                     : "no: it cannot be planned on"});
-  lines.push_back({quality.edges_not_manifold == 0 ? Good : Caution, "Manifold",
-                   quality.edges_not_manifold == 0
-                       ? "every edge belongs to two triangles"
-                       : std::to_string(quality.edges_not_manifold) + " edges did not, and were mended"});
+                   quality.is_closed
+                       ? std::to_string(quality.triangles) + " triangles, two at every edge, without a hole"
+                       : "no: it cannot be planned on"});
+  if (quality.edges_not_manifold > 0)
+    lines.push_back(
+        {Caution, "Edges",
+         std::to_string(quality.edges_not_manifold) + " had not two triangles each, and were mended"});
   if (quality.cortex_outside_mm > 0)
     lines.push_back(
         {Caution, "Cortex",
          files::format("a rim of %.1f mm, dark as cortex is in an MR, lies outside: the bone is so "
                        "much larger all about, and walls are thicker than they are said to be",
                        quality.cortex_outside_mm)});
+  if (quality.slice_mm >= kThickSlices_mm)
+    lines.push_back({NotChecked, "Slices",
+                     files::format("%.1f mm apart: where the bone ends between two of them its surface may "
+                                   "be off by %.1f mm",
+                                   quality.slice_mm, quality.slice_mm / 2)});
   using Outcome = segmentation::BoneBeneath::Outcome;
   if (const std::string leak = leak_doubt(quality); !leak.empty())
-    lines.push_back({Caution, "Beneath", leak});
+    lines.push_back({Caution, "Grey values", leak});
   else if (quality.beneath.outcome == Outcome::NotChecked)
-    lines.push_back({NotChecked, "Beneath", "not checked: " + quality.beneath.reason});
+    lines.push_back({NotChecked, "Grey values", "not checked: " + quality.beneath.reason});
   else
-    lines.push_back({Good, "Beneath", "bone lies beneath all of the surface"});
+    lines.push_back({Good, "Grey values", "bone lies beneath all of the surface"});
   if (quality.doubts.empty()) lines.push_back({Good, "Shape", "nothing speaks against it"});
   for (const std::string& doubt : quality.doubts) lines.push_back({Caution, "Look", doubt});
   return lines;

@@ -21,6 +21,7 @@ struct BoneQuality {
   // Of an MR: so thick a rim, dark as cortex is, lies outside of the surface (segmentation/dark_rim.h); 0
   // where none is seen.
   double cortex_outside_mm = 0;
+  double slice_mm = 0;                // the longest side of a voxel of the images
   segmentation::BoneBeneath beneath;  // whether bone lies beneath all of the surface
   std::vector<std::string> doubts;    // of the mesh and of its shape; empty: nothing speaks against it
 };
@@ -39,6 +40,8 @@ struct QualityLine {
   QualityVerdict verdict = QualityVerdict::Good;
   std::string name, text;  // "Closed", "81234 triangles without a hole"
 };
+// Slices further apart than this are said: what lies between two of them was not seen.
+inline constexpr double kThickSlices_mm = 2.0;
 // A surface that holds more than this share less or more than what was labelled is to be looked at.
 inline constexpr double kMostVolumeOff_fraction = 0.05;
 [[nodiscard]] std::vector<QualityLine> quality_lines(const BoneQuality& quality);

@@ -51,7 +51,7 @@ double cut_mm2(const geometry::TriangleMesh& mesh, const std::vector<Vector3d>& 
 
 std::string cut_doubt(const ImageCut& cut) {
   return files::format(
-      "the images end within it: %.0f cm2 of it are cut off flat %s, and what lies beyond is missing",
+      "the images end within it: %.0f cm\u00B2 of it are cut off flat %s, and what lies beyond is missing",
       cut.area_mm2 / 100, side_in_words(cut.out));
 }
 

@@ -134,10 +134,11 @@ std::string amiss_along(const geometry::TriangleMesh& mesh, BoneKind kind, const
   const double area = sections.all[largest].area_mm2, from_below = sections.height_mm(largest),
                from_above = length - from_below;
   if (area < kLeastSection_mm2)
-    return files::format("its largest section is %.0f cm2: too slender, as a fibula or a splinter",
+    return files::format("its largest section is %.0f cm\u00B2: too slender, as a fibula or a splinter",
                          area / 100);
   if (area > kMostSection_mm2)
-    return files::format("its largest section is %.0f cm2: more than one bone, or not in mm", area / 100);
+    return files::format("its largest section is %.0f cm\u00B2: more than one bone, or not in mm",
+                         area / 100);
   if (kind == BoneKind::Femur) {
     if (from_below > kMostBelowCondyles_mm)
       return files::format(

@@ -158,7 +158,7 @@ bool part_at_joint(const Volume& volume, Found& found, std::size_t at, const CtB
   const double least = std::min(femur.profile.volume_mm3, tibia.profile.volume_mm3);
   if (!is_needed && least < kLeastPart_mm3) return false;
   result.notes.push_back("femur and tibia touch: parted along the joint space, of which " +
-                         std::to_string(std::lround(joint->area_mm2 / 100)) + " cm2 are seen");
+                         std::to_string(std::lround(joint->area_mm2 / 100)) + " cm\u00B2 are seen");
   found.candidates[at] = std::move(femur);
   found.candidates.insert(found.candidates.begin() + static_cast<std::ptrdiff_t>(at) + 1, std::move(tibia));
   return true;

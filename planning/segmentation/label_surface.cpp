@@ -3,6 +3,7 @@
 #include <string>
 
 #include "planning/geometry/error.h"
+#include "planning/images/contour.h"
 #include "planning/segmentation/ct_bones.h"
 #include "planning/segmentation/edge_surface.h"
 
@@ -12,23 +13,15 @@ geometry::TriangleMesh label_surface_at_edges(const images::Volume& ct, const im
                                               int label) {
   if (ct.size != labels.size) throw InvalidInput("the labels are not of the volume's size");
   const auto wanted = static_cast<float>(label);
-  Eigen::Vector3i low = ct.size, high = Eigen::Vector3i::Constant(-1);
-  for (int k = 0; k < ct.size.z(); ++k) {
-    for (int j = 0; j < ct.size.y(); ++j) {
-      for (int i = 0; i < ct.size.x(); ++i) {
-        if (labels.at(i, j, k) != wanted) continue;
-        low = low.cwiseMin(Eigen::Vector3i(i, j, k));
-        high = high.cwiseMax(Eigen::Vector3i(i, j, k));
-      }
-    }
-  }
-  if (high.x() < 0) throw InvalidInput("the volume holds no label " + std::to_string(label));
+  const auto bounds = images::bounds_of_label(labels, label);
+  if (!bounds) throw InvalidInput("the volume holds no label " + std::to_string(label));
   // The profiles across the edge need room.
   constexpr double kRoom_mm = 3;
   const Eigen::Vector3i room = (kRoom_mm * ct.spacing_mm().cwiseInverse()).array().ceil().cast<int>();
   Box box;
-  box.first = (low - room).cwiseMax(0);
-  box.size = (high + room).cwiseMin(ct.size - Eigen::Vector3i::Ones()) - box.first + Eigen::Vector3i::Ones();
+  box.first = (bounds->low - room).cwiseMax(0);
+  box.size =
+      (bounds->high + room).cwiseMin(ct.size - Eigen::Vector3i::Ones()) - box.first + Eigen::Vector3i::Ones();
   images::VoxelMask solid(box.size), others(box.size);
   std::size_t v = 0;
   for (int k = 0; k < box.size.z(); ++k) {

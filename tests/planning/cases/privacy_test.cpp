@@ -114,6 +114,13 @@ TEST_F(Privacy, Hazard19IdentityStandsInItsOwnFileAlone) {
   EXPECT_FALSE(fs::exists(identity_file(folder_)));
 }
 
+// A date that took the place of the patient's own is not shown as it.
+TEST_F(Privacy, NobodyWasBornInTheYearOne) {
+  EXPECT_EQ((Identity{"", "4711", "19900131"}.birth_date_in_words()), "1990-01-31");
+  EXPECT_EQ((Identity{"", "4711", "00010101"}.birth_date_in_words()), "");
+  EXPECT_EQ((Identity{"", "4711", "00010101"}.in_words()), "4711");
+}
+
 TEST_F(Privacy, Hazard19IdentityIsPrivateEvenInAnOpenFolder) {
   fs::create_directory(folder_);
   save_identity(folder_, {"Muster^Anna", "", ""});

@@ -136,7 +136,7 @@ TEST(BoneImport, Hazard46ABoneThatTheEdgeOfTheImagesCutsRaisesADoubt) {
   };
   // 40 by 30 mm, less a rim of a voxel that is rounded off.
   const auto is_cut = [](const char* area) {
-    return Contains(HasSubstr(std::string(area) + " cm2 of it are cut off flat in front"));
+    return Contains(HasSubstr(std::string(area) + " cm\u00B2 of it are cut off flat in front"));
   };
   EXPECT_THAT(doubts_at("cut.nrrd"), testing::AnyOf(is_cut("10"), is_cut("11"), is_cut("12")));
   EXPECT_THAT(doubts_at("cut.nrrd"), Not(Contains(HasSubstr("cut off flat above"))));
