@@ -104,6 +104,7 @@ class PlanView : public mode::Mode {
   // Where else the tunnel could begin, and from where it can be drilled: survey_view.cpp.
   void add_survey_actions(widgets::Actions& actions);
   [[nodiscard]] std::shared_ptr<const Survey> wanted_survey();
+  [[nodiscard]] bool is_entry_hidden() const;  // by bone, from where one looks
   void add_map_marks(std::vector<PaneMark>& marks) const;
   void draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const;
 

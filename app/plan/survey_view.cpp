@@ -14,7 +14,13 @@ void PlanView::add_survey_actions(widgets::Actions& actions) {
        "Where else the entry could be: about it every check is made of a tunnel of the same direction "
        "and diameter",
        GLFW_KEY_M, 0, false, has_tunnel, [this] { return state_.shows_map; },
-       [this] { state_.shows_map = !state_.shows_map; }});
+       [this] {
+         state_.shows_map = !state_.shows_map;
+         // A map behind the bone would be asked for and not be seen.
+         if (state_.shows_map && is_entry_hidden())
+           look_from(state_.key.bone == bones::BoneKind::Femur ? scene::ViewDirection::Notch
+                                                               : scene::ViewDirection::Plateau);
+       }});
   actions.add(
       {"plan.aims", "Aims",
        "The ways to this entry: through the anteromedial portal at 100 to 130 degrees of flexion, and from "
@@ -26,6 +32,13 @@ void PlanView::add_survey_actions(widgets::Actions& actions) {
          state_.shows_aims = !state_.shows_aims;
          state_.shown_revision = 0;
        }});
+}
+
+bool PlanView::is_entry_hidden() const {
+  const auto tunnel = model_->tunnel(state_.key);
+  if (!tunnel || state_.shows_lateral) return false;
+  return !bones_.shows(tunnel->bone) ||
+         is_hidden(bones_.visible(), bones_.camera().position_mm, tunnel->entry_mm);
 }
 
 // While a handle moves, every step would be surveyed for nothing.
@@ -72,6 +85,10 @@ void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& ar
       lines.push_back("Entries of a tunnel of this direction: dot, every check passed (" +
                       count(Verdict::Fine) + "); ring, to be looked at (" + count(Verdict::Look) +
                       "); cross, wrong (" + count(Verdict::Wrong) + ")");
+      if (is_entry_hidden())
+        lines.push_back(state_.key.bone == bones::BoneKind::Femur
+                            ? "They lie behind the bone from here: Notch (6) shows them"
+                            : "They lie behind the bone from here: Plateau (7) shows them");
     }
     if (state_.shows_aims && !state_.survey->has_aims) {
       lines.push_back("Looking for the ways to drill it: " + share);

@@ -323,7 +323,10 @@ TEST_F(PlanWindow, TheMapOfEntriesFollowsThePlan) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_.path());
   open(app);
+  ASSERT_EQ(app.state("view_direction"), "anterior");
   app.press("m");
+  // From the front the condyles hide where the tunnel begins.
+  ASSERT_TRUE(app.wait_for_state("view_direction", "notch"));
   ASSERT_TRUE(app.wait_for_state("survey", "shown"));
   app.press("equal");
   ASSERT_TRUE(app.wait_for_state("survey", "working"));
