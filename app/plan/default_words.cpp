@@ -9,7 +9,8 @@ std::string default_in_words(const std::vector<MadeTunnel>& made, bool took_the_
   for (const MadeTunnel& one : made) {
     const std::string name = tunnels::name_of(one.key);
     if (!one.made.is_usable()) {
-      words += "No default for the " + name + ": " + one.made.message + ".\n";
+      words += "No default for the " + name + ": " + one.made.message;
+      words += one.made.message.ends_with('?') ? "\n" : ".\n";
       continue;
     }
     words += "Default " + name + ": " + one.made.place + ".";

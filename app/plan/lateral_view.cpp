@@ -122,9 +122,7 @@ void LateralView::draw_grid(const widgets::Ui& ui, const widgets::Rect& area) co
   for (const tunnels::TunnelKey& key : model_->knee().plan.of(BoneKind::Femur)) {
     const auto tunnel = model_->tunnel(key);
     const ImU32 color = widgets::color_of(scene::kPlanColor);
-    // On the bone, as the checks take it: a plan from elsewhere may begin some mm before it.
-    const tunnels::TunnelGeometry& measured = model_->measured(key);
-    const Eigen::Vector3d entry_mm = measured.enters_bone ? measured.entry_on_surface_mm : tunnel->entry_mm;
+    const Eigen::Vector3d entry_mm = tunnels::entry_on_bone(*tunnel, model_->measured(key));
     const ImVec2 entry = at(entry_mm);
     const double length = model_->drawn_length_mm(key);
     draw.AddLine(entry, at(entry_mm + length * tunnel->direction), color, ui.theme.px(2));

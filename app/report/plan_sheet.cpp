@@ -47,11 +47,6 @@ struct PlanePicture {
   }
 };
 
-// On the bone, as the checks take it: a plan from elsewhere may begin some mm before it.
-Vector3d entry_of(const plan_review::MeasuredTunnel& planned) {
-  return planned.geometry.enters_bone ? planned.geometry.entry_on_surface_mm : planned.tunnel.entry_mm;
-}
-
 class Sheet {
  public:
   Sheet(PdfDocument& pdf, const SheetFrame& frame, const Content& content, norms::Bundle graft)
@@ -150,7 +145,7 @@ double Sheet::lateral(double x_mm, double y_mm, double width_mm) {
   tunnel_outlines(picture, BoneKind::Femur);
   if (const auto* femoral = planned(BoneKind::Femur); femoral != nullptr) {
     if (quadrant) {
-      const auto percent = quadrant->percent_of(entry_of(*femoral));
+      const auto percent = quadrant->percent_of(tunnels::entry_on_bone(femoral->tunnel, femoral->geometry));
       caption += files::format(". Entry at %.1f %% deep to shallow, %.1f %% high to low",
                                percent.deep_shallow, percent.high_low);
     }
@@ -173,7 +168,7 @@ void Sheet::plateau(double x_mm, double y_mm, double width_mm) {
   std::string caption = "The tibial plateau from above";
   const auto* tibial = planned(BoneKind::Tibia);
   if (const auto& grid = review_.bone(BoneKind::Tibia).surroundings.plateau; grid && tibial != nullptr) {
-    const auto percent = grid->percent_of(entry_of(*tibial));
+    const auto percent = grid->percent_of(tunnels::entry_on_bone(tibial->tunnel, tibial->geometry));
     caption += files::format(". Entry at %.1f %% from anterior, %.1f %% from medial",
                              percent.anterior_posterior, percent.medial_lateral);
   }
@@ -189,7 +184,7 @@ void Sheet::tunnel_outlines(const PlanePicture& picture, BoneKind kind) {
     const Vector3d side =
         tunnel.diameter_mm / 2 * tunnel.direction.cross(picture.plane.normal()).normalized();
     const double length_mm = geometry.enters_bone ? geometry.length_mm : 30;
-    const Vector3d from = entry_of(planned_tunnel), to = from + length_mm * tunnel.direction;
+    const Vector3d from = tunnels::entry_on_bone(tunnel, geometry), to = from + length_mm * tunnel.direction;
     const double width = &planned_tunnel == planned(kind) ? 0.4 : 0.15;
     line(picture, from + side, to + side, width, kPlan);
     line(picture, from - side, to - side, width, kPlan);

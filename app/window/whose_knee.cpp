@@ -6,8 +6,10 @@ std::vector<WhoseLine> whose_knee(const std::optional<cases::Identity>& identity
                                   const std::string& case_name, bones::Side side) {
   std::vector<WhoseLine> lines;
   if (identity) {
-    if (const std::string name = identity->name_in_words(); !name.empty()) lines.push_back({name, "", true});
-    const std::string& id = identity->patient_id;
+    const std::string name = identity->name_in_words();
+    // A pseudonym often stands in both: once is enough.
+    const std::string id = identity->patient_id == name ? "" : identity->patient_id;
+    if (!name.empty()) lines.push_back({name, "", true});
     const std::string born = identity->birth_date_in_words();
     if (!id.empty() || !born.empty())
       lines.push_back({id, (id.empty() || born.empty() ? "" : "  \u00B7  ") + born, true});

@@ -78,6 +78,10 @@ std::optional<Passage> passage_of(const Tunnel& tunnel, const geometry::Surface&
 
 }  // namespace
 
+Eigen::Vector3d entry_on_bone(const Tunnel& tunnel, const TunnelGeometry& measured) {
+  return measured.enters_bone ? measured.entry_on_surface_mm : tunnel.entry_mm;
+}
+
 std::optional<double> length_along(const Tunnel& tunnel, const geometry::Surface& bone) {
   const auto passage = passage_of(tunnel, bone);
   if (!passage) return std::nullopt;

@@ -50,6 +50,10 @@ struct TunnelGeometry {
 // bone: it is the index that makes this a matter of milliseconds.
 [[nodiscard]] TunnelGeometry measure(const Tunnel& tunnel, const geometry::Surface& bone);
 
+// Where a tunnel begins for whoever draws it or reads it on a grid: where its axis enters the bone, as the
+// checks take it; as planned where it misses. A plan from elsewhere may begin some mm before the bone.
+[[nodiscard]] Eigen::Vector3d entry_on_bone(const Tunnel& tunnel, const TunnelGeometry& measured);
+
 // TunnelGeometry::length_mm alone, in microseconds; nullopt for a tunnel that misses the bone.
 [[nodiscard]] std::optional<double> length_along(const Tunnel& tunnel, const geometry::Surface& bone);
 

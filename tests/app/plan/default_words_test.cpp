@@ -46,6 +46,9 @@ TEST(DefaultWords, SayWhyThereIsNone) {
   none.made.message = "no bone is there";
   none.made.doubts = {"nobody has confirmed them"};
   EXPECT_EQ(default_in_words({none}, false), "No default for the femur: no bone is there.");
+  none.made.message = "no joint's end is seen; is it cut off?";
+  EXPECT_EQ(default_in_words({none}, false),
+            "No default for the femur: no joint's end is seen; is it cut off?");
 }
 
 }  // namespace

@@ -33,6 +33,10 @@ TEST(WhoseKnee, OnlyWhatIsKnownHasALine) {
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[0].may_be_cut, "");
   EXPECT_EQ(lines[0].rest, "1990-01-31");
+  const auto pseudonym = whose_knee(cases::Identity{"STS_028", "STS_028", ""}, "Knee", bones::Side::Left);
+  ASSERT_EQ(pseudonym.size(), 2U);
+  EXPECT_EQ(pseudonym[0].may_be_cut, "STS_028");
+  EXPECT_EQ(pseudonym[1].may_be_cut, "Knee");
 }
 
 }  // namespace
