@@ -59,21 +59,16 @@ LabelDepths depths_between_slices(const Volume& volume, int label, int axis) {
   const auto far = static_cast<float>(spacing[axis]);
   std::vector<std::vector<float>> slices;
   for (int s = 0; s < size[axis]; ++s) {
-    VoxelMask inside(slice_size), outside(slice_size);
+    VoxelMask inside(slice_size);
     for (int b = 0; b < slice_size.y(); ++b) {
       for (int a = 0; a < slice_size.x(); ++a) {
         const Vector3i at = first + axes.voxel(a, b, s);
         const bool is_in_volume = (at.array() >= 0).all() && (at.array() < volume.size.array()).all();
-        const bool is_label = is_in_volume && volume.at(at.x(), at.y(), at.z()) == wanted;
-        inside.inside[inside.index(a, b, 0)] = is_label;
-        outside.inside[inside.index(a, b, 0)] = !is_label;
+        inside.inside[inside.index(a, b, 0)] = is_in_volume && volume.at(at.x(), at.y(), at.z()) == wanted;
       }
     }
-    std::vector<float> depths(inside.inside.size(), -far);
-    if (inside.count() > 0) {
-      const std::vector<float> in = depths_mm(inside, within_slice), out = depths_mm(outside, within_slice);
-      for (std::size_t i = 0; i < depths.size(); ++i) depths[i] = std::clamp(in[i] - out[i], -far, far);
-    }
+    std::vector<float> depths = signed_depths_mm(inside, within_slice);
+    for (float& depth : depths) depth = std::clamp(depth, -far, far);
     slices.push_back(std::move(depths));
   }
   // Half a slice beyond the volume what reaches its border is cut off.

@@ -136,6 +136,15 @@ std::vector<float> depths_mm(const VoxelMask& mask, const Eigen::Vector3d& spaci
   return result;
 }
 
+std::vector<float> signed_depths_mm(const VoxelMask& mask, const Eigen::Vector3d& spacing_mm) {
+  VoxelMask outside(mask.size);
+  for (std::size_t i = 0; i < mask.inside.size(); ++i) outside.inside[i] = !mask.inside[i];
+  std::vector<float> depths = depths_mm(mask, spacing_mm);
+  const std::vector<float> away = depths_mm(outside, spacing_mm);
+  for (std::size_t i = 0; i < depths.size(); ++i) depths[i] -= away[i];
+  return depths;
+}
+
 void close_gaps(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm) {
   const VoxelMask before = mask;
   grow(mask, 1, spacing_mm, radius_mm);

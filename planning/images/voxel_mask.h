@@ -60,6 +60,10 @@ struct VoxelPiece {
 // Distance of every set voxel from the nearest unset one, in mm; 0 for those. Beyond the volume nothing is.
 [[nodiscard]] std::vector<float> depths_mm(const VoxelMask& mask, const Eigen::Vector3d& spacing_mm);
 
+// The same within; outside negative, minus the distance from the nearest set one. All of a mask without a set
+// voxel, or without an unset one, is infinitely deep outside, or inside.
+[[nodiscard]] std::vector<float> signed_depths_mm(const VoxelMask& mask, const Eigen::Vector3d& spacing_mm);
+
 // Adds what a ball of this radius cannot enter from outside. Beyond the volume nothing is inside.
 void close_gaps(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm);
 

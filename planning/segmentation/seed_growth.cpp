@@ -241,21 +241,13 @@ void fill_between_slices(Labels& labels, const images::Volume& grid, int axis, s
   const Vector3i slice_size(grid.size[u], grid.size[v], 1);
   // Signed distances within a slice, positive inside; empty where the label is not painted.
   const auto signed_distances = [&](int slice) {
-    images::VoxelMask inside(slice_size), outside(slice_size);
+    images::VoxelMask inside(slice_size);
     for (int b = 0; b < slice_size.y(); ++b) {
-      for (int a = 0; a < slice_size.x(); ++a) {
-        const bool is_in = labels[voxel(a, b, slice)] == label;
-        inside.inside[inside.index(a, b, 0)] = is_in;
-        outside.inside[inside.index(a, b, 0)] = !is_in;
-      }
+      for (int a = 0; a < slice_size.x(); ++a)
+        inside.inside[inside.index(a, b, 0)] = labels[voxel(a, b, slice)] == label;
     }
     if (inside.count() == 0) return std::vector<float>{};
-    const Vector3d in_plane(spacing[u], spacing[v], 1);
-    std::vector<float> distances = images::depths_mm(inside, in_plane);
-    const std::vector<float> away = images::depths_mm(outside, in_plane);
-    for (std::size_t i = 0; i < distances.size(); ++i)
-      if (!inside.inside[i]) distances[i] = -away[i];
-    return distances;
+    return images::signed_depths_mm(inside, Vector3d(spacing[u], spacing[v], 1));
   };
   std::vector<float> last;
   int last_slice = -1;
