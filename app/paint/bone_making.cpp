@@ -93,7 +93,7 @@ void BoneMaking::judge() {
       if (made.bone.kind != quality.kind) continue;
       quality = importing::quality_of(made, quality.labelled_ml, *images_);
       // After the lines are made of it, which say it by themselves: it stays with the bone, for Plan to say.
-      if (const std::string leak = importing::leak_doubt(quality); !leak.empty()) made.doubts.push_back(leak);
+      for (std::string& doubt : importing::surface_doubts(quality)) made.doubts.push_back(std::move(doubt));
     }
 }
 

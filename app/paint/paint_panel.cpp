@@ -151,7 +151,7 @@ void PaintView::draw_work(const widgets::Ui& ui) {
 void PaintView::draw_quality(const widgets::Ui& ui) {
   bool is_doubted = false;
   for (const importing::BoneQuality& quality : making_.qualities())
-    is_doubted = is_doubted || !quality.doubts.empty() || !importing::leak_doubt(quality).empty();
+    is_doubted = is_doubted || !quality.doubts.empty() || !importing::surface_doubts(quality).empty();
   widgets::text_in(ui.theme.strong, is_doubted ? widgets::kCaution : widgets::kText,
                    is_doubted ? "Look before you rely on these surfaces"
                               : "The white outlines are the surfaces: do they follow the bones?");

@@ -1,9 +1,11 @@
 #include "planning/import/bone_quality.h"
 
 #include <cmath>
+#include <utility>
 
 #include "planning/files/format.h"
 #include "planning/segmentation/dark_rim.h"
+#include "planning/segmentation/surface_roughness.h"
 
 namespace arthronaut::importing {
 
@@ -17,14 +19,33 @@ BoneQuality quality_of(const ImportedBone& made, double labelled_ml, const image
           .triangles = made.repair.triangles_now,
           .cortex_outside_mm = rim.is_seen() ? rim.thickness_mm : 0,
           .slice_mm = images.spacing_mm().maxCoeff(),
+          .roughness_mm = segmentation::roughness_mm(made.bone.mesh),
           .beneath = segmentation::bone_beneath(made.bone.mesh, images),
           .doubts = made.doubts};
 }
+
+namespace {
 
 std::string leak_doubt(const BoneQuality& quality) {
   if (quality.beneath.outcome != segmentation::BoneBeneath::Outcome::NotEverywhere) return "";
   return files::format("no bone is seen beneath %.0f cm\u00B2 of the surface, ", quality.beneath.area_cm2) +
          quality.beneath.reason + ": has it run into soft tissue?";
+}
+
+std::string rough_doubt(const BoneQuality& quality) {
+  if (quality.roughness_mm < kRough_mm) return "";
+  return files::format("rough by %.1f mm, a bone by less than 0.2: smooth it, or paint where it ran out",
+                       quality.roughness_mm);
+}
+
+}  // namespace
+
+std::vector<std::string> surface_doubts(const BoneQuality& quality) {
+  std::vector<std::string> doubts;
+  if (std::string leak = leak_doubt(quality); !leak.empty()) doubts.push_back(std::move(leak));
+  if (const std::string rough = rough_doubt(quality); !rough.empty())
+    doubts.push_back("its surface is " + rough);
+  return doubts;
 }
 
 std::vector<QualityLine> quality_lines(const BoneQuality& quality) {
@@ -49,6 +70,8 @@ std::vector<QualityLine> quality_lines(const BoneQuality& quality) {
          files::format("a rim of %.1f mm, dark as cortex is in an MR, lies outside: the bone is so "
                        "much larger all about, and walls are thicker than they are said to be",
                        quality.cortex_outside_mm)});
+  if (const std::string rough = rough_doubt(quality); !rough.empty())
+    lines.push_back({Caution, "Surface", rough});
   if (quality.slice_mm >= kThickSlices_mm)
     lines.push_back({NotChecked, "Slices",
                      files::format("%.1f mm apart: where the bone ends between two of them its surface may "

@@ -22,6 +22,7 @@ struct BoneQuality {
   // where none is seen.
   double cortex_outside_mm = 0;
   double slice_mm = 0;                // the longest side of a voxel of the images
+  double roughness_mm = 0;            // see segmentation/surface_roughness.h
   segmentation::BoneBeneath beneath;  // whether bone lies beneath all of the surface
   std::vector<std::string> doubts;    // of the mesh and of its shape; empty: nothing speaks against it
 };
@@ -40,12 +41,15 @@ struct QualityLine {
   QualityVerdict verdict = QualityVerdict::Good;
   std::string name, text;  // "Closed", "81234 triangles without a hole"
 };
+// Bones are smoother, and ragged ones rougher, by half.
+inline constexpr double kRough_mm = 0.3;
 // Slices further apart than this are said: what lies between two of them was not seen.
 inline constexpr double kThickSlices_mm = 2.0;
 // A surface that holds more than this share less or more than what was labelled is to be looked at.
 inline constexpr double kMostVolumeOff_fraction = 0.05;
 [[nodiscard]] std::vector<QualityLine> quality_lines(const BoneQuality& quality);
-// That no bone lies beneath a part of the surface, for the case to keep; empty where none was seen.
-[[nodiscard]] std::string leak_doubt(const BoneQuality& quality);
+// What the lines say of the surface that the case is to keep with the bone: that no bone lies beneath a part
+// of it, that it is rough. Empty where nothing is.
+[[nodiscard]] std::vector<std::string> surface_doubts(const BoneQuality& quality);
 
 }  // namespace arthronaut::importing

@@ -37,6 +37,19 @@ TEST(BoneQuality, IsGoodOnlyWhereNothingSpeaksAgainstIt) {
   EXPECT_EQ(verdicts().back(), QualityVerdict::Caution);
 }
 
+// A ragged surface is told, and stays with the bone.
+TEST(BoneQuality, SaysThatASurfaceIsRough) {
+  BoneQuality quality;
+  quality.roughness_mm = 0.17;
+  EXPECT_THAT(surface_doubts(quality), testing::IsEmpty());
+  quality.roughness_mm = 0.63;
+  EXPECT_THAT(surface_doubts(quality), testing::ElementsAre(HasSubstr("rough by 0.6 mm")));
+  const auto lines = quality_lines(quality);
+  const auto surface = std::ranges::find(lines, "Surface", &QualityLine::name);
+  ASSERT_NE(surface, lines.end());
+  EXPECT_EQ(surface->verdict, QualityVerdict::Caution);
+}
+
 // What lies between two thick slices nobody has seen.
 TEST(BoneQuality, SaysThatSlicesAreThick) {
   BoneQuality quality;
@@ -65,13 +78,13 @@ TEST(BoneQuality, SaysWhereNoBoneLiesBeneathTheSurface) {
   quality.beneath.reason = "too little of it";
   EXPECT_EQ(beneath().verdict, QualityVerdict::NotChecked);
   EXPECT_EQ(beneath().text, "not checked: too little of it");
-  EXPECT_EQ(leak_doubt(quality), "");
+  EXPECT_THAT(surface_doubts(quality), testing::IsEmpty());
   quality.beneath = {.outcome = segmentation::BoneBeneath::Outcome::NotEverywhere,
                      .area_cm2 = 12.3,
                      .reason = "behind, below"};
   EXPECT_EQ(beneath().verdict, QualityVerdict::Caution);
   EXPECT_THAT(beneath().text, testing::AllOf(HasSubstr("12 cm"), HasSubstr("behind")));
-  EXPECT_EQ(leak_doubt(quality), beneath().text);
+  EXPECT_THAT(surface_doubts(quality), testing::ElementsAre(beneath().text));
 }
 
 // Of an MR: what is dark about the surface, and how thick.
