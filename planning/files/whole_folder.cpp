@@ -13,6 +13,29 @@ namespace arthronaut::files {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// Lets `work` go on; when it throws, `unfinished` is gone, and the disk's words are of `named`, the folder
+// that was asked for, not of the name it had meanwhile.
+void or_leave_nothing(const fs::path& named, const std::string& unfinished,
+                      const std::function<void()>& work) {
+  std::error_code ignored;
+  try {
+    work();
+  } catch (const IoError& failure) {
+    fs::remove_all(unfinished, ignored);
+    std::string reason = failure.what();
+    if (const auto at = reason.find(unfinished); at != std::string::npos)
+      reason.replace(at, unfinished.size(), named.string());
+    throw IoError(reason);
+  } catch (...) {
+    fs::remove_all(unfinished, ignored);
+    throw;
+  }
+}
+
+}  // namespace
+
 void make_whole_folder(const fs::path& folder, const std::function<void(const fs::path& unfinished)>& fill) {
   const fs::path named = folder.has_filename() ? folder : folder.parent_path();
   const fs::path parent = named.has_parent_path() ? named.parent_path() : ".";
@@ -22,22 +45,38 @@ void make_whole_folder(const fs::path& folder, const std::function<void(const fs
   if (error || !::mkdtemp(unfinished.data()))
     throw IoError(folder,
                   std::string("cannot be created: ") + (error ? error.message() : std::strerror(errno)));
-  std::error_code ignored;
-  try {
+  or_leave_nothing(named, unfinished, [&] {
     fill(unfinished);
     fs::rename(unfinished, named, error);
     if (error) throw IoError(folder, "cannot be created: " + error.message());
-  } catch (const IoError& failure) {
-    fs::remove_all(unfinished, ignored);
-    // Of the folder that was asked for, not of the name it had meanwhile.
-    std::string reason = failure.what();
-    if (const auto at = reason.find(unfinished); at != std::string::npos)
-      reason.replace(at, unfinished.size(), named.string());
-    throw IoError(reason);
+  });
+}
+
+void fill_folder(const fs::path& folder, const std::function<void(const fs::path& unfinished)>& fill) {
+  const fs::path named = folder.has_filename() ? folder : folder.parent_path();
+  std::error_code error, ignored;
+  const bool was_absent = !fs::exists(named, ignored);
+  fs::create_directories(named, error);
+  // Within the folder itself: beside it may be another disk.
+  std::string unfinished = (named / ".unfinished-XXXXXX").string();
+  if (error || !fs::is_directory(named, ignored) || !::mkdtemp(unfinished.data()))
+    throw IoError(folder,
+                  std::string("cannot be written: ") + (error ? error.message() : std::strerror(errno)));
+  try {
+    or_leave_nothing(named, unfinished, [&] {
+      // Files are no more open than their folder, and no less.
+      fs::permissions(unfinished, fs::status(named).permissions(), ignored);
+      fill(unfinished);
+      for (const auto& entry : fs::directory_iterator(unfinished)) {
+        fs::rename(entry.path(), named / entry.path().filename(), error);
+        if (error) throw IoError(named / entry.path().filename(), "cannot be replaced: " + error.message());
+      }
+    });
   } catch (...) {
-    fs::remove_all(unfinished, ignored);
+    if (was_absent) fs::remove(named, ignored);
     throw;
   }
+  fs::remove(unfinished, ignored);
 }
 
 void refuse_unwritable(const fs::path& folder, const fs::path& file) {

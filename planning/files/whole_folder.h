@@ -13,6 +13,12 @@ namespace arthronaut::files {
 void make_whole_folder(const std::filesystem::path& folder,
                        const std::function<void(const std::filesystem::path& unfinished)>& fill);
 
+// Into a folder that may be there and hold other files: lets `fill` write into a hidden one within it, and
+// then moves what is there over the files of the same names. When anything throws before that, `folder` is as
+// it was, and absent where it was absent. Throws what make_whole_folder() throws.
+void fill_folder(const std::filesystem::path& folder,
+                 const std::function<void(const std::filesystem::path& unfinished)>& fill);
+
 // Before work whose result goes there: throws IoError, which names the folder, where nothing can be made in
 // `folder`, or, while it is not there, in the nearest one above it that is. A file that is to be written
 // there is named in its place.

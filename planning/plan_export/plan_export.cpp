@@ -4,7 +4,6 @@
 #include <array>
 #include <map>
 #include <string_view>
-#include <system_error>
 
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/plan_file.h"
@@ -114,21 +113,23 @@ ExportSummary export_plan(const cases::Case& knee, const fs::path& folder, const
   }
   const std::string csv = plan_csv(knee), markups = markups_of(knee);
   if (stop.stop_requested()) return {.files = {}, .doubts = {}, .was_stopped = true};
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder)) throw IoError(folder, "cannot make the folder: " + error.message());
-  // What an earlier plan left drilled would pass for this one's.
-  for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
-    if (!drilled.contains(kind))
-      for (const fs::path& file : drilled_files(folder, kind)) files::remove_file(file);
-  cases::save_plan(folder, knee.plan);
-  files::write_atomically(folder / "plan.csv", csv);
-  files::write_atomically(folder / "plan.mrk.json", markups);
+  files::fill_folder(folder, [&](const fs::path& unfinished) {
+    cases::save_plan(unfinished, knee.plan);
+    files::write_atomically(unfinished / "plan.csv", csv);
+    files::write_atomically(unfinished / "plan.mrk.json", markups);
+    for (const auto& [kind, mesh] : drilled) {
+      const auto [stl, ply] = drilled_files(unfinished, kind);
+      bones::write_mesh_stl(stl, mesh);
+      bones::write_mesh_ply(ply, mesh);
+    }
+    // What an earlier plan left drilled would pass for this one's.
+    for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
+      if (!drilled.contains(kind))
+        for (const fs::path& file : drilled_files(folder, kind)) files::remove_file(file);
+  });
   summary.files = {folder / "plan.json", folder / "plan.csv", folder / "plan.mrk.json"};
   for (const auto& [kind, mesh] : drilled) {
     const auto [stl, ply] = drilled_files(folder, kind);
-    bones::write_mesh_stl(stl, mesh);
-    bones::write_mesh_ply(ply, mesh);
     summary.files.insert(summary.files.end(), {stl, ply});
   }
   return summary;

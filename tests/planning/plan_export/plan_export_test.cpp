@@ -2,9 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <cmath>
+#include <csignal>
 
 #include "planning/bones/mesh_file.h"
 #include "planning/bones/mesh_repair.h"
@@ -99,6 +101,30 @@ TEST(PlanExport, LeavesNoBoneDrilledByAnEarlierPlan) {
   for (const char* name :
        {"femur_drilled.stl", "tibia_drilled.stl", "femur_drilled.ply", "tibia_drilled.ply"})
     EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+}
+
+// A disk that gets full over the drilled bones, which are by far the largest: the plan before and its bones
+// stay together, and of a folder that was not there nothing is left.
+TEST(PlanExport, LeavesWhatWasThereWhereTheDiskIsFull) {
+  const test::TemporaryFolder folder;
+  auto knee = knee_case();
+  (void)export_plan(knee, folder / "out");
+  const auto plan = files::read_text(folder / "out/plan.json");
+  const auto bone = files::read_text(folder / "out/femur_drilled.stl");
+  knee.plan.tunnels.at(BoneKind::Femur).diameter_mm += 1;
+  ::signal(SIGXFSZ, SIG_IGN);  // the write fails instead
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit full{100'000, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &full);
+  EXPECT_THAT(test::message_of<IoError>([&] { (void)export_plan(knee, folder / "out"); }),
+              testing::StartsWith((folder / "out/femur_drilled.stl").string() + ": cannot write"));
+  EXPECT_THROW((void)export_plan(knee, folder / "new"), IoError);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(files::read_text(folder / "out/plan.json"), plan);
+  EXPECT_EQ(files::read_text(folder / "out/femur_drilled.stl"), bone);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "out"), {}), 7);
+  EXPECT_FALSE(std::filesystem::exists(folder / "new"));
 }
 
 // What another program wrote or moved in that folder is not lost to an export.
