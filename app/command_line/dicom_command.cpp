@@ -88,6 +88,8 @@ void export_dicom(Context& context, const DicomArguments& arguments) {
                                      .report_pdf = {},
                                      .pictures = {},
                                      .is_deidentified = arguments.is_deidentified};
+  if (contents.knee.bones.empty())
+    throw InvalidInput(arguments.case_folder, "case.json", "holds no bone to export");
   contents.moment_utc = moment_of(arguments.case_folder, contents.knee);
   contents.studies = cases::load_studies(arguments.case_folder);
   if (!arguments.is_deidentified) contents.identity = cases::load_identity(arguments.case_folder);

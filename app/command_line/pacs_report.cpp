@@ -82,7 +82,8 @@ Json json_of(const std::string& where, const pacs::FindSummary& found) {
 std::vector<std::string> lines_of(const pacs::FindSummary& found) {
   std::vector<std::string> lines;
   for (const auto& patient : found.patients) {
-    lines.push_back(patient.name + ", ID " + patient.id +
+    lines.push_back((patient.name.empty() ? "no name" : patient.name) +
+                    (patient.id.empty() ? ", no ID" : ", ID " + patient.id) +
                     (patient.birth_date.empty() ? "" : ", born " + date_words(patient.birth_date)) +
                     (patient.sex.empty() ? "" : ", " + patient.sex) + ": " +
                     with_count(patient.study_count, "study", "studies"));

@@ -84,9 +84,15 @@ const std::vector<std::string>& uncompressed_syntaxes() {
 std::string reason_of(const OFCondition& condition) {
   if (condition == DUL_PEERABORTEDASSOCIATION || condition == DUL_NETWORKCLOSED ||
       condition == DUL_PEERREQUESTEDRELEASE)
-    return "the peer ended the connection";
+    return std::string(kPeerEnded);
   if (condition == DIMSE_NODATAAVAILABLE || condition == DUL_READTIMEOUT) return "the peer does not answer";
   std::string text = condition.text();
+  // "DIMSE Failed to send message 0006:031d TCP I/O Error (Connection reset by peer) occurred in routine:
+  // ..."
+  if (const auto at = text.find("I/O Error ("); at != std::string::npos) {
+    const std::size_t from = at + 11;
+    return "the connection broke: " + text.substr(from, text.find(')', from) - from);
+  }
   // "TCP Initialization Error: Connection refused" and the like.
   if (const auto at = text.rfind("Error: "); at != std::string::npos) text = text.substr(at + 7);
   std::replace(text.begin(), text.end(), '\n', ' ');

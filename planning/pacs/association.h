@@ -9,6 +9,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "planning/pacs/connection.h"
@@ -89,6 +90,7 @@ void pause_before_retry(const ConnectionOptions& options, int attempt, const std
 [[nodiscard]] std::string take_comment(DcmDataset*& status_detail);
 // "0xA701 (out of resources): comment".
 [[nodiscard]] std::string status_text(unsigned status, const std::string& comment);
+inline constexpr std::string_view kPeerEnded = "the peer ended the connection";
 // Readable reason of what DCMTK's network layer returns.
 [[nodiscard]] std::string reason_of(const OFCondition& condition);
 

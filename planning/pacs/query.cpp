@@ -37,8 +37,11 @@ std::vector<std::string> values_of(const std::string& text) {
   return values;
 }
 
-[[noreturn]] void fail(const Peer& peer, const FindOutcome& outcome) {
-  throw DeviceError(to_text(peer) + ": " + outcome.refusal);
+// A PACS that does not know who calls takes some at their word, and ends the connection when they ask.
+[[noreturn]] void fail(const Peer& peer, const ConnectionOptions& connection, const FindOutcome& outcome) {
+  throw DeviceError(
+      to_text(peer) + ": " + outcome.refusal +
+      (outcome.refusal == kPeerEnded ? "; it may not know us as " + connection.our_ae_title : ""));
 }
 
 // Asks, and once more on a new connection when that broke. False when stopped.
@@ -64,7 +67,7 @@ class Asker {
         is_cut = outcome.is_cut;
         return true;
       }
-      if (!outcome.is_broken || attempt >= connection_.retries) fail(peer_, outcome);
+      if (!outcome.is_broken || attempt >= connection_.retries) fail(peer_, connection_, outcome);
       association_.reset();
       pause_before_retry(connection_, attempt, outcome.refusal, stop_);
     }

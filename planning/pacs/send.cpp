@@ -240,7 +240,7 @@ bool end_broken_off(const DeviceError& error, SendSummary& summary) {
   summary.outcome = SendSummary::Outcome::BrokenOff;
   summary.failure = error.what();
   if (summary.commitment == Commitment::NotAsked)
-    summary.commitment_note = "not asked for: sending ended before all was sent";
+    summary.commitment_note = "sending ended before all was sent";
   // The first that has no answer was on its way: the peer may have it.
   bool was_on_its_way = true;
   for (SentFile& file : summary.files) {

@@ -62,7 +62,7 @@ Orthanc::Orthanc(OrthancForm form)
                              {"DicomCheckCalledAet", true},
                              {"DicomPort", port_},
                              {"DefaultEncoding", form.encoding},
-                             {"DicomAlwaysAllowFind", true},
+                             {"DicomAlwaysAllowFind", form.answers_anybody},
                              {"DicomAlwaysAllowGet", false},
                              {"DicomAlwaysAllowMove", true},
                              {"OverwriteInstances", true}};

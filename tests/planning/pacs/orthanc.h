@@ -18,6 +18,7 @@ struct OrthancForm {
   std::string encoding = "Latin1";  // of its answers
   bool knows_us = true;             // as a modality, by our AE title and the port below
   bool allows_get = true;
+  bool answers_anybody = true;  // who asks without being known to it
   int our_port = 0;
   // TLS where there is a certificate; it then asks for ours, too.
   std::filesystem::path certificate = {}, key = {}, authority = {};

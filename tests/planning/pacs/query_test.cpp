@@ -57,6 +57,15 @@ TEST(PacsEcho, StopsWhileItWaits) {
   EXPECT_LT(echo({"PACS", "127.0.0.1", test::free_port()}, connection, stop.get_token()), 0);
 }
 
+// A PACS that takes a connection of everybody and a question of those that it knows alone, as Orthanc does.
+TEST(PacsFind, SaysThatWeMayNotBeKnown) {
+  const test::Orthanc orthanc({.knows_us = false, .answers_anybody = false});
+  ConnectionOptions connection = quick_connection();
+  connection.our_ae_title = "NOBODY";
+  EXPECT_THAT(failure_of([&] { (void)find(orthanc.peer(), connection, {.patient_id = "4711"}); }),
+              HasSubstr("ended the connection; it may not know us as NOBODY"));
+}
+
 TEST(PacsFind, TellsStudiesAndSeriesWithTheirCounts) {
   const test::Orthanc orthanc;
   const test::TemporaryFolder folder;
