@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <memory>
 
 #include "app/case/postop_comparison.h"
@@ -31,12 +30,8 @@ std::string line_of(const tunnels::TunnelKey& key, const postop::AchievedTunnel&
       files::format("entry %.1f mm off the plan, axis %.1f deg; diameter %.1f mm, length ", tunnel.offset_mm,
                     geometry::deg_from_rad(tunnel.angle_rad), tunnel.tunnel.diameter_mm) +
       postop::length_in_words(tunnel);
-  const auto widest =
-      std::max_element(tunnel.widths.begin(), tunnel.widths.end(),
-                       [](const auto& a, const auto& b) { return a.diameter_mm < b.diameter_mm; });
-  if (widest != tunnel.widths.end())
-    line += files::format("; %.1f mm at its widest, %.0f mm from the entry", widest->diameter_mm,
-                          widest->from_entry_mm);
+  if (const std::string widths = postop::widths_in_words(tunnel.widths); !widths.empty())
+    line += "; along the wall " + widths;
   return line;
 }
 

@@ -1,5 +1,6 @@
 #include "planning/postop/achieved_file.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -33,7 +34,9 @@ ordered_json tunnel_json(const tunnels::TunnelKey& key, const AchievedTunnel& ac
   json["metal_share"] = number(found, achieved.metal_share);
   json["widths"] = ordered_json::array();
   for (const Width& width : achieved.widths)
-    json["widths"].push_back({{"from_entry_mm", width.from_entry_mm}, {"diameter_mm", width.diameter_mm}});
+    json["widths"].push_back({{"from_entry_mm", width.from_entry_mm},
+                              {"diameter_mm", width.diameter_mm},
+                              {"sigma_mm", number(std::isfinite(width.sigma_mm), width.sigma_mm)}});
   return json;
 }
 
@@ -83,8 +86,12 @@ AchievedTunnel tunnel_of(const files::JsonObject& node, const tunnels::TunnelKey
     achieved.direction_sigma_rad = geometry::rad_from_deg(node.number("direction_sigma_deg"));
   if (node.has("metal_share")) achieved.metal_share = node.number("metal_share");
   if (!node.has("widths")) return achieved;
-  for (const files::JsonObject& width : node.objects("widths"))
-    achieved.widths.push_back({width.number("from_entry_mm"), width.number("diameter_mm")});
+  for (const files::JsonObject& node_of_width : node.objects("widths")) {
+    Width width{.from_entry_mm = node_of_width.number("from_entry_mm"),
+                .diameter_mm = node_of_width.number("diameter_mm")};
+    if (node_of_width.has("sigma_mm")) width.sigma_mm = node_of_width.positive_number("sigma_mm");
+    achieved.widths.push_back(width);
+  }
   return achieved;
 }
 

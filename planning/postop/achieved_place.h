@@ -50,8 +50,9 @@ struct AchievedPlace {
 [[nodiscard]] std::string wall_in_words(const AchievedPlace& place);
 // "27.3 mm"; "22.0 mm, a socket; beyond it a bore of 4.5 mm". Precondition: the tunnel was found.
 [[nodiscard]] std::string length_in_words(const AchievedTunnel& achieved);
-// How wide it is along the wall: "8.9 to 9.6 mm, widest 2 mm from the entry"; "9.1 mm" where all of it rounds
-// to that; empty where the wall is not seen.
+// How wide it is along the wall: "8.9 to 11.6 mm, widest 2 mm from the entry"; without a place where it is no
+// wider there than the errors of its widths let expect of an even bore; "9.1 mm" where all of it rounds to
+// that; empty where the wall is not seen.
 [[nodiscard]] std::string widths_in_words(const std::vector<Width>& widths);
 
 }  // namespace arthronaut::postop

@@ -50,7 +50,7 @@ AchievedTunnel told(const DrilledTunnel& drilled, const FoundBone& bone, const t
     for (const Stretch& stretch : drilled.stretches) {
       if (stretch.seen_share >= kSeenOfStretch && stretch.metal_share <= kMetalOfStretch &&
           stretch.sigma_mm <= kMostWidthSigma_mm)
-        achieved.widths.push_back({stretch.from_entry_mm, stretch.diameter_mm});
+        achieved.widths.push_back({stretch.from_entry_mm, stretch.diameter_mm, stretch.sigma_mm});
     }
   }
   if (!bone.reliable)

@@ -20,6 +20,7 @@
 // Frames: everything is in the plan's LPS, mm, unless its name says otherwise. Angles in rad.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -36,6 +37,7 @@ namespace arthronaut::postop {
 struct Width {
   double from_entry_mm = 0;
   double diameter_mm = 0;
+  double sigma_mm = std::numeric_limits<double>::infinity();  // one sigma; infinite where a file doesn't say
 };
 
 struct AchievedTunnel {

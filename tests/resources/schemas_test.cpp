@@ -243,7 +243,8 @@ TEST_F(Schemas, DescribeWhatWasAchieved) {
   const fs::path file = folder_ / "achieved.json";
   postop::Comparison found;
   found.bone.is_found = found.tunnel.is_found = true;
-  found.tunnel.widths = {{.from_entry_mm = 2, .diameter_mm = 9.5}};
+  found.tunnel.widths = {{.from_entry_mm = 2, .diameter_mm = 9.5, .sigma_mm = 0.1},
+                         {.from_entry_mm = 6, .diameter_mm = 9.5}};
   postop::write_achieved_file(
       file, {{bones::BoneKind::Femur, found}, {bones::BoneKind::Tibia, {}}},
       {{bones::BoneKind::Femur, {.grid = {{"High to low", 35, 38}}, .wall_mm = 1.5}}});

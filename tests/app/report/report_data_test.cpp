@@ -95,7 +95,7 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
     found.length_mm = 27.3;
     found.entry_sigma_mm = 0.08;
     found.direction_sigma_rad = geometry::rad_from_deg(0.25);
-    found.widths = {{2, 8.4}, {12, 9.6}};
+    found.widths = {{2, 8.4, 0.1}, {12, 9.6, 0.1}};
   }
   postop::AchievedTunnel& doubted = comparisons.at(bones::BoneKind::Tibia).tunnel;
   doubted.reliable = false;

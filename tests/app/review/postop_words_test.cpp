@@ -33,7 +33,7 @@ Comparisons some() {
   tunnel.direction_sigma_rad = geometry::rad_from_deg(0.3);
   tunnel.metal_share = 0.25;
   tunnel.beyond_mm = 4.5;
-  tunnel.widths = {{2, 9.0}, {10, 9.9}, {20, 9.2}};
+  tunnel.widths = {{2, 9.0, 0.05}, {10, 9.9, 0.06}, {20, 9.2, 0.05}};
   postop::Comparison tibia;
   tibia.bone.reasons = {"the bone was not found in the images"};
   tibia.tunnel.reasons = {"the bone was not found in the images", "nothing to look in"};
@@ -125,6 +125,7 @@ TEST(AchievedFile, IsReadBack) {
   EXPECT_EQ(b.tunnel.beyond_mm, a.tunnel.beyond_mm);
   ASSERT_EQ(b.tunnel.widths.size(), a.tunnel.widths.size());
   EXPECT_NEAR(b.tunnel.widths[1].diameter_mm, 9.9, 1e-12);
+  EXPECT_NEAR(b.tunnel.widths[1].sigma_mm, 0.06, 1e-12);
   EXPECT_NEAR((b.bone.plan_from_postop.translation_mm - a.bone.plan_from_postop.translation_mm).norm(), 0,
               1e-9);
   const postop::Comparison& tibia = read.at(bones::BoneKind::Tibia);

@@ -121,7 +121,18 @@ TEST(AchievedLength, SaysWhatGoesOnBeyondASocket) {
 TEST(AchievedWidths, SayOnceWhatRoundsToTheSame) {
   EXPECT_EQ(widths_in_words({}), "");
   EXPECT_EQ(widths_in_words({{2, 9.06}, {10, 9.14}}), "9.1 mm");
-  EXPECT_EQ(widths_in_words({{2, 9.0}, {10, 9.9}, {20, 9.2}}), "9.0 to 9.9 mm, widest 10 mm from the entry");
+  EXPECT_EQ(widths_in_words({{2, 9.0, 0.05}, {10, 9.9, 0.06}, {20, 9.2, 0.05}}),
+            "9.0 to 9.9 mm, widest 10 mm from the entry");
+}
+
+// The widest of several measurements of an even bore lies somewhere: that is noise, and no place of a
+// widening.
+TEST(AchievedWidths, NameNoPlaceOfAWideningThatTheirErrorsMake) {
+  EXPECT_EQ(widths_in_words({{2, 9.0, 0.07}, {10, 9.2, 0.07}, {25, 8.95, 0.07}}), "8.9 to 9.2 mm");
+  EXPECT_EQ(widths_in_words({{2, 9.0, 0.02}, {10, 9.2, 0.02}, {25, 8.9, 0.02}}),
+            "8.9 to 9.2 mm, widest 10 mm from the entry");
+  EXPECT_EQ(widths_in_words({{2, 9.0}, {10, 9.9}, {20, 9.2}}),
+            "9.0 to 9.9 mm");  // a file that says no errors
 }
 
 // Without landmarks there is no grid, and axes come from the bone's shape.
