@@ -40,7 +40,7 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Revie
   if (!numbers.is_valid() || !plan) {
     draw.AddCircle(center, radius, widgets::kPanelEdge, 96, ui.theme.px(2));
     return widgets::text_centered(ui, area.inset(font->FontSize), ui.theme.strong, widgets::kQuietText,
-                                  std::string(guidance::to_text(numbers.state)));
+                                  screen.no_guidance_words());
   }
   const float per_mm = radius / static_cast<float>(kShown_mm);
   draw.AddCircleFilled(center, radius, IM_COL32(15, 19, 24, 255), 96);

@@ -88,8 +88,7 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewS
     }
     ImGui::Dummy({width, (drill ? 2 : 1) * height});
   } else {
-    widgets::status_row(ui, widgets::Severity::Quiet, "No guidance",
-                        std::string(guidance::to_text(at.guidance.state)));
+    widgets::status_row(ui, widgets::Severity::Quiet, "No guidance", screen.no_guidance_words());
   }
   const auto& registration = screen.standing().registration;
   if (registration == nullptr)

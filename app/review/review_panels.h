@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "app/review/playback.h"
 #include "app/review/review_marks.h"
@@ -21,6 +22,12 @@ struct ReviewScreen {
   [[nodiscard]] const recording::SessionTimeline& timeline() const { return *review.timeline; }
   [[nodiscard]] const recording::RecordedFrame& frame() const {
     return review.timeline->frame(playback.frame);
+  }
+  // Why there was no guidance at this moment, or that the record of it is damaged: then nobody knows.
+  [[nodiscard]] std::string no_guidance_words() const {
+    const recording::RecordedFrame& at = frame();
+    return review.timeline->is_readable(playback.frame) ? std::string(guidance::to_text(at.guidance.state))
+                                                        : "this frame's record is damaged";
   }
   // What guidance stood on at this moment.
   [[nodiscard]] const Standing& standing() const {

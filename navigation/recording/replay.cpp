@@ -6,6 +6,8 @@
 #include "navigation/pipeline/prefetched_source.h"
 #include "navigation/recording/rerun.h"
 #include "planning/cases/case.h"
+#include "planning/files/within_folder.h"
+#include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
 
 namespace arthronaut::recording {
@@ -95,6 +97,11 @@ void compare_registration(const RecordedSession& session, const operation::Opera
                           const ReplayOptions& options, ReplaySummary& summary) {
   const auto& then = session.registration();
   const auto& found = now.registration->in_force.registration;
+  const auto& events = session.events();
+  if (!then && session.was_finished() &&
+      std::any_of(events.begin(), events.end(),
+                  [](const SessionEvent& event) { return event.kind == kRegistrationEvent; }))
+    summary.differences.push_back({-1, "registration", 0, "", "registration.json is not there any more"});
   if (!options.bone || !then || session.header().source_kind.empty()) return;
   const bool is_reliable_now = found != nullptr && found->reliable;
   if (then->reliable != is_reliable_now)
@@ -127,13 +134,27 @@ class Pictures {
   [[nodiscard]] bool begins_with(const std::vector<RecordedFrame>& frames) const {
     return next_ != nullptr && !frames.empty() && next_->index == frames.front().index;
   }
-  // Frames in order; null where none was kept.
+  // Frames in order; null where none was kept, and from where the video is damaged on.
   [[nodiscard]] camera::FramePtr of(std::int64_t frame) {
-    while (next_ != nullptr && next_->index < frame) next_ = prefetched_->next();
+    while (next_ != nullptr && next_->index < frame) advance();
     return next_ != nullptr && next_->index == frame ? next_ : nullptr;
   }
+  // Why the video could not be read to its end; empty where it could.
+  [[nodiscard]] const std::string& damage() const { return damage_; }
 
  private:
+  void advance() {
+    next_ = nullptr;
+    try {
+      next_ = prefetched_->next();
+    } catch (const InvalidInput& error) {
+      damage_ = error.what();
+    } catch (const IoError& error) {
+      damage_ = error.what();
+    }
+  }
+
+  std::string damage_;
   std::unique_ptr<sources::FrameSource> video_, prefetched_;
   camera::FramePtr next_;
 };
@@ -269,7 +290,13 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   rerun.play_rest();
   // A kept video that ends early is a fault of the record; pictures that nobody asked to keep are none.
   const bool is_whole_video = !session.video().empty() && session.pictures().empty();
-  if (session.was_finished() && is_whole_video && summary.frames_without_picture > 0) {
+  if (!pictures.damage().empty()) {
+    summary.differences.push_back({-1, "video", 0, "",
+                                   files::within_folder(session.folder(), pictures.damage()) + "; " +
+                                       std::to_string(summary.replayed_frames) + " of " +
+                                       std::to_string(summary.recorded_frames) +
+                                       " recorded frames were tracked again"});
+  } else if (session.was_finished() && is_whole_video && summary.frames_without_picture > 0) {
     summary.differences.push_back({-1, "video", 0, "",
                                    "shows " + std::to_string(summary.replayed_frames) + " of " +
                                        std::to_string(summary.recorded_frames) + " recorded frames"});

@@ -64,7 +64,8 @@ struct ReplaySummary {
   }
 };
 
-// Throws what the video throws.
+// A video that is damaged is told, and what was decided from there on is run again from the record. Throws
+// what the video throws where nothing of it can be read.
 [[nodiscard]] ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions& options,
                                            const std::function<void(long frames_done)>& progress = {});
 

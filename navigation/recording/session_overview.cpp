@@ -1,5 +1,7 @@
 #include "navigation/recording/session_overview.h"
 
+#include <algorithm>
+
 #include "navigation/camera/camera_file.h"
 #include "navigation/recording/kept_pictures.h"
 #include "navigation/recording/session_database.h"
@@ -11,16 +13,31 @@ namespace arthronaut::recording {
 
 namespace {
 
+// One damaged page may be met by every table.
+void tell(SessionOverview& overview, const std::string& problem) {
+  if (std::ranges::find(overview.problems, problem) == overview.problems.end())
+    overview.problems.push_back(problem);
+}
+
 // What was read before it broke off stays.
 template <typename Read>
 void as_far_as_whole(SessionOverview& overview, const Read& read) {
   try {
     read();
   } catch (const InvalidInput& error) {
-    overview.problems.emplace_back(error.what());
+    tell(overview, error.what());
   } catch (const IoError& error) {
-    overview.problems.emplace_back(error.what());
+    tell(overview, error.what());
   }
+}
+
+// What a finished session has found last stands in a file of its own.
+void look_for_registration(SessionOverview& overview) {
+  const std::filesystem::path file = overview.folder / "registration.json";
+  if (!overview.was_finished || std::filesystem::exists(file)) return;
+  if (std::ranges::any_of(overview.events,
+                          [](const SessionEvent& event) { return event.kind == kRegistrationEvent; }))
+    tell(overview, file.string() + ": is not there any more");
 }
 
 void read_record(SessionOverview& overview) {
@@ -78,6 +95,7 @@ SessionOverview read_overview(const std::filesystem::path& session_folder) {
     if (const auto file = session_folder / "registration.json"; std::filesystem::exists(file))
       overview.registration = registration::read_registration_file(file);
   });
+  look_for_registration(overview);
   return overview;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "navigation/recording/frame_record.h"
@@ -14,20 +15,89 @@ namespace {
 
 constexpr std::size_t kMostMarkers = 32;
 
-// The next row of a table that is read along with the frames: both are in the order of their indices.
-class RowsAlong {
+// The rows of a table, rising by their frames. Behind a damaged page it goes on with the next frame that can
+// be read, and keeps which could not.
+class Rows {
  public:
-  RowsAlong(SessionDatabase& database, const char* sql) : rows_(database.prepare(sql)) { advance(); }
-  // Every row of that frame.
-  template <typename Visit>
-  void visit(std::int64_t frame, const Visit& visit) {
-    while (has_row_ && rows_.integer(0) < frame) advance();
-    for (; has_row_ && rows_.integer(0) == frame; advance()) visit(rows_);
+  // select: "SELECT frame, ... FROM table". Throws IoError where the table itself is not there.
+  Rows(SessionDatabase& database, const std::string& select, const char* order = "frame")
+      : database_(database), sql_(select + " WHERE frame >= ?1 ORDER BY " + order) {
+    seek(0);
+  }
+
+  [[nodiscard]] bool step() {
+    for (;; seek(next_)) {
+      try {
+        if (!rows_->step()) return false;
+        last_ = rows_->integer(0);
+        if (!lost_.empty() && lost_.back().to < 0) lost_.back().to = last_ - 1;
+        next_ = last_ + 1;
+        return true;
+      } catch (const IoError& error) {
+        if (lost_.empty()) error_ = error.what();
+        if (lost_.empty() || lost_.back().to >= 0)
+          lost_.push_back({last_ + 1, -1});
+        else
+          ++next_;
+        if (++missed_ > kMostMissed) return false;
+      }
+    }
+  }
+  [[nodiscard]] const Statement& row() const { return *rows_; }
+
+  // "session.sqlite: ...: the markers cannot be read of frames 76 to 150"; empty when all could be read.
+  [[nodiscard]] std::string damage(const std::string& what) const {
+    if (lost_.empty()) return {};
+    std::string words = error_ + ": " + what + " cannot be read";
+    for (std::size_t i = 0; i < lost_.size(); ++i)
+      words += (i == 0                  ? " "
+                : i + 1 == lost_.size() ? " and "
+                                        : ", ") +
+               (lost_[i].to < 0
+                    ? "after frame " + std::to_string(lost_[i].from - 1)
+                    : "of frames " + std::to_string(lost_[i].from) + " to " + std::to_string(lost_[i].to));
+    return words;
   }
 
  private:
+  struct Lost {
+    std::int64_t from, to;  // below 0: to the end
+  };
+  // Looked for behind damage, one by one: 75 frames lie in four pages.
+  static constexpr int kMostMissed = 5000;
+
+  void seek(std::int64_t frame) {
+    rows_.reset(new Statement(database_.prepare(sql_)));
+    rows_->bind(1, frame);
+    next_ = frame;
+  }
+
+  SessionDatabase& database_;
+  std::string sql_, error_;
+  std::unique_ptr<Statement> rows_;
+  std::int64_t last_ = -1, next_ = 0;
+  int missed_ = 0;
+  std::vector<Lost> lost_;
+};
+
+// The next row of a table that is read along with the frames: both are in the order of their indices.
+class RowsAlong {
+ public:
+  RowsAlong(SessionDatabase& database, const std::string& select, const char* order = "frame")
+      : rows_(database, select, order) {
+    advance();
+  }
+  // Every row of that frame.
+  template <typename Visit>
+  void visit(std::int64_t frame, const Visit& visit) {
+    while (has_row_ && rows_.row().integer(0) < frame) advance();
+    for (; has_row_ && rows_.row().integer(0) == frame; advance()) visit(rows_.row());
+  }
+  [[nodiscard]] std::string damage(const std::string& what) const { return rows_.damage(what); }
+
+ private:
   void advance() { has_row_ = rows_.step(); }
-  Statement rows_;
+  Rows rows_;
   bool has_row_ = false;
 };
 
@@ -49,6 +119,20 @@ struct SessionTimeline::State {
     }
   }
 
+  void tell(const std::string& damage) {
+    if (!damage.empty()) problems.push_back(damage);
+  }
+
+  // A table that has a row of every frame: where it says what no program writes is told.
+  template <typename Read>
+  void table(const char* what, const Read& read) {
+    const std::size_t told = problems.size();
+    at_frame = -1;
+    as_far_as_whole(read);
+    if (problems.size() > told && at_frame >= 0)
+      problems.back() += ": " + std::string(what) + " cannot be read after frame " + std::to_string(at_frame);
+  }
+
   // What is not kept at a glance ends nothing; the first of it that is wrong is told.
   template <typename Check>
   void check_unkept(const Check& check) {
@@ -59,20 +143,21 @@ struct SessionTimeline::State {
   }
 
   void read_frames() {
-    Statement rows = database.prepare(
-        "SELECT frame, timestamp_ns, intrinsics_are_known, mark_state, mark_polarity FROM frames ORDER BY "
-        "frame");
+    Rows rows(database,
+              "SELECT frame, timestamp_ns, intrinsics_are_known, mark_state, mark_polarity FROM frames");
     while (rows.step()) {
+      const Statement& row = rows.row();
       FrameGlance glance;
-      glance.index = rows.integer(0);
-      glance.timestamp_ns = rows.integer(1);
-      glance.intrinsics_are_known = rows.boolean(2);
+      glance.index = row.integer(0);
+      glance.timestamp_ns = row.integer(1);
+      glance.intrinsics_are_known = row.boolean(2);
       frames.push_back(glance);
       check_unkept([&] {
-        (void)rows.one_of(3, lens::MarkState::NotSeen);
-        (void)rows.one_of(4, lens::MarkPolarity::BrightOutward);
+        (void)row.one_of(3, lens::MarkState::NotSeen);
+        (void)row.one_of(4, lens::MarkPolarity::BrightOutward);
       });
     }
+    tell(rows.damage("the record"));
   }
 
   std::uint32_t bit_of(int marker_id) {
@@ -85,14 +170,16 @@ struct SessionTimeline::State {
   }
 
   void read_markers() {
-    RowsAlong rows(database,
-                   "SELECT frame, marker_id, has_pose, state FROM markers ORDER BY frame, marker_id");
-    for (FrameGlance& glance : frames)
+    RowsAlong rows(database, "SELECT frame, marker_id, has_pose, state FROM markers", "frame, marker_id");
+    for (FrameGlance& glance : frames) {
       rows.visit(glance.index, [&](const Statement& row) {
         check_unkept([&] { (void)row.one_of(3, markers::MarkerState::Disagreeing); });
         const std::uint32_t bit = bit_of(row.int32(1));
         if (row.boolean(2)) glance.posed |= bit;
       });
+      at_frame = glance.index;
+    }
+    tell(rows.damage("the markers"));
   }
 
   // A body of several markers is named by its first one, whose bit stands for the body then.
@@ -101,7 +188,7 @@ struct SessionTimeline::State {
     std::uint32_t of_bodies = 0;
     Statement ids = database.prepare("SELECT DISTINCT body_id FROM bodies");
     while (ids.step()) of_bodies |= bit_of(ids.int32(0));
-    RowsAlong rows(database, "SELECT frame, body_id FROM bodies ORDER BY frame, body_id");
+    RowsAlong rows(database, "SELECT frame, body_id FROM bodies", "frame, body_id");
     for (FrameGlance& glance : frames) {
       glance.posed &= ~of_bodies;
       rows.visit(glance.index, [&](const Statement& row) { glance.posed |= bit_of(row.int32(1)); });
@@ -110,8 +197,8 @@ struct SessionTimeline::State {
 
   void read_guidance() {
     // Of all columns, since older records end before the lateral part of the offset.
-    RowsAlong rows(database, "SELECT * FROM guidance ORDER BY frame");
-    for (FrameGlance& glance : frames)
+    RowsAlong rows(database, "SELECT * FROM guidance");
+    for (FrameGlance& glance : frames) {
       rows.visit(glance.index, [&](const Statement& row) {
         glance.guidance = row.one_of(1, guidance::GuidanceState::GuideNotChecked);
         if (!glance.is_guided()) return;
@@ -121,6 +208,9 @@ struct SessionTimeline::State {
             static_cast<float>(std::hypot(row.number(kAnterior), row.number(kProximal), lateral_mm));
         glance.angle_deg = static_cast<float>(row.number(kAngle));
       });
+      at_frame = glance.index;
+    }
+    tell(rows.damage("the guidance"));
   }
 
   SessionDatabase database;
@@ -128,17 +218,19 @@ struct SessionTimeline::State {
   std::vector<int> marker_ids;
   std::vector<std::string> problems;
   bool unkept_is_whole = true;
+  std::int64_t at_frame = -1;  // that was read last
   mutable std::optional<std::size_t> kept_at;
   mutable RecordedFrame kept;
+  mutable bool kept_is_whole = false;
 };
 
 SessionTimeline::SessionTimeline(const std::filesystem::path& session_folder)
     : state_(std::make_unique<State>(session_folder)) {
   State& s = *state_;
   s.as_far_as_whole([&] { s.read_frames(); });
-  s.as_far_as_whole([&] { s.read_markers(); });
+  s.table("the markers", [&] { s.read_markers(); });
   s.as_far_as_whole([&] { s.read_bodies(); });
-  s.as_far_as_whole([&] { s.read_guidance(); });
+  s.table("the guidance", [&] { s.read_guidance(); });
 }
 
 SessionTimeline::~SessionTimeline() = default;
@@ -157,9 +249,11 @@ const RecordedFrame& SessionTimeline::frame(std::size_t at) const {
   s.kept.index = glance.index;
   s.kept.timestamp_ns = glance.timestamp_ns;
   s.kept.intrinsics_are_known = glance.intrinsics_are_known;
+  s.kept_is_whole = false;
   try {
     auto found = recording::read_frames(s.database, glance.index, glance.index);
-    if (!found.empty()) s.kept = std::move(found.front());
+    s.kept_is_whole = !found.empty();
+    if (s.kept_is_whole) s.kept = std::move(found.front());
   } catch (const IoError&) {
     // Told by problems(), since reading all of it met the same page.
   } catch (const InvalidInput&) {
@@ -167,6 +261,11 @@ const RecordedFrame& SessionTimeline::frame(std::size_t at) const {
   }
   s.kept_at = at;
   return s.kept;
+}
+
+bool SessionTimeline::is_readable(std::size_t at) const {
+  (void)frame(at);
+  return state_->kept_is_whole;
 }
 
 double SessionTimeline::time_s(std::size_t at) const {

@@ -42,9 +42,11 @@ class SessionTimeline {
   [[nodiscard]] const std::vector<FrameGlance>& frames() const;  // in the order of their indices
   [[nodiscard]] const std::vector<int>& marker_ids() const;      // 32 at most
   [[nodiscard]] const std::vector<std::string>& problems() const;
-  // Everything of frames()[at]; where the record is damaged there, what is known at a glance. The last one is
-  // kept. Preconditions: at < frames().size().
+  // Everything of frames()[at]; where the record is damaged there, what is known at a glance, and no
+  // guidance. The last one is kept. Preconditions: at < frames().size().
   [[nodiscard]] const RecordedFrame& frame(std::size_t at) const;
+  // Whether all of it could be read. Preconditions as above.
+  [[nodiscard]] bool is_readable(std::size_t at) const;
 
   // Seconds from the first frame. Preconditions: at < frames().size().
   [[nodiscard]] double time_s(std::size_t at) const;

@@ -84,11 +84,37 @@ TEST(SessionTimeline, ReadsADamagedRecordAsFarAsItIsWhole) {
   EXPECT_LT(timeline.frames().size(), static_cast<std::size_t>(kFrames));
   ASSERT_FALSE(timeline.problems().empty());
   EXPECT_NE(timeline.problems().front().find("session.sqlite"), std::string::npos);
+  EXPECT_TRUE(timeline.problems().front().ends_with(": the record cannot be read after frame " +
+                                                    std::to_string(timeline.frames().back().index)))
+      << timeline.problems().front();
   for (std::size_t i = 0; i < timeline.frames().size(); ++i)
     EXPECT_EQ(timeline.frame(i).index, timeline.frames()[i].index);
   EXPECT_THROW(RecordedSession{folder.path()}, IoError) << "whoever computes with it is told";
   const SessionOverview looked_at = read_overview(folder.path());
   EXPECT_EQ(looked_at.header.probe_name, "probe");
+}
+
+// A few damaged pages in the middle: what lies behind them is shown at its own time, and which frames are
+// missing is told.
+TEST(SessionTimeline, GoesOnBehindDamage) {
+  const test::TemporaryFolder folder;
+  record(folder.path());
+  const fs::path file = folder / "session.sqlite";
+  const auto middle = static_cast<std::streamoff>(fs::file_size(file)) / 2 / 4096 * 4096;
+  {
+    std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekp(middle);
+    stream << std::string(8 * 4096, '\xA5');
+  }
+  const SessionTimeline timeline(folder.path());
+  ASSERT_FALSE(timeline.problems().empty());
+  EXPECT_GT(timeline.frames().size(), static_cast<std::size_t>(kFrames - 600));
+  EXPECT_EQ(timeline.frames().back().index, kFrames - 1);
+  EXPECT_TRUE(timeline.is_readable(timeline.frames().size() - 1));
+  EXPECT_TRUE(timeline.frame(timeline.frames().size() - 1).tip_is_valid ==
+              test::frame_result(kFrames - 1).tip_is_valid);
+  for (const std::string& problem : timeline.problems())
+    EXPECT_NE(problem.find(" cannot be read of frames "), std::string::npos) << problem;
 }
 
 // A state that no program writes, as a changed row may hold, is never shown as one: guidance is known up to
@@ -105,6 +131,9 @@ TEST(SessionTimeline, ShowsNoStateThatThereIsNot) {
   EXPECT_TRUE(timeline.frames()[99].is_guided());
   EXPECT_FALSE(timeline.frames()[102].is_guided());
   EXPECT_FALSE(timeline.frame(102).guidance.is_valid());
+  EXPECT_TRUE(timeline.is_readable(99));
+  EXPECT_FALSE(timeline.is_readable(102)) << "nobody knows that there was no plan";
+  EXPECT_TRUE(timeline.problems().front().ends_with(": the guidance cannot be read after frame 101"));
   EXPECT_THROW(RecordedSession{folder.path()}, InvalidInput);
   for (const char* row :
        {"markers SET state = -1", "frames SET mark_state = 6", "frames SET mark_polarity = 3"}) {
@@ -135,6 +164,31 @@ TEST(SessionTimeline, TellsWhatIsMissing) {
   // Of a record that cannot be read nobody knows how it ended: it was not cut off for that.
   std::ofstream(folder / "session.sqlite") << "spoilt";
   EXPECT_FALSE(read_overview(folder.path()).end_was_read);
+}
+
+// Of a damaged page each table says the same, and the file of what was found last is missed only where
+// something was found.
+TEST(SessionTimeline, TellsWhatIsMissingOnce) {
+  const test::TemporaryFolder folder;
+  record(folder.path(), 10);
+  EXPECT_TRUE(read_overview(folder.path()).problems.empty()) << "nothing was registered";
+  const test::TemporaryFolder other;
+  {
+    SessionRecorder recorder(other.path(), test::session_header(), test::scripted_options());
+    recorder.append(test::frame_result(0));
+    recorder.set_registration(test::some_registration());
+    recorder.finish();
+  }
+  EXPECT_TRUE(read_overview(other.path()).problems.empty());
+  fs::remove(other / "registration.json");
+  EXPECT_EQ(read_overview(other.path()).problems,
+            std::vector<std::string>{(other / "registration.json").string() + ": is not there any more"});
+  {
+    std::fstream stream(folder / "session.sqlite", std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekp(200);  // where the tables are listed
+    stream << std::string(3000, '\xA5');
+  }
+  EXPECT_EQ(read_overview(folder.path()).problems.size(), 1U);
 }
 
 // A record that is none, or of a newer program, is refused with its name.

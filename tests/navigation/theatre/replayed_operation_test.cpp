@@ -247,6 +247,23 @@ TEST_F(ReplayedOperation, TheSimulatorsPicturesGiveTheSameStates) {
   }
   EXPECT_GT(with_tip, 5) << "the test must see something";
   expect_replays("session1", kFrames);
+
+  // A video that is cut off: its whole pictures are tracked again, the rest comes from the record, and what
+  // is missing is the one thing that differs.
+  const auto video = folder_ / "session1/video.mkv";
+  std::filesystem::resize_file(video, std::filesystem::file_size(video) * 6 / 10);
+  recording::ReplayOptions with_bone;
+  with_bone.bone = registration::phantom_bone().prepared;
+  with_bone.surface = std::make_shared<geometry::Surface>(registration::phantom_bone().mesh);
+  const auto cut = recording::replay_session(recording::RecordedSession(folder_ / "session1"), with_bone);
+  EXPECT_GT(cut.replayed_frames, kFrames / 3);
+  EXPECT_EQ(cut.replayed_frames + cut.frames_without_picture, kFrames);
+  EXPECT_EQ(cut.states_equal, kFrames);
+  ASSERT_EQ(cut.differences.size(), 1U);
+  EXPECT_EQ(cut.differences[0].what, "video");
+  EXPECT_NE(cut.differences[0].detail.find("video.mkv: frame " + std::to_string(cut.replayed_frames)),
+            std::string::npos)
+      << cut.differences[0].detail;
 }
 
 // Second looks that come when they come, as from a thread: each is handed out so many frames after it was
