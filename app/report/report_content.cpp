@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "app/report/report_words.h"
 #include "navigation/recording/case_sessions.h"
 #include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
@@ -212,6 +213,11 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   add_postoperative(content);
   add_places(content);
   if (content.session) add_looked_at(content);
+  if (options.is_deidentified) {  // what somebody wrote may name anybody
+    content.knee.name = kDeidentifiedCase;
+    for (recording::SessionMark& mark : content.marks)
+      if (!mark.note.empty()) mark.note = kNotTold;
+  }
   return content;
 }
 

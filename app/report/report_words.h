@@ -12,7 +12,8 @@ namespace arthronaut::report {
 inline constexpr const char* kResearchSentence =
     "Made by research software that is not a medical device. The figures are for research and teaching; they "
     "support no clinical claim and no decision about a patient.";
-inline constexpr const char* kNotTold = "not told";  // of a report that names nobody
+inline constexpr const char* kDeidentifiedCase = "De-identified case";  // in the place of its name
+inline constexpr const char* kNotTold = "not told";                     // of a report that names nobody
 
 // Never "-0.0".
 inline std::string number(double value, const char* unit, int decimals = 1) {

@@ -43,6 +43,12 @@ TEST_F(Report, GivesTheSameNumbersAsJsonAndAsATable) {
   const plan_review::CaseReview review(cases::load_case(knee_folder()));
   EXPECT_EQ(json.at("tunnels").at(0).at("checks").size(), review.checks(bones::BoneKind::Femur).size());
 
+  const auto strangers_file = pdf().parent_path() / "strangers.json";
+  write(strangers_file, {.is_deidentified = true});
+  EXPECT_EQ(
+      nlohmann::json::parse(files::read_text(strangers_file)).at("session").at("marks").at(0).at("note"),
+      "not told");
+
   const std::string csv = files::read_text(csv_file);
   EXPECT_TRUE(csv.starts_with("quantity,value\n"));
   expect_contains(csv, "session/marks/0/note,\"a \"\"quoted\"\" note, with a comma\"\n");

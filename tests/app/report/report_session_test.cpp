@@ -146,6 +146,9 @@ TEST_F(Report, NamesASessionThatCannotBeRead) {
   EXPECT_EQ(for_strangers.at("session").at("id"), nullptr);
   EXPECT_EQ(for_strangers.at("session").at("started_utc"), nullptr);
   EXPECT_EQ(for_strangers.at("case").at("created_utc"), nullptr);
+  EXPECT_EQ(for_strangers.at("case").at("name"), "De-identified case")
+      << "whoever named it may have named a patient";
+  EXPECT_EQ(text.find(json.at("case").at("name").get<std::string>()), std::string::npos);
   EXPECT_FALSE(for_strangers.contains("made_utc"));
 }
 
