@@ -54,7 +54,7 @@ std::vector<CaseRecord> looked_at(library::Library& known) {
   });
 }
 
-void print(const Context& context, const std::vector<CaseRecord>& records) {
+void print(const Context& context, const std::vector<CaseRecord>& records, std::size_t known_count) {
   for (const CaseRecord& record : records) {
     context.say(record.name + (record.side.empty() ? "" : ", " + record.side + " knee") + ": " +
                 std::string(to_text(record.state())));
@@ -77,7 +77,10 @@ void print(const Context& context, const std::vector<CaseRecord>& records) {
       context.say("    \"" + note + "\"");
     }
   }
-  if (records.empty()) context.say("No case. \"arthronaut cases --add FOLDER\" looks for cases in a folder.");
+  if (records.empty())
+    context.say(known_count == 0
+                    ? "No case. \"arthronaut cases --add FOLDER\" looks for cases in a folder."
+                    : "None of the " + std::to_string(known_count) + " known cases is like that.");
 }
 
 void list_cases(const Context& context, const Arguments& arguments) {
@@ -116,7 +119,7 @@ void list_cases(const Context& context, const Arguments& arguments) {
   else if (arguments.as_csv)
     files::write_atomically("-", library::cohort_csv(records, named));
   else
-    print(context, records);
+    print(context, records, all.size());
 }
 
 }  // namespace

@@ -48,16 +48,17 @@ void CaseList::tick() {
   pictures_.poll();
 }
 
+std::string CaseList::used_utc(const CaseRecord& record) const {
+  const auto recent =
+      std::ranges::find_if(recent_, [&](const RecentCase& one) { return one.folder == record.folder; });
+  return recent == recent_.end() ? record.changed_utc : std::max(recent->opened_utc, record.changed_utc);
+}
+
 // What was opened last is first, also where it was only looked at.
 void CaseList::filter() {
   found_ = library::find_cases(library_.records(), view_.query);
   if (view_.query.order == library::CaseOrder::Newest) {
-    const auto used = [&](std::size_t i) {
-      const CaseRecord& record = library_.records()[i];
-      const auto recent = std::find_if(recent_.begin(), recent_.end(),
-                                       [&](const RecentCase& one) { return one.folder == record.folder; });
-      return recent == recent_.end() ? record.changed_utc : std::max(recent->opened_utc, record.changed_utc);
-    };
+    const auto used = [&](std::size_t i) { return used_utc(library_.records()[i]); };
     std::stable_sort(found_.begin(), found_.end(),
                      [&](std::size_t a, std::size_t b) { return used(a) > used(b); });
   }

@@ -59,6 +59,8 @@ class CaseList {
   void keep_note();  // where it was changed
   void add_filter_actions(widgets::Actions& actions, const std::function<bool()>& is_shown);
   [[nodiscard]] const library::CaseRecord* selected() const;
+  // When it was opened or changed last.
+  [[nodiscard]] std::string used_utc(const library::CaseRecord& record) const;
   // A note that was changed and not yet kept.
   [[nodiscard]] bool is_writing() const {
     return view_.note_of == view_.selected && view_.note != view_.note_before;

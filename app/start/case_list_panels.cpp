@@ -29,7 +29,8 @@ Severity severity_of(const CaseRecord& record) {
     case CaseState::Drilled:
       break;
   }
-  return Severity::Good;
+  const library::SessionFacts* const last = record.last_session();
+  return last != nullptr && !last->problem.empty() ? Severity::Caution : Severity::Good;
 }
 
 std::string capital(std::string words) {
@@ -199,7 +200,7 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
       widgets::fitting(ui.theme.strong, record.name + (record.side.empty() ? "" : "  \u2013  " + record.side),
                        wide));
   widgets::draw_text(draw, ui.theme.body, at.x + width - right, at.y + ui.theme.px(6), widgets::kQuietText,
-                     when_in_words(record.changed_utc, files::utc_now()));
+                     when_in_words(used_utc(record), files::utc_now()));
   const Severity severity = severity_of(record);
   widgets::draw_sign(draw, {x + ui.theme.px(10), at.y + ui.theme.px(48)}, ui.theme.px(9), severity);
   const std::size_t count = record.sessions.size();

@@ -265,7 +265,8 @@ void PacsPane::draw_row_of(const widgets::Ui& ui, const Row& row, std::size_t /*
   const bool is_patient = row.study == nullptr;
   std::string words, counts;
   if (is_patient) {
-    words = name_words(row.patient->name) + "  \u2013  ID " + row.patient->id;
+    words = name_words(row.patient->name) +
+            (row.patient->id.empty() ? "  \u2013  no ID" : "  \u2013  ID " + row.patient->id);
     if (!row.patient->birth_date.empty()) words += "  \u2013  born " + date_words(row.patient->birth_date);
     if (!row.patient->sex.empty()) words += "  \u2013  " + row.patient->sex;
     counts = counted(row.patient->study_count, "study", "studies");

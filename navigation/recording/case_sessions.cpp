@@ -77,7 +77,9 @@ std::string real_session(const std::filesystem::path& case_folder) {
       pipeline::PipelineOptions options;
       const std::string kind = read_session_header(folder, options).source_kind;
       if (kind == "simulation") continue;
-      return "its session " + name + (kind.empty() ? " may be of a patient" : " is no simulation: " + kind);
+      return "its session " + name +
+             (kind.empty() ? " may be of a patient"
+                           : " is no simulation, but of a " + (kind == "live" ? "live camera" : kind));
     } catch (const InvalidInput&) {
     } catch (const IoError&) {
     }

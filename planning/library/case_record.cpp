@@ -16,6 +16,7 @@
 #include "planning/cases/case_outline.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
+#include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::library {
@@ -173,9 +174,12 @@ std::string SessionFacts::outcome() const {
 }
 
 std::string SessionFacts::what() const {
-  std::string words;
-  for (const std::string& part : {is_exercise ? std::string("exercise") : source_kind, bone,
-                                  length_min ? files::format("%.1f min", *length_min) : std::string()})
+  constexpr double kShort_min = 1;
+  std::string words, length;
+  if (length_min)
+    length = *length_min < kShort_min ? files::format("%.0f s", 60 * *length_min)
+                                      : files::format("%.1f min", *length_min);
+  for (const std::string& part : {is_exercise ? std::string("exercise") : source_kind, bone, length})
     if (!part.empty()) words += (words.empty() ? "" : ", ") + part;
   return words;
 }
@@ -220,7 +224,7 @@ std::string CaseRecord::plan_in_words() const {
 std::string CaseRecord::last_outcome() const {
   if (!is_there) return "its folder is not there now";
   if (!problem.empty()) return "cannot be read: " + problem;
-  return last_session() != nullptr ? last_session()->outcome() : std::string();
+  return last_session() != nullptr ? files::within_folder(folder, last_session()->outcome()) : std::string();
 }
 
 CaseRecord read_case_record(const fs::path& case_folder, const SessionReader& read_session) {

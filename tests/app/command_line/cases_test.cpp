@@ -46,6 +46,7 @@ TEST_F(CasesCommand, FindsListsAndFilters) {
   EXPECT_THAT(cases({"--side", "left"}).output, Not(HasSubstr("Beta")));
   EXPECT_THAT(cases({"--state", "not planned"}).output, Not(HasSubstr("Alpha")));
   EXPECT_THAT(cases({"--search", "right 2026-01"}).output, AllOf(HasSubstr("Beta"), Not(HasSubstr("Alpha"))));
+  EXPECT_THAT(cases({"--search", "spring"}).output, HasSubstr("None of the 2 known cases is like that."));
 }
 
 // Adding a folder lists what was found there; another program reads the whole list.

@@ -164,6 +164,8 @@ TEST(SessionFactsTest, TellWhatItWasAndWhatIsDoubtful) {
   EXPECT_EQ(facts.what(), "simulation, tibia, 2.0 min");
   facts.is_exercise = true;
   EXPECT_EQ(facts.what(), "exercise, tibia, 2.0 min");
+  facts.length_min = 0.06;
+  EXPECT_EQ(facts.what(), "exercise, tibia, 4 s") << "and not 0.1 min";
   facts.entry_offset_mm = 1;
   facts.alarm_count = 1;
   EXPECT_EQ(facts.doubts(), (std::vector<std::string>{"not registered", "1 alarm", "cut off"}));
@@ -172,6 +174,13 @@ TEST(SessionFactsTest, TellWhatItWasAndWhatIsDoubtful) {
   facts.was_verified = true;
   facts.alarm_count = 0;
   EXPECT_TRUE(facts.doubts().empty());
+  facts.problem = "/knees/a.arthro/sessions/0001/session.json: version: is 99";
+  CaseRecord record;
+  record.folder = "/knees/a.arthro";
+  record.is_there = true;
+  record.sessions = {facts};
+  record.sessions[0].entry_offset_mm.reset();
+  EXPECT_EQ(record.last_outcome(), "cannot be read: sessions/0001/session.json: version: is 99");
   facts.problem = "session.json: version: is 99";
   EXPECT_EQ(facts.doubts(), (std::vector<std::string>{"cannot be read whole: session.json: version: is 99"}));
 }
