@@ -107,16 +107,18 @@ struct SessionTimeline::State {
   explicit State(const std::filesystem::path& folder)
       : database(SessionDatabase::open(database_file(folder))) {}
 
-  // What is read before a table breaks off, or says what no program writes, stays.
+  // What is read before a table breaks off, or says what no program writes, stays. False: it did.
   template <typename Read>
-  void as_far_as_whole(const Read& part) {
+  bool as_far_as_whole(const Read& part) {
     try {
       part();
+      return true;
     } catch (const IoError& error) {
       problems.emplace_back(error.what());
     } catch (const InvalidInput& error) {
       problems.emplace_back(error.what());
     }
+    return false;
   }
 
   void tell(const std::string& damage) {
@@ -126,10 +128,8 @@ struct SessionTimeline::State {
   // A table that has a row of every frame: where it says what no program writes is told.
   template <typename Read>
   void table(const char* what, const Read& read) {
-    const std::size_t told = problems.size();
     at_frame = -1;
-    as_far_as_whole(read);
-    if (problems.size() > told && at_frame >= 0)
+    if (!as_far_as_whole(read) && at_frame >= 0)
       problems.back() += ": " + std::string(what) + " cannot be read after frame " + std::to_string(at_frame);
   }
 
@@ -137,9 +137,7 @@ struct SessionTimeline::State {
   template <typename Check>
   void check_unkept(const Check& check) {
     if (!unkept_is_whole) return;
-    const std::size_t told = problems.size();
-    as_far_as_whole(check);
-    unkept_is_whole = problems.size() == told;
+    unkept_is_whole = as_far_as_whole(check);
   }
 
   void read_frames() {

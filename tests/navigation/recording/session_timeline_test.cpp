@@ -113,8 +113,10 @@ TEST(SessionTimeline, GoesOnBehindDamage) {
   EXPECT_TRUE(timeline.is_readable(timeline.frames().size() - 1));
   EXPECT_TRUE(timeline.frame(timeline.frames().size() - 1).tip_is_valid ==
               test::frame_result(kFrames - 1).tip_is_valid);
-  for (const std::string& problem : timeline.problems())
+  for (const std::string& problem : timeline.problems()) {
     EXPECT_NE(problem.find(" cannot be read of frames "), std::string::npos) << problem;
+    EXPECT_EQ(problem.find(" after frame "), std::string::npos) << problem;
+  }
 }
 
 // A state that no program writes, as a changed row may hold, is never shown as one: guidance is known up to
