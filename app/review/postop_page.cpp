@@ -4,6 +4,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "app/review/freed_memory.h"
@@ -159,8 +160,9 @@ void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
   draw_table(ui, area.cut_right(ui.theme.px(520), gap));
   const widgets::Rect scene = area.cut_left((area.width - gap) / 2, gap);
   pane_.draw(ui, "review.postop_view", scene);
-  widgets::caption(ui, scene, widgets::kText,
-                   tunnels::name_of(chosen_) + ". Blue: planned. Banded: achieved");
+  std::string name = tunnels::name_of(chosen_);
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  widgets::caption(ui, scene, widgets::kText, name + ". Blue: planned. Banded: achieved");
   draw_slice(ui, area.cut_top((area.height - gap) / 2, gap), 0);
   draw_slice(ui, area, 1);
 }

@@ -70,7 +70,7 @@ void ReviewView::toggle_today() {
 }
 
 void ReviewView::add_playing_actions(widgets::Actions& actions) {
-  const auto has = [this] { return has_frames() && !browses(); };
+  const auto has = [this] { return shows_frames(); };
   const auto now = [] { return widgets::GraphicsWindow::now_s(); };
   actions.add({"review.play", "Play", "From here at the pace that is set; a loop goes round", GLFW_KEY_SPACE,
                0, false, has, [this] { return open_ && open_->playback.plays; },
@@ -86,18 +86,15 @@ void ReviewView::add_playing_actions(widgets::Actions& actions) {
   };
   speed("review.slower", "Slower", GLFW_KEY_COMMA, -1);
   speed("review.faster", "Faster", GLFW_KEY_PERIOD, 1);
-  const auto move = [&](const char* id, const char* label, int key, int mods, long frames) {
-    actions.add(
-        {id, label, std::string(label) + " on the time line", key, mods, true, has, {}, [this, frames] {
-           step(frames);
-         }});
+  const auto move = [&](const char* id, const char* label, const char* hint, int key, int mods, long frames) {
+    actions.add({id, label, hint, key, mods, true, has, {}, [this, frames] { step(frames); }});
   };
-  move("review.back", "1 back", GLFW_KEY_LEFT, 0, -1);
-  move("review.forward", "1 forward", GLFW_KEY_RIGHT, 0, 1);
-  move("review.back_far", "60 back", GLFW_KEY_LEFT, GLFW_MOD_SHIFT, -60);
-  move("review.forward_far", "60 forward", GLFW_KEY_RIGHT, GLFW_MOD_SHIFT, 60);
-  move("review.first", "First", GLFW_KEY_HOME, 0, -1'000'000'000);
-  move("review.last", "Last", GLFW_KEY_END, 0, 1'000'000'000);
+  move("review.back", "1 back", "The picture before this", GLFW_KEY_LEFT, 0, -1);
+  move("review.forward", "1 forward", "The picture after this", GLFW_KEY_RIGHT, 0, 1);
+  move("review.back_far", "60 back", "By 60 pictures", GLFW_KEY_LEFT, GLFW_MOD_SHIFT, -60);
+  move("review.forward_far", "60 forward", "By 60 pictures", GLFW_KEY_RIGHT, GLFW_MOD_SHIFT, 60);
+  move("review.first", "First", "The first picture of the session", GLFW_KEY_HOME, 0, -1'000'000'000);
+  move("review.last", "Last", "The last picture of the session", GLFW_KEY_END, 0, 1'000'000'000);
   actions.add({"review.event_before",
                "Before",
                "To the command, step, alarm or mark before this",
@@ -119,7 +116,7 @@ void ReviewView::add_playing_actions(widgets::Actions& actions) {
 }
 
 void ReviewView::add_mark_actions(widgets::Actions& actions) {
-  const auto may_mark = [this] { return has_frames() && !browses() && open_->marks.problem().empty(); };
+  const auto may_mark = [this] { return shows_frames() && open_->marks.problem().empty(); };
   actions.add(
       {"review.mark", "Mark", "Marks this moment, with a note", GLFW_KEY_M, 0, false, may_mark, {}, [this] {
          begin_mark();

@@ -3,6 +3,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/review/freed_memory.h"
 #include "app/widgets/source_banner.h"
@@ -153,13 +154,14 @@ void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("review_page", shows_postop_ ? "achieved" : "session");
   if (shows_postop_) return postop_.draw(ui, rest);
   if (!has_frames()) {
-    const char* text = sessions_.folders().empty()
-                           ? "No session yet. Record one in Navigate, compare a CT after the operation (P), "
-                             "or write the report of the plan (R)."
-                       : opening_.is_busy() ? "Opening the session"
-                       : !notice_.empty()   ? "This session cannot be read. The reason stands below."
-                       : open_              ? no_frames_words(open_->review)
-                                            : "Choose a session.";
+    const std::string text =
+        sessions_.folders().empty()
+            ? "No session yet. Record one in Navigate, compare a CT after the operation (P), or write the "
+              "report of the plan (R)."
+        : opening_.is_busy() ? "Opening the session"
+        : !notice_.empty()   ? "This session cannot be read.\n" + sessions_.within(notice_)
+        : open_              ? no_frames_words(open_->review)
+                             : "Choose a session.";
     widgets::text_centered(ui, rest, ui.theme.title, widgets::kQuietText, text);
     return;
   }
@@ -207,7 +209,10 @@ void ReviewView::draw_side(const widgets::Ui& ui, const widgets::Rect& area) {
   if (has_frames()) {
     draw_note_field(ui);
     ImGui::Separator();
-    if (const auto wanted = draw_moments(ui, screen())) go_to(open_->playback, open_->timeline(), *wanted);
+    if (const auto wanted = draw_moments(ui, screen())) {
+      go_to(open_->playback, open_->timeline(), *wanted);
+      shows_postop_ = false;
+    }
   }
   widgets::end_panel();
 }
@@ -232,7 +237,8 @@ void ReviewView::draw_check(const widgets::Ui& ui) const {
                       is_broken             ? widgets::Severity::Bad
                       : check.is_unbroken() ? widgets::Severity::Good
                                             : widgets::Severity::Quiet,
-                      is_broken ? "Not as recorded" : "Hashes", recording::check_words(check));
+                      is_broken ? "Not as recorded" : "Hashes",
+                      sessions_.within(recording::check_words(check)));
 }
 
 // Of whichever session it was asked for: its file names it.
@@ -302,7 +308,7 @@ void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) 
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText,
                                   "No video was kept with this session");
   if (const std::string error = open_->pictures->error(); !error.empty())
-    return widgets::text_centered(ui, area, ui.theme.strong, widgets::kBad, error);
+    return widgets::text_centered(ui, area, ui.theme.strong, widgets::kBad, sessions_.within(error));
   const recording::FrameGlance& glance = open_->glance();
   const PictureWish wish{glance.index, glance.timestamp_ns};
   const auto fetched = open_->pictures->picture(wish);

@@ -81,6 +81,7 @@ class ReviewView : public mode::Mode {
   void change_marks(const std::function<void(MarkBook&)>& change);
   void toggle_today();
   [[nodiscard]] bool has_frames() const;
+  [[nodiscard]] bool shows_frames() { return has_frames() && !shows_postop_; }
   [[nodiscard]] bool runs_today() const;
   // Keys are meant for the folders in which a CT is looked for.
   [[nodiscard]] bool browses() { return shows_postop_ && postop_.browser() != nullptr; }

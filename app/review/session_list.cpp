@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/widgets/list_rows.h"
+#include "app/widgets/wrapped_text.h"
 #include "navigation/recording/session_facts.h"
 #include "planning/cases/case.h"
 #include "planning/files/within_folder.h"
@@ -43,6 +45,12 @@ void SessionList::open(const std::filesystem::path& case_folder) {
   reads_again_ = reading_.is_busy();
 }
 
+std::string SessionList::within(std::string reason) const {
+  for (const std::filesystem::path& folder : folders_)
+    reason = files::within_folder(folder, std::move(reason));
+  return reason;
+}
+
 void SessionList::read() {
   folders_ = cases::session_folders(case_folder_);
   std::reverse(folders_.begin(), folders_.end());
@@ -78,18 +86,27 @@ std::optional<std::size_t> SessionList::draw(const widgets::Ui& ui, std::optiona
   const bool is_chosen_anew = std::exchange(in_view_, chosen) != chosen;
   ImFont* const font = ui.theme.body;
   const float sign = ui.theme.px(26), gap = ui.theme.px(8);
-  ImGui::BeginChild("review.list",
-                    {0, std::min(ui.theme.px(250), ui.theme.px(96) * static_cast<float>(folders_.size()))});
+  // As high as its rows are, up to where the buttons below need the room.
+  const auto words_height = [&](const std::string& words, float wrap) {
+    if (words.empty()) return font->FontSize;
+    wrap = std::max(wrap, 1.F);
+    return font->CalcTextSizeA(font->FontSize, 1e9F, wrap, widgets::wrapped(font, words, wrap).c_str()).y;
+  };
+  float all = gap;
+  for (const auto& folder : folders_) {
+    const auto found = lines_.find(folder);
+    all += font->FontSize + gap + ImGui::GetStyle().ItemSpacing.y +
+           words_height(found != lines_.end() ? found->second.words : std::string(),
+                        ImGui::GetContentRegionAvail().x - sign);
+  }
+  ImGui::BeginChild("review.list", {0, std::min(ui.theme.px(250), all)});
   for (std::size_t i = 0; i < folders_.size(); ++i) {
     const std::string name = folders_[i].filename().string();
     const auto found = lines_.find(folders_[i]);
     const SessionLine line = found != lines_.end() ? found->second : SessionLine{};
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, wrap = std::max(width - sign, 1.F);
-    const char* const end = line.words.data() + line.words.size();
-    const float below = line.words.empty()
-                            ? font->FontSize
-                            : font->CalcTextSizeA(font->FontSize, 1e9F, wrap, line.words.data(), end).y;
+    const float below = words_height(line.words, wrap);
     ImGui::PushID(static_cast<int>(i));
     if (ImGui::Selectable("##session", chosen == i, 0, {0, font->FontSize + below + gap})) pressed = i;
     ImGui::PopID();
@@ -101,11 +118,11 @@ std::optional<std::size_t> SessionList::draw(const widgets::Ui& ui, std::optiona
     if (line.words.empty()) continue;
     widgets::draw_sign(draw, {at.x + ui.theme.px(9), at.y + font->FontSize * 1.5F}, ui.theme.px(7),
                        line.severity);
-    draw.AddText(font, font->FontSize, {at.x + sign, at.y + font->FontSize},
-                 line.severity == widgets::Severity::Good || line.severity == widgets::Severity::Quiet
-                     ? widgets::kQuietText
-                     : widgets::color_of(line.severity),
-                 line.words.data(), end, wrap);
+    widgets::draw_text(draw, font, at.x + sign, at.y + font->FontSize,
+                       line.severity == widgets::Severity::Good || line.severity == widgets::Severity::Quiet
+                           ? widgets::kQuietText
+                           : widgets::color_of(line.severity),
+                       line.words, wrap);
   }
   ImGui::EndChild();
   return pressed;

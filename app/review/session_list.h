@@ -33,6 +33,8 @@ class SessionList {
   // As the folders are now. Throws std::filesystem::filesystem_error.
   void read();
   [[nodiscard]] const std::vector<std::filesystem::path>& folders() const { return folders_; }
+  // A reason that names files of these sessions, with their names alone: the folder stands in the list.
+  [[nodiscard]] std::string within(std::string reason) const;
   [[nodiscard]] bool is_busy() const { return reading_.is_busy(); }
   // The one that was pressed.
   [[nodiscard]] std::optional<std::size_t> draw(const widgets::Ui& ui, std::optional<std::size_t> chosen);

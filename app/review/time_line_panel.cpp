@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "app/review/review_panels.h"
+#include "app/widgets/list_rows.h"
 
 namespace arthronaut::review {
 
@@ -285,6 +288,23 @@ std::optional<std::size_t> draw_time_line(const widgets::Ui& ui, const widgets::
   return wanted;
 }
 
+// Whoever has gone to another picture sees what happened there, or last before it. Called where the first of
+// the moments is drawn next.
+static void follow_playback(const ReviewScreen& screen) {
+  const std::vector<Moment>& moments = screen.review.moments;
+  int& seen = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("followed"), -1);
+  const int now = static_cast<int>(screen.playback.frame);
+  if (std::exchange(seen, now) == now || moments.empty()) return;
+  const auto after = std::ranges::upper_bound(moments, screen.playback.frame, {}, &Moment::frame);
+  const auto first = std::ranges::lower_bound(
+      moments, after == moments.begin() ? moments.front().frame : std::prev(after)->frame, {},
+      &Moment::frame);
+  const float line = ImGui::GetTextLineHeightWithSpacing(), height = ImGui::GetWindowHeight();
+  const float top = ImGui::GetCursorPosY() + line * static_cast<float>(first - moments.begin());
+  if (top < ImGui::GetScrollY() || top + line > ImGui::GetScrollY() + height)
+    ImGui::SetScrollY(std::max(top - height / 3, 0.F));
+}
+
 std::optional<std::size_t> draw_moments(const widgets::Ui& ui, const ReviewScreen& screen) {
   std::optional<std::size_t> wanted;
   ImGui::BeginChild("review.moments");
@@ -296,7 +316,9 @@ std::optional<std::size_t> draw_moments(const widgets::Ui& ui, const ReviewScree
     ImGui::PushID(id);
     ImGui::PushStyleColor(ImGuiCol_Text, color);
     const std::string text = clock_text(screen.timeline().time_s(frame)) + "  " + words;
-    if (ImGui::Selectable(text.c_str(), is_now)) wanted = frame;
+    const std::string shown =
+        widgets::fitting(ui.theme.body, text, std::max(ImGui::GetContentRegionAvail().x, 1.F));
+    if (ImGui::Selectable(shown.c_str(), is_now)) wanted = frame;
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text.c_str());
     ImGui::PopStyleColor();
     ImGui::PopID();
@@ -306,6 +328,7 @@ std::optional<std::size_t> draw_moments(const widgets::Ui& ui, const ReviewScree
     line(screen.timeline().at_index(mark.frame), widgets::kCaution,
          "Mark" + (mark.note.empty() ? std::string() : ": " + mark.note), id++);
   if (!screen.marks.empty()) ImGui::Separator();
+  follow_playback(screen);
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(screen.review.moments.size()));
   while (clipper.Step())

@@ -237,6 +237,15 @@ TEST_F(ReviewWindow, ShowsTheComparisonThatACaseKeeps) {
   ASSERT_TRUE(app.wait_for_widget(shown));
   app.click(shown);
   EXPECT_TRUE(app.wait_for_state("review_page", "session"));
+  // What is not seen does not move: the keys of the time line are the session's.
+  app.press("Home");
+  ASSERT_TRUE(app.wait_for_state("frame", "0"));
+  app.press("p");
+  ASSERT_TRUE(app.wait_for_state("review_page", "achieved"));
+  app.press("End");
+  app.press("p");
+  ASSERT_TRUE(app.wait_for_state("review_page", "session"));
+  EXPECT_TRUE(app.wait_for_state("frame", "0"));
   app.press("ctrl+q");
   EXPECT_EQ(app.wait_for_exit(30), 0);
 }
@@ -265,7 +274,7 @@ TEST_F(ReviewWindow, SaysWhatEachSessionWas) {
   ASSERT_TRUE(app.wait_for_state("case", "open", 120));
   app.press("F3");
   EXPECT_TRUE(app.wait_for_state("session_line." + session_.filename().string(),
-                                 "femur, 0.0 min; not registered; 1 alarm"));
+                                 "femur, 3 s; not registered; 1 alarm"));
   app.press("ctrl+q");
   EXPECT_EQ(app.wait_for_exit(30), 0);
 }
