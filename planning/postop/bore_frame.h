@@ -36,6 +36,10 @@ class BoreFrame {
 
   [[nodiscard]] const Eigen::Vector3d& middle() const { return middle_; }
   [[nodiscard]] const Eigen::Vector3d& direction() const { return direction_; }
+  // Across the axis, to where a voxel lies.
+  [[nodiscard]] Eigen::Vector3d outwards(const PlacedByBore& placed) const {
+    return placed.across_u * u_ + placed.across_v * v_;
+  }
   [[nodiscard]] double half_mm() const { return half_mm_; }
   [[nodiscard]] double middle_from_entry_mm() const { return middle_from_entry_mm_; }
 

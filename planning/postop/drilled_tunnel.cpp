@@ -76,7 +76,7 @@ class Finder {
     const auto first = passage_of(bone_, found.entry_mm, found.direction);
     if (!first) return std::nullopt;
     const double whole_mm = first->length_mm();
-    const auto voxels = wall_voxels(volume_, postop_from_plan_.inverse(), grid_, found, whole_mm + 8,
+    const auto voxels = wall_voxels(volume_, postop_from_plan_.inverse(), grid_, bone_, found, whole_mm + 8,
                                     found.radius_mm + kReach_mm);
     Bore bore{first->entry_mm, found.direction, found.radius_mm, 0};
     if (!fitted(voxels, bore, std::min(whole_mm, kFirstLength_mm), WallProfile{}, candidate))

@@ -43,11 +43,13 @@ struct TunnelFit {
 };
 
 // From a bore that is right to a millimetre or so. The voxels are explained as the blurred picture of two
-// levels, parted where the wall is: one inside a stretch of the bore, one outside for each eighth of the
-// turn, and where that explains them clearly better a rim between the two, the same all along; axis and radii
-// by robust least squares on the grey (Gauss-Newton), so that what differs much tells much, what does not
-// differ tells nothing, and the bore may be brighter than the marrow or darker. Only stations `from_mm` to
-// `to_mm` along the axis from the bore's entry count. `known`: rim and blur, not to be sought.
+// sides, parted where the wall is: inside one level for each step along the bore; outside the bone as it is
+// at the same depth under its surface a little further from the wall, less by how much each cell of the wall
+// is off that, which is fitted too; and where that explains them clearly better a rim between the two, the
+// same all along. Axis and radii by robust least squares on the grey (Gauss-Newton), so that what differs
+// much tells much, what does not differ tells nothing, and the bore may be brighter than the marrow or
+// darker. Only stations `from_mm` to `to_mm` along the axis from the bore's entry count. `known`: rim and
+// blur, not to be sought.
 [[nodiscard]] TunnelFit fit_tunnel(const std::vector<WallVoxel>& voxels, const Bore& bore, double from_mm,
                                    double to_mm, Wall wall, const std::optional<WallProfile>& known = {});
 

@@ -11,12 +11,23 @@ using Eigen::Vector3d;
 constexpr double kBesideMetal_mm = 1.5;
 // Near the bone's own surface its own edge is in the picture.
 constexpr double kLeastDepth_mm = 0.9;
+// By which the grid's depths may be off.
+constexpr double kGridOff_mm = BoneGrid::kStep_mm;
+
+void tell_depth(const geometry::Surface& bone, WallVoxel& voxel) {
+  const Vector3d from_surface = voxel.p_mm - bone.closest_point(voxel.p_mm).point_mm;
+  const double depth_mm = from_surface.norm();
+  if (depth_mm >= kDeep_mm || depth_mm < 1e-9) return;
+  voxel.depth_mm = static_cast<float>(depth_mm);
+  voxel.deeper = (from_surface / depth_mm).cast<float>();
+}
 
 }  // namespace
 
 std::vector<WallVoxel> wall_voxels(const images::Volume& postop,
                                    const geometry::RigidTransform& plan_from_postop, const BoneGrid& grid,
-                                   const Bore& bore, double length_mm, double reach_mm) {
+                                   const geometry::Surface& bone, const Bore& bore, double length_mm,
+                                   double reach_mm) {
   const geometry::RigidTransform postop_from_plan = plan_from_postop.inverse();
   const Eigen::Affine3d index_from_lps = postop.lps_from_index.inverse();
   Vector3d low = Vector3d::Constant(1e9), high = -low;
@@ -54,11 +65,13 @@ std::vector<WallVoxel> wall_voxels(const images::Volume& postop,
         const Vector3d p = plan_from_postop * (postop.lps_from_index * Vector3d(i, j, k));
         const double along = (p - bore.entry_mm).dot(bore.direction);
         if (along < -2 || along > length_mm + 2 ||
-            (p - bore.entry_mm - along * bore.direction).norm() > reach_mm ||
-            grid.depth_at(p) < kLeastDepth_mm)
+            (p - bore.entry_mm - along * bore.direction).norm() > reach_mm)
           continue;
+        const double depth_mm = grid.depth_at(p);
+        if (depth_mm < kLeastDepth_mm) continue;
         const float hu = postop.at(i, j, k);
         voxels.push_back({p, hu, hu > kMetal_hu, has_metal && is_by_metal(i, j, k)});
+        if (depth_mm < kDeep_mm + kGridOff_mm) tell_depth(bone, voxels.back());
       }
     }
   }

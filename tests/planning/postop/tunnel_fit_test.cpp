@@ -15,11 +15,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kRadius_mm = 4.5, kLength_mm = 28, kBore_hu = 80;
+constexpr double kCortex_mm = 1.5, kCortex_hu = 1200, kLeastDepth_mm = 0.9;  // nearer to the surface is none
 
 struct Scan {
   double radius_mm = kRadius_mm;
   double rim_mm = 0, rim_hu = 0, blur_mm = 0.3;
   double marrow_hu = 160, grain_hu = 0;
+  double slant_rad = 0, towards_rad = 0;  // above 0: of the bone's surface at the entry, under it cortex
   unsigned seed = 5;
 };
 
@@ -48,10 +50,16 @@ std::vector<WallVoxel> scanned(const Scan& scan) {
     phases[w] = 2 * M_PI * even(random);
   }
   const auto off_axis = [&](const Vector3d& p) { return (p - kEntry).cross(kDirection).norm(); };
-  const auto hu_at = [&](double off) {
-    return off < scan.radius_mm                 ? kBore_hu
-           : off < scan.radius_mm + scan.rim_mm ? scan.rim_hu
-                                                : scan.marrow_hu;
+  const Vector3d u = kDirection.unitOrthogonal(), v = kDirection.cross(u),
+                 aside = std::cos(scan.towards_rad) * u + std::sin(scan.towards_rad) * v,
+                 deeper = std::cos(scan.slant_rad) * kDirection + std::sin(scan.slant_rad) * aside;
+  const auto depth_of = [&](const Vector3d& p) { return (p - kEntry).dot(deeper); };
+  const auto hu_at = [&](const Vector3d& p) {
+    const double off = off_axis(p);
+    return off < scan.radius_mm                             ? kBore_hu
+           : scan.slant_rad > 0 && depth_of(p) < kCortex_mm ? kCortex_hu
+           : off < scan.radius_mm + scan.rim_mm             ? scan.rim_hu
+                                                            : scan.marrow_hu;
   };
   std::vector<WallVoxel> voxels;
   for (double z = 0; z < kLength_mm + 2; z += spacing.z()) {
@@ -60,7 +68,7 @@ std::vector<WallVoxel> scanned(const Scan& scan) {
         const Vector3d p(x, y, z);
         if (off_axis(p) > scan.radius_mm + 4) continue;
         double sum = 0;
-        for (const Vector3d& s : spread) sum += hu_at(off_axis(p + s));
+        for (const Vector3d& s : spread) sum += hu_at(p + s);
         double hu = sum / static_cast<double>(spread.size()) + 25 * normal(random);
         if (scan.grain_hu > 0 && off_axis(p) > scan.radius_mm + scan.rim_mm) {
           double grain = 0;
@@ -68,6 +76,10 @@ std::vector<WallVoxel> scanned(const Scan& scan) {
           hu += scan.grain_hu * std::sqrt(2.0 / static_cast<double>(waves.size())) * grain;
         }
         voxels.push_back({p, static_cast<float>(hu), false, false});
+        if (scan.slant_rad == 0 || depth_of(p) >= kDeep_mm) continue;
+        voxels.back().depth_mm = static_cast<float>(depth_of(p));
+        voxels.back().deeper = deeper.cast<float>();
+        if (depth_of(p) < kLeastDepth_mm) voxels.pop_back();
       }
     }
   }
@@ -148,6 +160,22 @@ TEST(TunnelFit, ItsSigmaIsWhatTheAxisIsOff) {
   }
   EXPECT_GT(actual, 0.25 * said);
   EXPECT_LT(actual, 4 * said);
+}
+
+// Cortex that slants into the grey beside the wall, on one side first, drew the axis there, by 0.21 deg in
+// one of these draws, and no eighth of the wall contradicted it. Limits: a third of what is asked for, and of
+// the mean square what six draws do not leave by chance.
+TEST(TunnelFit, ACortexThatSlantsDoesNotDrawTheAxis) {
+  constexpr unsigned kDraws = 6;
+  double actual = 0, said = 0;
+  for (unsigned seed = 1; seed <= kDraws; ++seed) {
+    const TunnelFit fit = fitted({.slant_rad = 0.3 + 0.1 * seed, .towards_rad = 1.1 * seed, .seed = seed});
+    ASSERT_TRUE(fit.is_fitted);
+    EXPECT_LT(angle_rad(fit), geometry::rad_from_deg(0.17)) << seed;
+    actual += std::pow(angle_rad(fit), 2);
+    said += std::pow(fit.direction_sigma_rad, 2);
+  }
+  EXPECT_LT(actual, (1 + 4 / std::sqrt(kDraws)) * said);
 }
 
 // In grainy marrow that is hardly denser than the graft the grain can lead the axis astray, by 2.8 deg in one
