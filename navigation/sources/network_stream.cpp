@@ -65,7 +65,11 @@ class Connection {
   // Where it finds that they do not come so, cut says it. Throws DeviceError.
   Connection(const std::string& address, std::int64_t deadline_ns, bool is_again, Cut& cut,
              EncodedPackets& packets)
-      : packets_(packets), packet_(av_packet_alloc()), picture_(av_frame_alloc()), data_by_ns_(deadline_ns) {
+      : packets_(packets),
+        packet_(av_packet_alloc()),
+        pieces_(av_packet_alloc()),
+        picture_(av_frame_alloc()),
+        data_by_ns_(deadline_ns) {
     if (cut == Cut::AsTheyCome && address.starts_with("rtsp://")) open_by_picture(address, cut);
     if (container_ == nullptr) open_by_libavformat(address, is_again, cut);
     std::string problem;
@@ -196,9 +200,33 @@ class Connection {
   bool feed() {
     if (needs_parser() || !read()) return false;
     const bool is_video = packet_->stream_index == stream_index_;
-    if (is_video) take(*packet_);
+    if (is_video) join(*packet_);
     av_packet_unref(packet_.get());
     return true;
+  }
+
+  // Unparsed, libavformat gives a picture of more than 200 KiB (MAX_PES_PAYLOAD) in pieces, of which the
+  // first alone has a time. Each by itself would be a picture whose lower part is missing, and another one
+  // without its beginning.
+  void join(AVPacket& packet) {
+    constexpr int kFull = 200 * 1024 - 184;  // less than a packet of the transport is left of it
+    if (!is_cut_by_packets()) return take(packet);
+    const bool is_piece = packet.pts == AV_NOPTS_VALUE && packet.dts == AV_NOPTS_VALUE;
+    if (pieces_->size > 0 && is_piece) {
+      const int before = pieces_->size;
+      if (av_grow_packet(pieces_.get(), packet.size) < 0) return;
+      std::copy_n(packet.data, packet.size, pieces_->data + before);
+      pieces_->flags |= packet.flags & AV_PKT_FLAG_CORRUPT;
+      if (packet.size <= kFull) take_joined();
+      return;
+    }
+    take_joined();  // it was as large as that by chance
+    if (packet.size <= kFull) return take(packet);
+    av_packet_move_ref(pieces_.get(), &packet);
+  }
+  void take_joined() {
+    if (pieces_->size > 0) take(*pieces_);
+    av_packet_unref(pieces_.get());
   }
 
   bool read() {
@@ -245,6 +273,7 @@ class Connection {
   LibavPtr<AVFormatContext> container_;
   LibavPtr<AVCodecContext> decoder_;
   LibavPtr<AVPacket> packet_;
+  LibavPtr<AVPacket> pieces_;  // of a picture that is larger than libavformat gives at once
   LibavPtr<AVFrame> picture_;
   StreamClock clock_;
   std::int64_t data_by_ns_, received_ns_ = 0;

@@ -100,6 +100,31 @@ TEST(Stream, IsReadFromAUdpPort) {
   expect_live(*source, camera::CaptureClock::Network);
 }
 
+// A picture of more bytes than libavformat gives at once, as key frames of a large picture are, comes whole:
+// cut in two, every one of these would be damaged, and those that rest on it green below.
+TEST(Stream, ALargePictureComesWholeFromAUdpPort) {
+  const std::string address = "udp://127.0.0.1:" + port(3);
+  const test::ChildProcess sender(
+      test::run_ffmpeg({"-re", "-f", "lavfi", "-i", "color=gray:size=640x480:rate=10,noise=alls=80:allf=t",
+                        "-c:v", "libx264", "-preset", "ultrafast", "-tune", "zerolatency", "-qp", "24", "-g",
+                        "1", "-f", "mpegts", address + "?pkt_size=1316"}));
+  const auto source = open_source(address);
+  const auto frames = take(*source, 20);
+  ASSERT_NE(source->info().packets, nullptr);
+  EXPECT_NEAR(median_interval_s(frames), 0.1, 0.01);
+  const camera::Frame& last = *frames.back();
+  EXPECT_LT(last.timestamp_ns - frames.front()->timestamp_ns, 3'000'000'000) << "none is left out";
+  std::vector<std::uint8_t> scratch;
+  const std::vector<std::uint8_t>& bgr = camera::bgr_of(last, scratch);
+  double green = 0, red = 0;
+  const std::size_t lowest = bgr.size() - static_cast<std::size_t>(3 * last.width) * 100;
+  for (std::size_t i = lowest; i < bgr.size(); i += 3) {
+    green += bgr[i + 1];
+    red += bgr[i + 2];
+  }
+  EXPECT_NEAR(green / red, 1, 0.1);
+}
+
 // Pulled out and plugged in again: pictures go on, their numbers and times too.
 TEST(Stream, IsTakenUpAgain) {
   const std::string address = "udp://127.0.0.1:" + port(1);
