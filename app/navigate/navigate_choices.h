@@ -69,8 +69,16 @@ struct NavigateChoices {
     using Outcome = operation::DrilledState::Outcome;
     if (state.plan && state.source != nullptr && state.drilled.outcome != Outcome::NotSaid)
       drilled.insert_or_assign({state.source->kind, state.plan->tunnel.key()}, *state.plan);
-    if (!state.plan || state.source == nullptr || !state.drilled.tunnel) return;
+    if (!state.plan || state.source == nullptr) return;
     const std::pair of(state.source->kind, state.plan->tunnel.key());
+    if (state.drilled.was_taken_back) {
+      drilled.erase(of);
+      measured.erase(of);
+      verified.erase(of);
+      markers_out.erase({of.first, of.second.bone});  // it is wanted again
+      return;
+    }
+    if (!state.drilled.tunnel) return;
     measured.insert_or_assign(of, *state.drilled.tunnel);
     if (state.verification == operation::Verification::ByTouches) verified.insert(of);
     if (state.verification == operation::Verification::Skipped) verified.erase(of);

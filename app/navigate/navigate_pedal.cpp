@@ -278,7 +278,7 @@ void NavigateView::take_step_back() {
 bool NavigateView::stays_there() {
   const Repeat repeat = repeat_of(*choices_.looked_at, *live_->operation);
   return (repeat == Repeat::ShowGuide && finishes() && is_running()) ||
-         (repeat == Repeat::RecordAnew && !was_read());
+         (repeat == Repeat::NotDrilled && !was_read());
 }
 
 void NavigateView::repeat_step(operation::Step step) {
@@ -298,8 +298,8 @@ void NavigateView::repeat_step(operation::Step step) {
     case Repeat::ShowGuide:
       choices_.layout = NavigateLayout::Guide;
       return;
-    case Repeat::RecordAnew:
-      return ask(operation::TunnelDrilled{});
+    case Repeat::NotDrilled:
+      return ask(operation::TakeBackDrilled{});
     case Repeat::ShowFinish:
     case Repeat::NothingNow:
       return;

@@ -288,9 +288,8 @@ Repeat repeat_of(Step step, const OperationState& state) {
     case Step::Verify:
       return state.has_source ? Repeat::Touch : Repeat::NothingNow;
     case Step::Guide:
-      return state.drilled.outcome == operation::DrilledState::Outcome::Recorded && state.drilled.has_evidence
-                 ? Repeat::RecordAnew
-                 : Repeat::ShowGuide;
+      return state.drilled.outcome != operation::DrilledState::Outcome::NotSaid ? Repeat::NotDrilled
+                                                                                : Repeat::ShowGuide;
     case Step::Finish:
       return Repeat::ShowFinish;
   }
@@ -313,8 +312,8 @@ std::string words_of(Repeat repeat, Step step) {
       return "touch one more place that you know";
     case Repeat::ShowGuide:
       return "show the way to the plan";
-    case Repeat::RecordAnew:
-      return "drilled only now: record it anew";
+    case Repeat::NotDrilled:
+      return "not drilled yet: take that back";
     case Repeat::ShowFinish:
       return "show the check list";
     case Repeat::NothingNow:

@@ -86,7 +86,7 @@ enum class Repeat {
   RegisterAnew,  // all strokes
   Touch,         // one more that verifies
   ShowGuide,     // bullseye and numbers
-  RecordAnew,    // it was said to be drilled, and seen at the entry since: it was said too early
+  NotDrilled,    // it was said to be drilled, too early: takes that back
   ShowFinish,    // the check list
   NothingNow,    // what it needs is not there
 };

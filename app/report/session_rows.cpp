@@ -106,7 +106,7 @@ std::string clock_text(double seconds) {
 }
 
 std::vector<Step> steps_of(const recording::RecordedSession& session) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kSteps{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kSteps{
       {{recording::kRegistrationEvent, "bone registered"},
        {recording::kGivenRegistrationEvent, "registration brought along"},
        {recording::kVerifiedEvent, "registration verified"},
@@ -114,7 +114,8 @@ std::vector<Step> steps_of(const recording::RecordedSession& session) {
        {recording::kVerificationSkippedEvent, "VERIFICATION SKIPPED"},
        {recording::kVoidEvent, "registration void"},
        {recording::kTimeOutConfirmedEvent, "time-out confirmed"},
-       {recording::kDrilledEvent, "tunnel drilled"}}};
+       {recording::kDrilledEvent, "tunnel drilled"},
+       {recording::kDrilledTakenBackEvent, "said too early: not drilled"}}};
   struct Run {
     std::string_view words;
     double first_s = 0, last_s = 0;

@@ -76,6 +76,7 @@ std::vector<Moment> key_moments(const recording::RecordedSession& session,
     if (event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent)
       registered_after = event.after_frame;
     if (event.kind == recording::kDrilledEvent) drilled_after = event.after_frame;
+    if (event.kind == recording::kDrilledTakenBackEvent) drilled_after = -1;
   }
   std::optional<std::size_t> registered, closest, drilled;
   const auto miss = [&](std::size_t i) {

@@ -16,9 +16,9 @@ namespace {
 
 using recording::SessionEvent;
 
-constexpr std::array<std::string_view, 5> kSteps{recording::kRegistrationEvent, recording::kVerifiedEvent,
-                                                 recording::kConfirmedEvent,
-                                                 recording::kTimeOutConfirmedEvent, recording::kDrilledEvent};
+constexpr std::array<std::string_view, 6> kSteps{
+    recording::kRegistrationEvent,     recording::kVerifiedEvent, recording::kConfirmedEvent,
+    recording::kTimeOutConfirmedEvent, recording::kDrilledEvent,  recording::kDrilledTakenBackEvent};
 constexpr std::array<std::string_view, 5> kAlarms{
     recording::kVoidEvent, recording::kVerificationSkippedEvent, recording::kDroppedPicturesEvent,
     recording::kVideoStoppedEvent, recording::kRecordingStoppedEvent};
@@ -71,9 +71,9 @@ Moment moment_of(const SessionEvent& event) {
                           : holds(kAlarms, event.kind) ? MomentKind::Alarm
                                                        : MomentKind::Note;
   // The texts of registrations and tunnels are names of files.
-  const bool is_file = event.kind == recording::kRegistrationEvent ||
-                       event.kind == recording::kGivenRegistrationEvent ||
-                       event.kind == recording::kDrilledEvent;
+  const bool is_file =
+      event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent ||
+      event.kind == recording::kDrilledEvent || event.kind == recording::kDrilledTakenBackEvent;
   return {0, kind,
           capitalised(event.kind) + (is_file || event.text.empty() ? std::string() : ": " + event.text)};
 }

@@ -10,7 +10,7 @@ namespace arthronaut::operation {
 namespace {
 
 constexpr std::string_view kAchievedFormat = "arthronaut.achieved";
-constexpr int kAchievedVersion = 1;
+constexpr int kAchievedVersion = 2;  // of one that was taken back; of the others 1
 
 nlohmann::ordered_json to_json(const tunnels::Tunnel& tunnel) {
   return {{"entry_mm", files::to_json(tunnel.entry_mm)},
@@ -28,6 +28,14 @@ tunnels::Tunnel tunnel_from(const files::JsonObject& node, const tunnels::Tunnel
   tunnel.direction.normalize();
   tunnel.diameter_mm = node.positive_number("diameter_mm");
   return tunnel;
+}
+
+bool is_taken_back(const std::filesystem::path& file) {
+  try {
+    return read_achieved_file(file).is_taken_back;
+  } catch (const std::runtime_error&) {  // as the header says
+    return false;
+  }
 }
 
 }  // namespace
@@ -50,7 +58,7 @@ std::vector<std::filesystem::path> achieved_files(const std::filesystem::path& s
   for (const auto bundle :
        {norms::Bundle::Whole, norms::Bundle::Anteromedial, norms::Bundle::Posterolateral}) {
     files.push_back(session_folder / achieved_file_name({bones::BoneKind::Femur, bundle}));
-    if (!std::filesystem::exists(files.back())) files.pop_back();
+    if (!std::filesystem::exists(files.back()) || is_taken_back(files.back())) files.pop_back();
   }
   return files;
 }
@@ -67,6 +75,7 @@ AchievedTunnel read_achieved_file(const std::filesystem::path& file) {
   achieved.pose_count = root.int32("pose_count");
   achieved.sigma_offset_mm = root.number("sigma_offset_mm");
   achieved.sigma_angle_deg = root.number("sigma_angle_deg");
+  achieved.is_taken_back = root.has("is_taken_back") && root.boolean("is_taken_back");
   if (root.has("truth")) achieved.truth = tunnel_from(root.object("truth"), key);
   return achieved;
 }
@@ -74,7 +83,7 @@ AchievedTunnel read_achieved_file(const std::filesystem::path& file) {
 void write_achieved_file(const std::filesystem::path& file, const AchievedTunnel& achieved) {
   nlohmann::ordered_json json = {
       {"format", kAchievedFormat},
-      {"version", kAchievedVersion},
+      {"version", achieved.is_taken_back ? kAchievedVersion : 1},
       {"bone", bones::to_text(achieved.planned.bone)},
       {"planned", to_json(achieved.planned)},
       {"measured", to_json(achieved.measured)},
@@ -86,6 +95,7 @@ void write_achieved_file(const std::filesystem::path& file, const AchievedTunnel
   if (achieved.planned.bundle != norms::Bundle::Whole)
     json["bundle"] = norms::to_text(achieved.planned.bundle);
   if (achieved.depth_mm) json["depth_mm"] = *achieved.depth_mm;
+  if (achieved.is_taken_back) json["is_taken_back"] = true;
   if (achieved.truth) json["truth"] = to_json(*achieved.truth);
   files::write_json(file, json);
 }

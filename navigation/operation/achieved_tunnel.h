@@ -1,6 +1,7 @@
 // The tunnel as drilled, in a session's achieved.json (format "arthronaut.achieved", version 1), of a tunnel
 // of one bundle in achieved_am.json or achieved_pl.json, so that a session holds both: as navigation measured
-// it, what was planned, and, from the simulator alone, what was true.
+// it, what was planned, and, from the simulator alone, what was true. Version 2 is of one that was said to be
+// drilled too early and was taken back: it stays as part of the record, and nobody tells of it as achieved.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +25,7 @@ struct AchievedTunnel {
   double sigma_offset_mm = 0;     // predicted, one sigma
   double sigma_angle_deg = 0;
   std::optional<tunnels::Tunnel> truth;
+  bool is_taken_back = false;
 };
 
 // How one tunnel lies to another of the same bone.
@@ -35,7 +37,8 @@ struct TunnelDifference {
 [[nodiscard]] TunnelDifference compare(const tunnels::Tunnel& reference, const tunnels::Tunnel& other);
 
 [[nodiscard]] std::string achieved_file_name(const tunnels::TunnelKey& key);
-// Those that the session holds: of its single tunnel, of AM, of PL.
+// Those that the session holds and that were not taken back: of its single tunnel, of AM, of PL. One that
+// cannot be read is among them: who reads it says so.
 [[nodiscard]] std::vector<std::filesystem::path> achieved_files(const std::filesystem::path& session_folder);
 
 // Throws IoError or InvalidInput (file, place, reason).

@@ -7,6 +7,7 @@
 
 #include "navigation/registration/registration_file.h"
 #include "planning/files/json_document.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::operation {
 
@@ -37,7 +38,8 @@ constexpr std::array<std::string_view, std::variant_size_v<Command>> kNames{"dra
                                                                             "confirm time-out",
                                                                             "check guide",
                                                                             "trust guide",
-                                                                            "resume operation"};
+                                                                            "resume operation",
+                                                                            "take back drilled"};
 
 void add(Json& json, const Draw& draw) { json["on"] = draw.on; }
 void add(Json& json, const ExcludeStroke& exclude) {
@@ -186,7 +188,9 @@ std::string to_text(const Command& command) {
   return json.dump();
 }
 
-Command command_from_text(const std::string& text, const std::string& name) {
+namespace {
+
+Command read_command(const std::string& text, const std::string& name) {
   const files::JsonObject json = files::parse_json(text, name, kCommandFormat, kCommandVersion);
   const std::string word = json.text("command");
   std::size_t index = 0;
@@ -208,6 +212,17 @@ Command command_from_text(const std::string& text, const std::string& name) {
   if (std::holds_alternative<ResumeOperation>(command)) command = resume_from(json);
   if (std::holds_alternative<GiveRegistration>(command)) command = registration_from(json);
   return command;
+}
+
+}  // namespace
+
+Command command_from_text(const std::string& text, const std::string& name) {
+  try {
+    return read_command(text, name);
+  } catch (const InvalidInput& error) {  // a word that is no bone does not know where it stands
+    if (std::string_view(error.what()).find(name) != std::string_view::npos) throw;
+    throw InvalidInput(name + ": " + error.what());
+  }
 }
 
 }  // namespace arthronaut::operation

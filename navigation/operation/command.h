@@ -64,6 +64,8 @@ struct ReadDepthStop {
 };
 // The tunnel is drilled: the surgeon's word. What was seen of the guide or the drill is the evidence.
 struct TunnelDrilled {};
+// It is not drilled after all: said too early. What was recorded of it is taken back, and that is recorded.
+struct TakeBackDrilled {};
 // A registration from a file, or from before a crash.
 struct GiveRegistration {
   registration::RegistrationSummary registration;
@@ -99,10 +101,11 @@ struct ResumeOperation {
   std::optional<Eigen::Vector3d> control_point_mm;  // as it was touched first: touched again it still tells
 };
 
-using Command = std::variant<Draw, TakeTouch, TouchControlPoint, ForgetTouches, TakeBackStroke, ExcludeStroke,
-                             ClearStrokes, RegisterStrokes, ChooseRegistration, OfferPlan, TakePlanOver,
-                             SkipVerification, MarkerPlacedAnew, ReadDepthStop, TunnelDrilled,
-                             GiveRegistration, ConfirmTimeOut, CheckGuide, TrustGuide, ResumeOperation>;
+using Command =
+    std::variant<Draw, TakeTouch, TouchControlPoint, ForgetTouches, TakeBackStroke, ExcludeStroke,
+                 ClearStrokes, RegisterStrokes, ChooseRegistration, OfferPlan, TakePlanOver, SkipVerification,
+                 MarkerPlacedAnew, ReadDepthStop, TunnelDrilled, GiveRegistration, ConfirmTimeOut, CheckGuide,
+                 TrustGuide, ResumeOperation, TakeBackDrilled>;
 
 // "exclude stroke", ...: what the journal calls it.
 [[nodiscard]] std::string_view name_of(const Command& command);

@@ -33,6 +33,7 @@ enum class JournalKind {
   GuideChecked,      // text: how far its tip was off, or that nobody checked it
   Plan,              // in force from now on: plan, or none
   Drilled,           // achieved is set
+  DrilledTakenBack,  // the one of before; achieved is set where a tunnel was recorded
   Note,
 };
 

@@ -127,6 +127,7 @@ struct Operation::Parts {
   }
   void apply(const ReadDepthStop& stop) { drilling.depth_stop_mm = stop.depth_mm; }
   void apply(const TunnelDrilled&);
+  void apply(const TakeBackDrilled&);
   void apply(const GiveRegistration& give);
   void apply(const ConfirmTimeOut& time_out);
   void apply(const CheckGuide&);

@@ -299,41 +299,6 @@ void Operation::Parts::apply(const OfferPlan& offer) {
     set_plan(offer.plan, offer.moves_target);
 }
 
-// That a tunnel was drilled is the surgeon's word; where it runs is what was seen meanwhile, or not known.
-void Operation::Parts::apply(const TunnelDrilled&) {
-  drilling.drilled = {};
-  drilling.drilled.outcome = DrilledState::Outcome::NoEvidence;
-  if (!drilling.evidence) return;
-  const guidance::DrillEvidenceSummary seen = drilling.evidence->summary();
-  drilling.drilled.evidence = seen.outcome;
-  if (!seen.is_usable())
-    return note(JournalKind::Note,
-                "drilled, by the surgeon's word; " + std::string(guidance::to_text(seen.outcome)));
-  AchievedTunnel tunnel;
-  tunnel.planned = plan->tunnel;
-  tunnel.measured = plan->tunnel;  // bone and diameter: the drill is the planned one
-  tunnel.measured.entry_mm = seen.entry_mm;
-  tunnel.measured.direction = seen.direction;
-  // Where its axis goes into the bone, which is seldom in the plane that the poses were compared in.
-  if (setup.surface != nullptr)
-    if (const auto geometry = tunnels::measure(tunnel.measured, *setup.surface); geometry.enters_bone)
-      tunnel.measured.entry_mm = geometry.entry_on_surface_mm;
-  // A guide's end stays on the bone while the drill runs through it.
-  tunnel.depth_mm = seen.is_of_drill ? std::optional(seen.depth_mm) : drilling.depth_stop_mm;
-  drilling.depth_stop_mm.reset();  // of this hole
-  tunnel.timestamp_ns = seen.timestamp_ns;
-  tunnel.pose_count = seen.pose_count;
-  tunnel.sigma_offset_mm = seen.sigma_offset_mm;
-  tunnel.sigma_angle_deg = seen.sigma_angle_deg;
-  drilling.drilled.outcome = DrilledState::Outcome::Recorded;
-  drilling.drilled.tunnel = tunnel;
-  drilling.evidence->clear();
-  drilling.evidence_is_seen = false;
-  JournalEntry entry = entry_of(JournalKind::Drilled, "");
-  entry.achieved = tunnel;
-  note(std::move(entry));
-}
-
 void Operation::Parts::apply(const GiveRegistration& give) {
   registration::Provenance of = give.of;
   // Nobody saw the marker meanwhile: one touch has to show that it sits where it sat.

@@ -260,6 +260,8 @@ std::uint64_t digest_of_decisions(const OperationState& state) {
     digest.add(state.drilled.tunnel->measured);
     digest.add(state.drilled.tunnel->depth_mm.value_or(-1));
   }
+  // Where nothing was, nothing: records of before there was this stay as they were.
+  if (state.drilled.was_taken_back) digest.add(state.drilled.was_taken_back);
   digest.add(state.next_action);
   return digest.value();
 }

@@ -113,6 +113,7 @@ struct DrilledState {
   bool has_evidence = false;  // the guide was seen where it must be while a tunnel is drilled
   guidance::EvidenceOutcome evidence = guidance::EvidenceOutcome::NoGuidance;  // why it is not known
   std::optional<AchievedTunnel> tunnel;
+  bool was_taken_back = false;  // it was said, and then that it was too early; outcome is NotSaid
 };
 
 struct OperationState {

@@ -73,6 +73,8 @@ std::string_view kind_of(JournalKind kind) {
       return kPlanEvent;
     case JournalKind::Drilled:
       return kDrilledEvent;
+    case JournalKind::DrilledTakenBack:
+      return kDrilledTakenBackEvent;
     case JournalKind::Note:
       return "note";
   }
@@ -83,9 +85,15 @@ std::string_view kind_of(JournalKind kind) {
 std::optional<SessionEvent> event_of(const JournalEntry& entry) {
   if (entry.kind == JournalKind::RegistrationInForce || entry.kind == JournalKind::Plan) return std::nullopt;
   SessionEvent event{entry.timestamp_ns, std::string(kind_of(entry.kind)), entry.text, entry.after_frame};
-  if (entry.kind == JournalKind::Drilled)
-    event.text = operation::achieved_file_name(entry.achieved->planned.key());
+  if (entry.achieved) event.text = operation::achieved_file_name(entry.achieved->planned.key());
   return event;
+}
+
+// The tunnel as drilled, or that it was taken back.
+void write_achieved(const std::filesystem::path& folder, const JournalEntry& entry) {
+  operation::AchievedTunnel achieved = *entry.achieved;
+  achieved.is_taken_back = entry.kind == JournalKind::DrilledTakenBack;
+  operation::write_achieved_file(folder / operation::achieved_file_name(achieved.planned.key()), achieved);
 }
 
 // The next file that no registration of the session has yet.
@@ -115,11 +123,9 @@ void append_entries(const std::filesystem::path& session_folder, const std::vect
     } else {
       event = *event_of(entry);
     }
-    if (entry.kind == JournalKind::Drilled) {
-      const std::string name = operation::achieved_file_name(entry.achieved->planned.key());
-      session.rewrite_file(name,
-                           [&] { operation::write_achieved_file(session_folder / name, *entry.achieved); });
-    }
+    if (entry.achieved)
+      session.rewrite_file(operation::achieved_file_name(entry.achieved->planned.key()),
+                           [&] { write_achieved(session_folder, entry); });
     session.append_event(event);
   }
   if (!entries.empty()) session.close_database();
@@ -151,9 +157,7 @@ void OperationRecord::add(const std::vector<JournalEntry>& entries) {
     if (entry.kind == JournalKind::Plan)
       recorder_->set_plan(entry.plan ? std::optional(entry.plan->tunnel) : std::nullopt,
                           entry.plan ? entry.plan->length_mm : 0);
-    if (entry.kind == JournalKind::Drilled)
-      operation::write_achieved_file(folder_ / operation::achieved_file_name(entry.achieved->planned.key()),
-                                     *entry.achieved);
+    if (entry.achieved) write_achieved(folder_, entry);
     if (const auto event = event_of(entry)) recorder_->add_event(*event);
   }
 }

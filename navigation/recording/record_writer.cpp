@@ -52,7 +52,8 @@ void RecordWriter::put(const pipeline::FrameResult& result) {
 
 void RecordWriter::put(const SessionEvent& event) {
   event_.bind(1, event.after_frame).bind(2, event.timestamp_ns).bind(3, event.kind).bind(4, event.text).run();
-  if (event.kind == kDrilledEvent) hashes_.cover_file(event.text);
+  const bool is_of_file = event.kind == kDrilledEvent || event.kind == kDrilledTakenBackEvent;
+  if (is_of_file && !event.text.empty()) hashes_.cover_file(event.text);
 }
 
 void RecordWriter::put(const KeptPicture& picture) {

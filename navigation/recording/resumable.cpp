@@ -84,8 +84,12 @@ std::chrono::system_clock::time_point last_written(const std::filesystem::path& 
 }
 
 void add_drilled(const RecordedSession& session, std::set<std::string>& files) {
-  for (const SessionEvent& event : session.events())
-    if (event.kind == kDrilledEvent) files.insert(event.text);
+  std::set<std::string> own;
+  for (const SessionEvent& event : session.events()) {
+    if (event.kind == kDrilledEvent) own.insert(event.text);
+    if (event.kind == kDrilledTakenBackEvent) own.erase(event.text);
+  }
+  files.merge(own);
 }
 
 // Whether it was drilled in its newest session, and nothing is left to be drilled.

@@ -87,7 +87,9 @@ inline constexpr std::string_view kBoneMovedEvent =
     "bone moved in the picture";                                         // text: operation::SeenDrift
 inline constexpr std::string_view kBoneLooksEvent = "bone looks";        // text: operation::SeenLooks
 inline constexpr std::string_view kGuideCheckedEvent = "guide checked";  // text: how far its tip was off
-inline constexpr std::string_view kDrilledEvent = "tunnel drilled";
+inline constexpr std::string_view kDrilledEvent = "tunnel drilled";      // text: the file that holds it
+inline constexpr std::string_view kDrilledTakenBackEvent =
+    "tunnel not drilled";  // text: the file that held it; empty: it was drilled by word alone
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier
 inline constexpr std::string_view kSourceEndedEvent = "source ended";
 inline constexpr std::string_view kSourceTroubleEvent = "source trouble";    // text: what; empty: it is over

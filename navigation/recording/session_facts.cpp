@@ -34,6 +34,7 @@ class Steps {
     const bool is_trusted = event.kind == kVerifiedEvent || event.kind == kConfirmedEvent;
     if (is_trusted && verified_ns_ == kNever) verified_ns_ = guided_ns_ = at;
     if (event.kind == kDrilledEvent) drilled_ns_ = at;
+    if (event.kind == kDrilledTakenBackEvent) drilled_ns_ = kNever;
   }
   void fill(SessionFacts& facts) const {
     facts.registering_min = minutes(start_ns_, registered_ns_);

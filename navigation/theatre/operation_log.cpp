@@ -59,6 +59,8 @@ std::string what_of(const JournalEntry& entry) {
       return entry.plan ? "plan in force" : "no plan in force";
     case JournalKind::Drilled:
       return "tunnel drilled";
+    case JournalKind::DrilledTakenBack:
+      return "tunnel not drilled after all";
     case JournalKind::Note:
       return "note";
   }

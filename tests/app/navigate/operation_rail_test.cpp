@@ -273,18 +273,17 @@ TEST(OperationRail, NothingBlocksTheWayBack) {
   EXPECT_EQ(repeat_of(Step::WorldMarker, course.state), Repeat::NothingNow) << "there is no control point";
 }
 
-// A press too early says that it is drilled. The guide at the entry since then is how it is recorded as it
-// was drilled in the end.
-TEST(OperationRail, WhatWasSaidTooEarlyIsRecordedAnew) {
+// A press too early says that it is drilled: the way back takes that back, however it was recorded.
+TEST(OperationRail, WhatWasSaidTooEarlyIsTakenBack) {
+  using Outcome = operation::DrilledState::Outcome;
   Course course;
   course.verify();
-  course.state.registration = std::make_shared<const operation::RegistrationState>(course.registration);
   course.state.drilled.has_evidence = true;
   EXPECT_EQ(repeat_of(Step::Guide, course.state), Repeat::ShowGuide) << "the step of now says it";
-  course.state.drilled.outcome = operation::DrilledState::Outcome::Recorded;
-  EXPECT_EQ(repeat_of(Step::Guide, course.state), Repeat::RecordAnew);
-  course.state.drilled.has_evidence = false;
-  EXPECT_EQ(repeat_of(Step::Guide, course.state), Repeat::ShowGuide) << "nothing was seen since";
+  for (const Outcome outcome : {Outcome::Recorded, Outcome::NoEvidence}) {
+    course.state.drilled.outcome = outcome;
+    EXPECT_EQ(repeat_of(Step::Guide, course.state), Repeat::NotDrilled);
+  }
 }
 
 }  // namespace

@@ -273,6 +273,49 @@ TEST_F(OperationRules, DrilledIsTheSurgeonsWordWithEvidence) {
   EXPECT_EQ(run_.state()->next_action, NextAction::Finish);
 }
 
+// Said too early: it is as if it had not been said, but for the journal. What is recorded afterwards rests on
+// what was seen since.
+TEST_F(OperationRules, DrilledThatWasSaidTooEarlyIsTakenBack) {
+  give();
+  run_.apply(TakeBackDrilled{});
+  EXPECT_EQ(run_.count(JournalKind::DrilledTakenBack), 0) << "nothing was said";
+  for (int i = 0; i < 60; ++i) run_.show_guide(0.2);
+  run_.apply(TunnelDrilled{});
+  ASSERT_EQ(run_.state()->next_action, NextAction::Finish);
+  for (int i = 0; i < 60; ++i) run_.show_guide(0.2);
+  run_.apply(TakeBackDrilled{});
+  EXPECT_EQ(run_.state()->drilled.outcome, DrilledState::Outcome::NotSaid);
+  EXPECT_TRUE(run_.state()->drilled.was_taken_back);
+  EXPECT_FALSE(run_.state()->drilled.tunnel);
+  EXPECT_FALSE(run_.state()->drilled.has_evidence) << "that was of before";
+  EXPECT_EQ(run_.count(JournalKind::DrilledTakenBack), 1);
+  EXPECT_EQ(run_.state()->next_action, NextAction::FollowBullseye);
+  for (int i = 0; i < 60; ++i) run_.show_guide(0.2);
+  EXPECT_EQ(run_.state()->next_action, NextAction::RecordDrilled);
+  run_.apply(TunnelDrilled{});
+  EXPECT_EQ(run_.state()->drilled.outcome, DrilledState::Outcome::Recorded);
+  EXPECT_FALSE(run_.state()->drilled.was_taken_back);
+  EXPECT_EQ(run_.count(JournalKind::Drilled), 2);
+}
+
+TEST_F(OperationRules, DrilledByWordAloneIsTakenBackToo) {
+  give();
+  run_.apply(TunnelDrilled{});
+  run_.apply(TakeBackDrilled{});
+  EXPECT_EQ(run_.state()->drilled.outcome, DrilledState::Outcome::NotSaid);
+  EXPECT_EQ(run_.count(JournalKind::DrilledTakenBack), 1);
+}
+
+// A second press with nothing new seen takes nothing away of what is recorded.
+TEST_F(OperationRules, DrilledSaidOnceMoreKeepsWhatIsRecorded) {
+  give();
+  for (int i = 0; i < 60; ++i) run_.show_guide(0.2);
+  run_.apply(TunnelDrilled{});
+  run_.apply(TunnelDrilled{});
+  EXPECT_EQ(run_.state()->drilled.outcome, DrilledState::Outcome::Recorded);
+  EXPECT_TRUE(run_.state()->drilled.tunnel);
+}
+
 // A guide's end stays on the bone: how deep the drill went nobody has seen, and nobody read it for this hole.
 TEST_F(OperationRules, Hazard7ADepthThatNobodyReadIsNotInvented) {
   give();

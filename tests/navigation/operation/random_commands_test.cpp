@@ -71,6 +71,7 @@ std::vector<std::uint64_t> digests_of(std::uint64_t seed) {
                                         MarkerPlacedAnew{},
                                         ReadDepthStop{below(40) * 1.0},
                                         TunnelDrilled{},
+                                        TakeBackDrilled{},
                                         ConfirmTimeOut{},
                                         CheckGuide{},
                                         TrustGuide{},

@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/operation_record.h"
+#include "navigation/recording/session_check.h"
 #include "navigation/sources/exercise_source.h"
 #include "planning/cases/case.h"
 #include "tests/navigation/operation/phantom_operation.h"
@@ -345,6 +347,19 @@ TEST_F(ResumableTest, IsNoneWhereNothingWasLeftInTheMiddle) {
     ASSERT_EQ(run.state()->drilled.outcome, DrilledState::Outcome::Recorded);
     end(run);
     EXPECT_FALSE(found()) << "it had come to its end";
+  }
+  {
+    PhantomOperation run;
+    operate(run, source);
+    for (int i = 0; i < 200; ++i) run.show_guide(0.02 * i - 1);
+    run.apply(TunnelDrilled{});
+    run.apply(TakeBackDrilled{});
+    end(run);
+    EXPECT_TRUE(found()) << "it was not drilled after all";
+    const std::filesystem::path session = cases::session_folders(folder_.path()).back();
+    EXPECT_TRUE(std::filesystem::exists(session / "achieved.json")) << "as a part of the record";
+    EXPECT_TRUE(operation::achieved_files(session).empty()) << "nothing tells of it as achieved";
+    EXPECT_EQ(check_session(session).outcome, SessionCheck::Outcome::Unbroken);
   }
 }
 
