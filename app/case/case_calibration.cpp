@@ -7,6 +7,7 @@
 #include "navigation/camera/doubted_camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "planning/cases/case.h"
+#include "planning/files/local_time.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::open_case {
@@ -65,9 +66,10 @@ std::string in_words(const provenance::Provenance& provenance, const std::string
   std::string words(provenance::to_text(provenance.origin));
   if (provenance.origin == Origin::Nominal) return words;
   if (provenance.calibrated_utc.empty()) return words + ", date not known";
-  if (provenance.origin == Origin::Measured) words += " " + provenance.calibrated_utc.substr(0, 10);
+  if (provenance.origin == Origin::Measured) words += " " + files::local_day(provenance.calibrated_utc);
   // By the calendar: what was measured yesterday evening is a day old this morning.
-  const auto days = provenance::days_between(provenance.calibrated_utc.substr(0, 10), now_utc.substr(0, 10));
+  const auto days =
+      provenance::days_between(files::local_day(provenance.calibrated_utc), files::local_day(now_utc));
   if (!days) return words;
   if (*days < 0) return words + ", date lies ahead: is the clock right?";
   if (*days == 0) return provenance.origin == Origin::Measured ? words : words + " today";

@@ -6,6 +6,7 @@
 #include "app/case/case_calibration.h"
 #include "navigation/camera/medium.h"
 #include "planning/cases/case.h"
+#include "planning/files/local_time.h"
 #include "planning/files/sha256.h"
 #include "planning/geometry/error.h"
 
@@ -28,7 +29,7 @@ FluidStanding standing_of(const calibration::FluidRecord& record, double refract
 
 std::string when(const calibration::FluidRecord& record, const std::optional<double>& age_days) {
   if (record.provenance.calibrated_utc.empty()) return "date not known";
-  std::string text = "checked " + record.provenance.calibrated_utc.substr(0, 10);
+  std::string text = "checked " + files::local_day(record.provenance.calibrated_utc);
   if (record.provenance.origin == provenance::Origin::Simulated) text += " with the simulator";
   if (!age_days || *age_days < 1) return text;
   const long days = std::lround(std::floor(*age_days));

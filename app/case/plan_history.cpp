@@ -6,6 +6,7 @@
 
 #include "planning/cases/plan_file.h"
 #include "planning/cases/plan_versions.h"
+#include "planning/files/local_time.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
@@ -271,7 +272,7 @@ void PlanHistory::save() {
     }
     saved_ = now;
     status_.save = PlanStatus::Save::Saved;
-    status_.text = files::utc_now_as("saved at %H:%M:%S UTC");
+    status_.text = "saved at " + files::local_time_in_words(files::utc_now()).substr(11);
   } catch (const IoError& error) {
     fail(error);
   } catch (const std::filesystem::filesystem_error& error) {

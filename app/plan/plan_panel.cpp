@@ -7,6 +7,7 @@
 #include "app/plan/roof_line.h"
 #include "app/widgets/tooltip.h"
 #include "app/widgets/wrapped_text.h"
+#include "planning/files/local_time.h"
 #include "planning/files/utc_clock.h"
 
 namespace arthronaut::plan {
@@ -223,10 +224,10 @@ std::optional<std::size_t> draw_versions(const widgets::Ui& ui, const PlanPanel&
     const bool is_same = std::ranges::all_of(differences, [](const cases::TunnelDifference& difference) {
       return difference.kind == cases::TunnelDifference::Kind::Same;
     });
-    if (draw_row(ui,
-                 {"version." + std::to_string(version.number),
-                  "Version " + std::to_string(version.number) + ", " + files::utc_in_words(version.kept_utc),
-                  is_same, false}))
+    if (draw_row(ui, {"version." + std::to_string(version.number),
+                      "Version " + std::to_string(version.number) + ", " +
+                          files::local_time_in_words(version.kept_utc),
+                      is_same, false}))
       clicked = i;
     for (const std::string& line : against_the_plan(panel.model, panel.versions[i]))
       widgets::text_in(ui.theme.body, widgets::kQuietText, line);

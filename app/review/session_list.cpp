@@ -9,6 +9,7 @@
 #include "app/widgets/wrapped_text.h"
 #include "navigation/recording/session_facts.h"
 #include "planning/cases/case.h"
+#include "planning/files/local_time.h"
 #include "planning/files/within_folder.h"
 
 namespace arthronaut::review {
@@ -19,9 +20,11 @@ std::string session_title(const std::string& folder_name) {
   const bool is_date =
       date.size() >= 15 && date[8] == '-' && date.find_first_not_of("0123456789-") == std::string::npos;
   if (!is_date) return folder_name;
-  return (number > 0 ? std::to_string(number) + ":  " : "") + date.substr(0, 4) + "-" + date.substr(4, 2) +
-         "-" + date.substr(6, 2) + "  " + date.substr(9, 2) + ":" + date.substr(11, 2) + ":" +
-         date.substr(13) + " UTC";
+  const std::string utc = date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6, 2) + "T" +
+                          date.substr(9, 2) + ":" + date.substr(11, 2) + ":" + date.substr(13, 2) + "Z";
+  const std::string local = files::local_time_in_words(utc);
+  return (number > 0 ? std::to_string(number) + ":  " : "") + local.substr(0, 10) + " " + local.substr(10) +
+         date.substr(15);
 }
 
 SessionLine session_line(const library::SessionFacts& facts) {

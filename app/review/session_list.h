@@ -15,8 +15,8 @@
 
 namespace arthronaut::review {
 
-// "0007-20261121-122356" as "7:  2026-11-21  12:23:56 UTC"; of older sessions, without a number, the date;
-// other names as they are.
+// "0007-20261121-122356" as "7:  2026-11-21  12:23:56", by the clock on the wall; of older sessions, without
+// a number, the date; other names as they are.
 [[nodiscard]] std::string session_title(const std::string& folder_name);
 // What it was: "simulation, femur, 5.2 min; drilled, 1.2 mm and 0.8° from the plan; not verified".
 struct SessionLine {

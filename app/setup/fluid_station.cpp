@@ -9,6 +9,7 @@
 #include "app/library/workstation_library.h"
 #include "navigation/camera/medium.h"
 #include "planning/cases/case.h"
+#include "planning/files/local_time.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
@@ -32,7 +33,8 @@ void FluidStation::read_standing() {
   if (state.standing != FluidStanding::Trusted && state.standing != FluidStanding::Refused) return;
   const std::string medium = camera::medium_to_text(refractive_index_);
   const bool is_measured = state.last->provenance.origin == provenance::Origin::Measured;
-  const std::string date = is_measured ? state.last->provenance.calibrated_utc.substr(0, 10) : "simulated";
+  const std::string date =
+      is_measured ? files::local_day(state.last->provenance.calibrated_utc) : "simulated";
   checked_.text = (state.is_trusted() ? medium + " fits, " : "refused in " + medium + ", ") + date;
   checked_.severity = !state.is_trusted() ? widgets::Severity::Bad
                       : is_measured       ? widgets::Severity::Good

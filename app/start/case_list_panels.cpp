@@ -5,6 +5,7 @@
 #include "app/start/case_list.h"
 #include "app/widgets/list_rows.h"
 #include "planning/files/format.h"
+#include "planning/files/local_time.h"
 #include "planning/files/utc_clock.h"
 
 namespace arthronaut::start {
@@ -252,7 +253,7 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
                         record->plan_in_words());
   if (const library::SessionFacts* last = record->last_session()) {
     std::string words;
-    for (const std::string& part : {last->started_utc.substr(0, 10), last->what(), last->outcome()})
+    for (const std::string& part : {files::local_day(last->started_utc), last->what(), last->outcome()})
       if (!part.empty()) words += (words.empty() ? "" : "; ") + part;
     for (const std::string& doubt : last->doubts()) words += "; " + doubt;
     widgets::status_row(ui,
@@ -279,9 +280,10 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
                             : tunnel + ": no tunnel found");
   }
   const std::string made =
-      record->created_utc.empty() ? "" : "made " + record->created_utc.substr(0, 10) + ", ";
+      record->created_utc.empty() ? "" : "made " + files::local_day(record->created_utc) + ", ";
   if (!record->changed_utc.empty())
-    widgets::status_row(ui, Severity::Quiet, "Dates", made + "changed " + record->changed_utc.substr(0, 10));
+    widgets::status_row(ui, Severity::Quiet, "Dates",
+                        made + "changed " + files::local_day(record->changed_utc));
   widgets::status_row(ui, Severity::Quiet, "Folder", record->folder.string());
   if (record->is_there) draw_note(ui, *record);
   widgets::end_panel();

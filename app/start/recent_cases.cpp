@@ -9,6 +9,7 @@
 
 #include "app/case/case_opening.h"
 #include "planning/files/json_document.h"
+#include "planning/files/local_time.h"
 #include "planning/files/private_folder.h"
 
 namespace arthronaut::start {
@@ -71,7 +72,7 @@ std::string when_in_words(const std::string& utc, const std::string& now_utc) {
   const auto then = time_of(utc), now = time_of(now_utc);
   if (!then || !now) return utc.substr(0, std::min<std::size_t>(utc.size(), 10));
   const auto minutes = (*now - *then) / 60;
-  if (minutes < 0 || minutes >= 7 * 24 * 60) return utc.substr(0, 10);
+  if (minutes < 0 || minutes >= 7 * 24 * 60) return files::local_day(utc);
   if (minutes < 2) return "just now";
   if (minutes < 60) return std::to_string(minutes) + " min ago";
   if (minutes < 24 * 60) return std::to_string(minutes / 60) + " h ago";

@@ -7,6 +7,7 @@
 #include "app/start/case_list.h"
 #include "app/widgets/list_rows.h"
 #include "planning/files/format.h"
+#include "planning/files/local_time.h"
 #include "planning/files/utc_clock.h"
 
 namespace arthronaut::start {
@@ -117,7 +118,7 @@ void draw_points(const widgets::Ui& ui, const Chart& chart, const Charted& chart
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ImVec2 at = chart.at(i, points[i].value);
     if (std::hypot(at.x - mouse.x, at.y - mouse.y) > 2 * radius) continue;
-    const std::string words = points[i].case_name + ", " + points[i].when_utc.substr(0, 10) + ": " +
+    const std::string words = points[i].case_name + ", " + files::local_day(points[i].when_utc) + ": " +
                               charted.number(points[i].value);
     ImGui::SetTooltip("%s", words.c_str());
     break;
@@ -170,10 +171,10 @@ void draw_chart(const widgets::Ui& ui, const widgets::Rect& area, const Charted&
   ImDrawList& plot = *ImGui::GetWindowDrawList();
   const float y = chart.plot.y + chart.plot.height + ui.theme.px(10);
   widgets::draw_text(plot, ui.theme.body, chart.plot.x, y, widgets::kQuietText,
-                     charted.points.front().when_utc.substr(0, 10));
+                     files::local_day(charted.points.front().when_utc));
   if (charted.points.size() > 1)
     widgets::draw_text(plot, ui.theme.body, chart.plot.x + chart.plot.width - ui.theme.px(130), y,
-                       widgets::kQuietText, charted.points.back().when_utc.substr(0, 10));
+                       widgets::kQuietText, files::local_day(charted.points.back().when_utc));
 }
 
 }  // namespace

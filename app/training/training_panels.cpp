@@ -4,6 +4,7 @@
 
 #include "app/training/training_view.h"
 #include "planning/files/format.h"
+#include "planning/files/local_time.h"
 
 namespace arthronaut::training_mode {
 
@@ -54,7 +55,8 @@ void draw_points(const widgets::Ui& ui, const widgets::Rect& plot, const std::ve
     else
       draw.AddCircle(at(i), radius, widgets::kQuietText, 0, ui.theme.px(2));
     if (std::abs(at(i).x - mouse.x) + std::abs(at(i).y - mouse.y) < 3 * radius)
-      ImGui::SetTooltip("%s: %.0f points%s", runs[i]->when_utc.substr(0, 16).c_str(), runs[i]->points,
+      ImGui::SetTooltip("%s: %.0f points%s",
+                        files::local_time_in_words(runs[i]->when_utc).substr(0, 16).c_str(), runs[i]->points,
                         runs[i]->is_done ? "" : ", not done");
   }
 }
@@ -151,10 +153,10 @@ void TrainingView::draw_history(const widgets::Ui& ui, const widgets::Rect& area
                        room.y - ui.theme.px(50)};
     draw_points(ui, plot, runs);
     put(ui.theme.body, plot.x, plot.y + plot.height + ui.theme.px(6), widgets::kQuietText,
-        runs.front()->when_utc.substr(0, 10));
+        files::local_day(runs.front()->when_utc));
     if (runs.size() > 1)
       put(ui.theme.body, plot.x + plot.width - ui.theme.px(130), plot.y + plot.height + ui.theme.px(6),
-          widgets::kQuietText, runs.back()->when_utc.substr(0, 10));
+          widgets::kQuietText, files::local_day(runs.back()->when_utc));
   }
   widgets::end_panel();
 }

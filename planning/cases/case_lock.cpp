@@ -16,6 +16,7 @@
 
 #include "planning/files/atomic_file.h"
 #include "planning/files/json_document.h"
+#include "planning/files/local_time.h"
 #include "planning/files/private_folder.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
@@ -170,7 +171,7 @@ class Turn {
 
 std::string LockHolder::in_words() const {
   return user + " on " + host + " (process " + std::to_string(process) + ") since " +
-         files::utc_in_words(since_utc);
+         files::local_time_in_words(since_utc);
 }
 
 struct CaseLock::State {

@@ -31,7 +31,7 @@ struct LockHolder {
   std::string host, user;
   long process = 0;
   std::string since_utc;  // ISO 8601
-  // "anna on theatre-2 (process 4711) since 2026-01-31 12:00:00 UTC"
+  // "anna on theatre-2 (process 4711) since 2026-01-31 12:00:00", by the clock on the wall
   [[nodiscard]] std::string in_words() const;
 };
 

@@ -9,6 +9,7 @@
 
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
+#include "planning/files/local_time.h"
 #include "planning/files/private_folder.h"
 #include "planning/files/sha256.h"
 #include "planning/geometry/error.h"
@@ -139,7 +140,7 @@ std::string why_clip_does_not_count(const AccuracyChecks& checks, const std::str
   for (const AccuracyCheck& check : checks.checks)
     if (check.clip_sha256 == clip_sha256)
       return "this clip is kept already, as of " +
-             (check.is_dated ? check.checked_utc.substr(0, 10) : "an unknown day") +
+             (check.is_dated ? files::local_day(check.checked_utc) : "an unknown day") +
              ": a clip counts once, and today's check needs today's pictures";
   return "";
 }
@@ -188,7 +189,7 @@ AccuracyStanding accuracy_standing(std::span<const AccuracyCheck> checks, const 
   if (!is_same_day(last.checked_utc, now_utc)) {
     standing.outcome = Outcome::MissingToday;
     standing.text =
-        name + ": accuracy not checked today; last on " + last.checked_utc.substr(0, 10) + ", " + figures;
+        name + ": accuracy not checked today; last on " + files::local_day(last.checked_utc) + ", " + figures;
     return standing;
   }
   standing.text = name + ": accuracy checked today, " + figures;

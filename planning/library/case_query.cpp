@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "planning/files/local_time.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::library {
@@ -60,10 +61,11 @@ std::string folded(std::string_view text) {
 std::string searched(const CaseRecord& record) {
   std::string text = record.name + "\n" + record.note + "\n" + record.side + "\n" + record.created_utc +
                      "\n" + record.changed_utc + "\n" + std::string(to_text(record.state())) + "\n" +
-                     record.plan_in_words() + "\n" + record.folder.string() + "\n" + record.problem;
+                     files::local_day(record.created_utc) + "\n" + files::local_day(record.changed_utc) +
+                     "\n" + record.plan_in_words() + "\n" + record.folder.string() + "\n" + record.problem;
   for (const SessionFacts& session : record.sessions)
-    text += "\n" + session.started_utc + "\n" + session.bone + "\n" + session.source_kind + "\n" +
-            session.outcome();
+    text += "\n" + session.started_utc + "\n" + files::local_day(session.started_utc) + "\n" + session.bone +
+            "\n" + session.source_kind + "\n" + session.outcome();
   return folded(text);
 }
 

@@ -7,8 +7,8 @@ namespace arthronaut::review {
 namespace {
 
 TEST(SessionList, SaysWhenItWas) {
-  EXPECT_EQ(session_title("0007-20261121-122356"), "7:  2026-11-21  12:23:56 UTC");
-  EXPECT_EQ(session_title("20261121-122356"), "2026-11-21  12:23:56 UTC");
+  EXPECT_EQ(session_title("0007-20261121-122356"), "7:  2026-11-21  12:23:56");
+  EXPECT_EQ(session_title("20261121-122356"), "2026-11-21  12:23:56");
   EXPECT_EQ(session_title("before the flood"), "before the flood");
 }
 

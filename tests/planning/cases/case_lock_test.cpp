@@ -139,7 +139,7 @@ TEST_F(CaseLockTest, Hazard15SecondProcessIsRefusedAndToldWhoHolds) {
   EXPECT_FALSE(lock.is_held());
   EXPECT_THAT(lock.refusal(), HasSubstr("process " + std::to_string(other.id())));
   EXPECT_THAT(lock.refusal(), HasSubstr(this_host()));
-  EXPECT_THAT(lock.refusal(), HasSubstr("UTC"));
+  EXPECT_THAT(lock.refusal(), HasSubstr("since 20"));
   EXPECT_THAT(test::message_of<InvalidInput>([&] { (void)lock_or_refuse(folder_); }),
               HasSubstr("process " + std::to_string(other.id())));
 }
@@ -243,7 +243,7 @@ TEST_F(CaseLockTest, Hazard15AnotherMachinesLockIsNeverTakenOver) {
   {
     const CaseLock lock(folder_);
     EXPECT_FALSE(lock.is_held());
-    EXPECT_THAT(lock.refusal(), HasSubstr("anna on theatre-2 (process 4711) since 2026-01-31 12:00:00 UTC"));
+    EXPECT_THAT(lock.refusal(), HasSubstr("anna on theatre-2 (process 4711) since 2026-01-31 12:00:00"));
     EXPECT_THAT(lock.refusal(), HasSubstr("delete"));
   }
   EXPECT_TRUE(std::filesystem::exists(lock_file(folder_)));
