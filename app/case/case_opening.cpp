@@ -71,8 +71,18 @@ void CaseOpening::note_done(double done) {
   }
 }
 
+bool CaseOpening::take_when_free() {
+  if (!open_.lock.is_held_elsewhere()) return false;
+  cases::CaseLock lock(open_.folder);
+  if (!lock.is_held()) return false;
+  open_.lock = std::move(lock);
+  locked_at_ = Clock::now();
+  return true;
+}
+
 CaseOpening::CaseOpening(CaseOpening& before, std::function<void()> on_end) {
   open_.lock = std::move(before.open_.lock);
+  locked_at_ = before.locked_at_;
   const bool is_ours = open_.lock.is_held();
   opening_.start(
       [this, folder = before.folder(), is_ours, stop = stop_.get_token()] {

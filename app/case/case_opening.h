@@ -38,7 +38,8 @@ struct OpenedCase {
                                      const std::function<void(double done)>& tell = nullptr);
 
 // The one case of a window: being opened on a thread of its own, then open for good, or refused with a
-// reason. While it is open it is this program's to write, or read-only, and stays so.
+// reason. While it is open it is this program's to write, or read-only. It is read-only no longer once it is
+// opened anew after take_when_free(): the other program may have changed what was read here.
 class CaseOpening {
  public:
   using Clock = std::chrono::steady_clock;
@@ -52,6 +53,10 @@ class CaseOpening {
   ~CaseOpening() { stop_.request_stop(); }
   CaseOpening(const CaseOpening&) = delete;
   CaseOpening& operator=(const CaseOpening&) = delete;
+
+  // Of a case that is read-only because another program has it: whether that one is gone, however it ended.
+  // The lock is taken then, and whoever asks opens the case anew with it. Asks the disk.
+  [[nodiscard]] bool take_when_free();
 
   // Nothing is written any more: whoever opens the case next has it, though this one takes a while to go.
   void release_lock() { open_.lock = {}; }

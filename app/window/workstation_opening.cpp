@@ -100,6 +100,18 @@ void WorkstationWindow::reopen() {
   opening_ = std::make_unique<open_case::CaseOpening>(*case_, [] { GraphicsWindow::wake(); });
 }
 
+// A window that died, or was closed in another room, takes its case with it no longer than it is there: who
+// waits with the case on the screen need not open it again. Not while somebody works in what is open.
+void WorkstationWindow::take_over_when_free() {
+  constexpr double kLookEvery_s = 1;
+  const double now_s = GraphicsWindow::now_s();
+  if (case_ == nullptr || opening_ != nullptr || has_running_work() ||
+      now_s - looked_for_lock_s_ < kLookEvery_s)
+    return;
+  looked_for_lock_s_ = now_s;
+  if (case_->take_when_free()) reopen();
+}
+
 void WorkstationWindow::take_dropped() {
   const auto dropped = window_.take_dropped();
   if (dropped.empty()) return;

@@ -199,6 +199,7 @@ void WorkstationWindow::work() {
     take_dropped();
     start_.tick();
     take_opened_case();
+    take_over_when_free();
   });
   guarded([this] {
     dispatch_keys();

@@ -61,6 +61,7 @@ class WorkstationWindow {
   void show_paint();
   void close_paint();
   void reopen();  // the open case, whose bones are others now
+  void take_over_when_free();
   void dispatch_keys();
   // What the ids of the actions that work now start with.
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const;
@@ -93,6 +94,7 @@ class WorkstationWindow {
   // The last case with bones, which the modes know until the next one with bones; null while that is case_.
   std::unique_ptr<open_case::CaseOpening> known_to_modes_;
   open_case::CaseOpening* lender_ = nullptr;  // one of these, whose lock opening_ has
+  double looked_for_lock_s_ = 0;              // of a case that another program had
   std::string failure_;                       // why the last one could not be opened; empty when it could
   widgets::Actions actions_;
   widgets::WidgetLog log_;

@@ -213,6 +213,7 @@ CaseLock::CaseLock(const fs::path& case_folder) {
     refusal_ = !kernel.is_taken                   ? "cannot be opened for writing"
                : lock && lock->holder.process > 0 ? "is open elsewhere: " + lock->holder.in_words()
                                                   : "is open in another program";
+    is_held_elsewhere_ = kernel.is_taken;
     return;
   }
   std::optional<Turn> turn;
@@ -238,6 +239,7 @@ CaseLock::CaseLock(const fs::path& case_folder) {
       }
       refusal_ = "is open in another program";
     }
+    is_held_elsewhere_ = true;
   } catch (const std::runtime_error& error) {  // a folder that can only be read
     refusal_ = std::string("cannot be written: ") + error.what();
   }

@@ -48,6 +48,8 @@ class CaseLock {
   [[nodiscard]] bool is_held() const { return state_ != nullptr; }
   // Why it is not held, as a sentence for the user; empty when it is.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
+  // It is not held, and another program is why: it may become free.
+  [[nodiscard]] bool is_held_elsewhere() const { return is_held_elsewhere_; }
   // What the user should know although it is held: that it was taken over, and from whom. Else empty.
   [[nodiscard]] const std::string& notice() const { return notice_; }
 
@@ -55,6 +57,7 @@ class CaseLock {
   struct State;
   std::unique_ptr<State> state_;
   std::string refusal_, notice_;
+  bool is_held_elsewhere_ = false;
 };
 
 // For a program that must write or do nothing. Throws InvalidInput with the refusal.

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <memory>
 #include <set>
 #include <thread>
 
@@ -172,6 +173,30 @@ TEST(CaseOpening, Hazard15TheSecondOpensReadOnlyAndSaysWhoHolds) {
   CaseOpening third(folder.path(), [] {});
   EXPECT_EQ(take_until_done(third), 1);
   EXPECT_FALSE(third.is_read_only());
+}
+
+// Hazard 15: whoever waits with the case on the screen may write once the other program is gone, and has then
+// read what that one has left.
+TEST(CaseOpening, Hazard15IsTakenOverWhenTheOtherOneIsGone) {
+  const test::TemporaryFolder folder;
+  cases::save_case(folder.path(),
+                   phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "before"));
+  auto first = std::make_unique<CaseOpening>(folder.path(), [] {});
+  ASSERT_EQ(take_until_done(*first), 1);
+  CaseOpening waits(folder.path(), [] {});
+  ASSERT_EQ(take_until_done(waits), 1);
+  ASSERT_TRUE(waits.is_read_only());
+  EXPECT_FALSE(waits.take_when_free()) << "the other one is there";
+  EXPECT_TRUE(waits.is_read_only());
+  cases::save_case(folder.path(),
+                   phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "after"));
+  first.reset();
+  EXPECT_TRUE(waits.take_when_free());
+  EXPECT_FALSE(waits.take_when_free()) << "it has it";
+  CaseOpening anew(waits, [] {});
+  ASSERT_EQ(take_until_done(anew), 1);
+  EXPECT_FALSE(anew.is_read_only());
+  EXPECT_EQ(anew.model()->knee().name, "after");
 }
 
 // A case that is closed may take a second to go, while its landmarks are still in the making; whoever opens
