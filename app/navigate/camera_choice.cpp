@@ -31,12 +31,16 @@ void CameraChoice::open(const std::vector<sources::ConnectedCamera>& cameras,
   for (const sources::ConnectedCamera& camera : cameras) offered_.push_back({camera.name, camera.index, ""});
   for (const std::string& address : streams)
     offered_.push_back({sources::shown_address(address), std::nullopt, address});
+  // A stream that gave no picture when it was asked is kept nowhere. A foot must be able to ask it again.
+  if (before && !before->device && std::find(offered_.begin(), offered_.end(), before) == offered_.end()) {
+    offered_.push_back(*before);
+    // What did not open is there to be put right, too; a password is not shown again.
+    if (sources::shown_address(before->address) == before->address) text_ = before->address;
+  }
   const auto same = std::find(offered_.begin(), offered_.end(), before);
   if (same != offered_.end()) chosen_ = static_cast<std::size_t>(same - offered_.begin());
   wants_focus_ = offered_.empty();
-  // What did not open is there to be put right; a password is not shown again.
-  if (same == offered_.end() && before && sources::shown_address(before->address) == before->address)
-    text_ = before->address;
+  if (same == offered_.end() && before) text_ = before->address;  // of a camera that was taken away
   if (!look) return;
   std::vector<previews::Opener> openers;
   for (const LivePictures& one : offered_) openers.emplace_back([look, one] { return look(one); });

@@ -34,7 +34,8 @@ class CameraChoice {
  public:
   // Opens one to be looked at, on a thread of its own; must refuse what is in use.
   using Look = std::function<std::unique_ptr<sources::FrameSource>(const LivePictures&)>;
-  // Offers them; the one that was used before is chosen, else the first, and its address stands in the field.
+  // Offers them; the one that was used before is chosen, a stream also where it gave no picture, else the
+  // first. What did not open stands in the field, too.
   // Where there is none at all the field waits for an address. Without `look` nothing is previewed.
   void open(const std::vector<sources::ConnectedCamera>& cameras, const std::vector<std::string>& streams,
             const std::optional<LivePictures>& before = std::nullopt, const Look& look = {});

@@ -40,8 +40,22 @@ TEST(CameraChoice, WhatWasUsedBeforeIsChosen) {
   CameraChoice choice;
   choice.open({{0, "Webcam"}}, {"rtsp://tower/scope", "udp://@:5000"}, stream);
   EXPECT_EQ(choice.chosen(), stream);
-  choice.open({{0, "Webcam"}}, {"rtsp://tower/scope"}, stream);
+  choice.open({{0, "Webcam"}}, {"rtsp://tower/scope"}, LivePictures{"Scope", 3, ""});
   EXPECT_EQ(choice.chosen()->name, "Webcam") << "it is gone";
+}
+
+// A stream whose sender was not on yet is kept nowhere. The foot that asks again gets it, and no webcam.
+TEST(CameraChoice, AStreamThatGaveNoPictureIsAskedAgainByAFoot) {
+  const LivePictures stream{"udp://@:5000", std::nullopt, "udp://@:5000"};
+  CameraChoice choice;
+  choice.open({{0, "Webcam"}}, {}, stream);
+  EXPECT_EQ(choice.chosen(), stream);
+  choice.open({}, {}, stream);
+  EXPECT_EQ(choice.chosen(), stream);
+  EXPECT_FALSE(choice.wants_text()) << "a press of the pedal opens it";
+  const LivePictures secret{"rtsp://tower/scope", std::nullopt, "rtsp://nurse:secret@tower/scope"};
+  choice.open({}, {}, secret);
+  EXPECT_EQ(choice.chosen(), secret);
 }
 
 // An address that was mistyped is put right, not typed anew; a password does not come up again.
