@@ -105,13 +105,24 @@ void add_registration(Digest& digest, const RegistrationState& state) {
   }
 }
 
+// All strokes were registered, and that is not reliable: the same ones give the same again.
+bool was_refused(const RegistrationState& registration) {
+  return registration.in_force.standing == Standing::NotReliable && registration.entry_in_force &&
+         (*registration.history)[*registration.entry_in_force].origin == RegistrationOrigin::AllStrokes;
+}
+
+// Strokes that are worth asking whether they are enough.
+bool may_be_enough(const RegistrationState& registration) {
+  return registration.point_count >= kEnoughPoints && !was_refused(registration);
+}
+
 NextAction action_without_registration(const OperationState& state) {
   const RegistrationState& registration = *state.registration;
   if (registration.is_fitting) return NextAction::WaitForRegistration;
   if (state.frame_count > 0 && !state.frame.world_is_seen()) return NextAction::ShowWorldMarker;
   if (state.draws) return NextAction::GoOnDrawing;
   if (registration.in_force.standing == Standing::Void) return NextAction::RegisterAnew;
-  return registration.point_count >= kEnoughPoints ? NextAction::RegisterStrokes : NextAction::Draw;
+  return may_be_enough(registration) ? NextAction::RegisterStrokes : NextAction::Draw;
 }
 
 // Enough places were touched, and they lie off the bone: no further touch can verify, another registration
@@ -162,8 +173,7 @@ NextAction next_action_of(const OperationState& state) {
   const bool is_drilled = state.drilled.outcome == DrilledState::Outcome::Recorded;
   if (is_drilled && !state.plan_was_edited) return NextAction::Finish;
   if (!state.has_source) {
-    const bool may_register =
-        in_force.standing != Standing::Stands && registration.point_count >= kEnoughPoints;
+    const bool may_register = in_force.standing != Standing::Stands && may_be_enough(registration);
     if (registration.is_fitting) return NextAction::WaitForRegistration;
     return may_register ? NextAction::RegisterStrokes : NextAction::StartSource;
   }

@@ -29,7 +29,10 @@ std::vector<std::string> objections_to(const strokes::Curves& curves, double bon
   }
   // A patch of one millimetre across is rather one of a metre's hundredth.
   if (extent_mm < 0.5)
-    return {files::format("the points lie within %.3g mm: are they in metres instead of mm?", extent_mm)};
+    return {
+        files::format("the points lie within %.2g mm of each other: draw on more of the bone (a file in "
+                      "metres looks so, too)",
+                      extent_mm)};
 
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const strokes::CurvePoint& point : curves) {

@@ -1,6 +1,8 @@
 // Strokes become a registration that guides, and what takes it away again.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/navigation/operation/phantom_operation.h"
 
 namespace arthronaut::operation {
@@ -81,6 +83,26 @@ TEST_F(RegistrationRules, TouchesVerify) {
   for (const double dx_mm : {4.0, -4.0}) run_.touch(on_bone(dx_mm));
   EXPECT_TRUE(run_.in_force().is_verified);
   EXPECT_EQ(run_.state()->registration->touches.last().number, 5);
+}
+
+// The same strokes registered once more give the same: what is asked for is more of them.
+TEST_F(RegistrationRules, WhatWasRefusedAsksForMoreStrokes) {
+  strokes::Curves spot = trial_.curves;
+  spot.resize(std::min<std::size_t>(spot.size(), 300));
+  const Eigen::Vector3d place = spot.front().position_mm;
+  for (std::size_t i = 0; i < spot.size(); ++i) {
+    const double turn_rad = static_cast<double>(i);
+    spot[i].curve = 0;
+    spot[i].position_mm = place + 0.1 * Eigen::Vector3d(std::cos(turn_rad), std::sin(turn_rad), 0);
+  }
+  run_.draw(spot);
+  run_.apply(Draw{false});
+  ASSERT_EQ(run_.state()->next_action, NextAction::RegisterStrokes);
+  run_.apply(RegisterStrokes{});
+  ASSERT_EQ(run_.in_force().standing, Standing::NotReliable);
+  EXPECT_EQ(run_.state()->next_action, NextAction::Draw);
+  run_.apply(Draw{true});
+  EXPECT_EQ(run_.state()->next_action, NextAction::GoOnDrawing);
 }
 
 // Going back to an earlier registration holds against newer ones until the newest is chosen again.
