@@ -16,13 +16,14 @@ namespace {
 
 void check_contract(std::span<const CalibrationPicture> pictures, const CalibrationOptions& options) {
   if (!(options.square_mm > 0) || !std::isfinite(options.square_mm))
-    throw InvalidInput("calibrate: the side of a square must be above 0 mm");
+    throw InvalidInput("calibration: the side of a square must be above 0 mm");
   if (!(options.refractive_index >= 1 && options.refractive_index <= 2))
-    throw InvalidInput("calibrate: the refractive index must lie in [1, 2]");
+    throw InvalidInput("calibration: the refractive index must lie in [1, 2]");
   if (!(options.distance_mm >= 0) || !std::isfinite(options.distance_mm))
-    throw InvalidInput("calibrate: the distance of the boards must not be below 0 mm");
+    throw InvalidInput("calibration: the distance of the boards must not be below 0 mm");
   if (pictures.size() < 3)
-    throw InvalidInput("calibrate: needs three pictures or more, has " + std::to_string(pictures.size()));
+    throw InvalidInput("a calibration needs three pictures or more, there are " +
+                       std::to_string(pictures.size()));
   for (const CalibrationPicture& picture : pictures) {
     if (picture.size_px != pictures.front().size_px)
       throw InvalidInput(picture.name + ": is " + std::to_string(picture.size_px.x()) + " x " +
