@@ -17,7 +17,12 @@ std::string rail_in_letters(const Rail& rail) {
 
 std::string NavigateView::notice() const {
   const std::string of_record = record_notice(*live_, bones_.keeps_video());
-  return of_record.empty() ? notice_ : of_record;  // what was refused is less than what is not kept
+  if (!of_record.empty()) return of_record;  // what was refused is less than what is not kept
+  // Before there are pictures it stands in large letters beside the step, and once is enough.
+  const bool is_read_there = live_->phase == theatre::LiveState::Phase::NoSource && !cameras_.is_open() &&
+                             !choices_.shows_menu &&
+                             layout(theatre::LiveOperation::now_s()) == NavigateLayout::Guide;
+  return is_read_there ? "" : notice_;
 }
 
 bool NavigateView::draw_questions(const widgets::Ui& ui, const TheatreLayout& layout) {

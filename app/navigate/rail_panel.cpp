@@ -3,6 +3,7 @@
 
 #include "app/navigate/navigate_panels.h"
 #include "app/widgets/afar_text.h"
+#include "app/widgets/wrapped_text.h"
 
 namespace arthronaut::navigate {
 
@@ -98,8 +99,12 @@ void draw_words(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
     const std::string missing = sentence(screen.missing);
     const float sign = ui.theme.afar->FontSize;
     (void)inner.cut_bottom(ui.theme.px(6));
-    widgets::Rect foot = inner.cut_bottom(
-        std::min(widgets::afar_height(ui, inner.width - sign, missing), inner.height * 0.6F));
+    // What it does not need in the letters that fit is left to what is to be done.
+    const float most = inner.height * 0.6F;
+    ImFont* const font = widgets::font_that_fits(ui.theme, inner.width - sign, most, missing);
+    const std::string lines = widgets::wrapped(font, missing, inner.width - sign);
+    const float height = font->CalcTextSizeA(font->FontSize, 1e9F, 0, lines.c_str()).y;
+    widgets::Rect foot = inner.cut_bottom(std::max(std::min(height, most), sign));
     widgets::draw_sign(draw, {foot.x + sign * 0.4F, foot.y + sign / 2}, sign * 0.36F, Severity::Caution);
     (void)foot.cut_left(sign);
     widgets::draw_afar(ui, foot, widgets::kCaution, missing);

@@ -74,8 +74,10 @@ void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
     const float middle = area.center().y, height = ui.theme.px(60);
     widgets::text_centered(ui, {area.x, middle - height, area.width, height}, ui.theme.afar, widgets::kText,
                            display.headline);
-    widgets::text_centered(ui, {area.x, middle, area.width, 3 * height}, ui.theme.title, widgets::kQuietText,
-                           display.detail);
+    // Before there is a source what there is to say stands beside the step alone.
+    if (screen.live != nullptr && screen.live->phase != theatre::LiveState::Phase::NoSource)
+      widgets::text_centered(ui, {area.x, middle, area.width, 3 * height}, ui.theme.title,
+                             widgets::kQuietText, display.detail);
     return;
   }
   const DrawnPicture picture = draw_picture(ui, area, screen, textures);
