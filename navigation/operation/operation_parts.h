@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -155,7 +156,9 @@ struct Operation::Parts {
   struct Fitting {
     int number = 0;  // of the newest that was asked for
     std::uint64_t request = 0;
-    double length_mm = 0;  // of the strokes it was asked of
+    double length_mm = 0;         // of the strokes it was asked of
+    std::size_t point_count = 0;  // that were drawn then, and the strokes that were not used
+    std::set<int> excluded;
     bool is_under_way = false, is_wanted = false;
     int frames_since_look = 0;
   } fitting;

@@ -248,12 +248,14 @@ void Operation::Parts::look_for_registration() {
 void Operation::Parts::register_strokes() {
   if (fitting.is_under_way || (outcome != nullptr && !outcome->failure.empty())) return;
   auto curves = std::make_shared<const strokes::Curves>(strokes.in_use());
-  if (curves->empty()) return;
+  fitting.point_count = strokes.points().size();
+  fitting.excluded = strokes.excluded();
+  changed = true;
+  if (curves->empty()) return;  // none is long enough
   fitting.length_mm = strokes::length_mm(*curves);
   fitting.is_under_way = fitting.is_wanted = true;
   ask(FitAll{++fitting.number, std::move(curves)});
   fitting.request = request_count;
-  changed = true;
 }
 
 void Operation::Parts::clear_strokes() {
@@ -340,6 +342,8 @@ RegistrationStatePtr Operation::Parts::registration_state() {
   state->drawn = strokes.trace();
   state->point_count = strokes.points().size();
   state->excluded = strokes.excluded();
+  state->strokes_were_tried = fitting.point_count > 0 && fitting.point_count == state->point_count &&
+                              fitting.excluded == state->excluded;
   state->online = online;
   state->in_force = ledger.in_force();
   state->change_count = ledger.change_count();

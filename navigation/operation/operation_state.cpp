@@ -105,10 +105,10 @@ void add_registration(Digest& digest, const RegistrationState& state) {
   }
 }
 
-// All strokes were registered, and that is not reliable: the same ones give the same again.
+// What was drawn was registered, and that is not reliable, or was too short for it.
 bool was_refused(const RegistrationState& registration) {
-  return registration.in_force.standing == Standing::NotReliable && registration.entry_in_force &&
-         (*registration.history)[*registration.entry_in_force].origin == RegistrationOrigin::AllStrokes;
+  const Standing standing = registration.in_force.standing;
+  return registration.strokes_were_tried && (standing == Standing::NotReliable || standing == Standing::None);
 }
 
 // Strokes that are worth asking whether they are enough.

@@ -35,6 +35,8 @@ struct RegistrationState {
   TracePtr drawn = std::make_shared<const strokes::Curves>();  // for the screen, never null
   std::size_t point_count = 0;                                 // that were drawn
   std::set<int> excluded;                                      // strokes that are not used
+  // These very ones were to be registered already: the same again gives the same.
+  bool strokes_were_tried = false;
   // Null until the bone is ready and what was drawn by then is judged.
   std::shared_ptr<const registration::OnlineResult> online;
   RegistrationInForce in_force;

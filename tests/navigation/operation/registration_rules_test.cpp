@@ -103,6 +103,9 @@ TEST_F(RegistrationRules, WhatWasRefusedAsksForMoreStrokes) {
   EXPECT_EQ(run_.state()->next_action, NextAction::Draw);
   run_.apply(Draw{true});
   EXPECT_EQ(run_.state()->next_action, NextAction::GoOnDrawing);
+  run_.draw(trial_.curves);
+  run_.apply(Draw{false});
+  EXPECT_EQ(run_.state()->next_action, NextAction::RegisterStrokes) << "there are new ones";
 }
 
 // Going back to an earlier registration holds against newer ones until the newest is chosen again.
