@@ -168,6 +168,12 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
                      frame.smear);
     }
     const bool is_sharp = direct.explains_picture() && smear_px < options_.smeared_px;
+    // What passes for out of focus may move: then the edges are of another tilt than the whole code.
+    if (is_sharp && fit.converged && are_unlike(fit.camera_from_marker, direct.pose.camera_from_marker)) {
+      observation.state = MarkerState::Doubtful;
+      go_on_from(direct.pose.camera_from_marker, misfit_of(fit));
+      return false;
+    }
     if (is_found && is_undecided_) {
       observation.state = MarkerState::Doubtful;
       return false;
