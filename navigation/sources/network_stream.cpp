@@ -88,7 +88,7 @@ class Connection {
       const int received = avcodec_receive_frame(decoder_.get(), picture_.get());
       if (received == 0) {
         if (is_whole(*picture_)) return picture_.get();
-        ++damaged_count_;
+        begin_anew();
         continue;
       }
       has_ended_ = received != AVERROR(EAGAIN);
@@ -251,8 +251,19 @@ class Connection {
         packet.pts == AV_NOPTS_VALUE ? received_ns_ : clock_.captured_ns(stamp_ns(packet.pts));
     decoder_->reordered_opaque = packets_.put(packet, time_ns, decoder_->has_b_frames);
     if (passes_over(packet, received_ns_ - time_ns)) return;
-    // What a damaged packet makes of a picture is seen when it is decoded.
+    if ((packet.flags & AV_PKT_FLAG_CORRUPT) != 0) return begin_anew();
+    if (waits_for_start_ && !may_begin_at(packet, *stream().codecpar)) return;
+    waits_for_start_ = false;
     (void)avcodec_send_packet(decoder_.get(), &packet);
+  }
+
+  // Pictures that rest on one that lost something on its way look whole, and show what is not there: none is
+  // given before one begins anew. H.264's decoder knows by itself when that is, also where a sender repeats
+  // every part in turn and sends no key frame.
+  void begin_anew() {
+    ++damaged_count_;
+    avcodec_flush_buffers(decoder_.get());
+    waits_for_start_ = decoder_->codec_id != AV_CODEC_ID_H264;
   }
 
   // A machine that decodes more slowly than pictures come would be ever further behind.
@@ -281,7 +292,7 @@ class Connection {
   std::size_t held_back_ = 0;                   // see there
   int odd_packets_ = 0;                         // on end, that are not one picture each
   long damaged_count_ = 0;
-  bool has_ended_ = false, is_behind_ = false;
+  bool has_ended_ = false, is_behind_ = false, waits_for_start_ = false;
   int stream_index_ = -1;
 };
 

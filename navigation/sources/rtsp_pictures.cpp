@@ -156,7 +156,10 @@ bool RtspPictures::read(AVStream& stream, AVPacket& packet, std::int64_t until_n
   gst_buffer_extract(data, 0, packet.data, size);
   packet.stream_index = stream.index;
   if (GST_BUFFER_PTS_IS_VALID(data)) packet.pts = static_cast<std::int64_t>(GST_BUFFER_PTS(data));
-  if (GST_BUFFER_FLAG_IS_SET(data, GST_BUFFER_FLAG_DELTA_UNIT) == 0) packet.flags |= AV_PKT_FLAG_KEY;
+  if (GST_BUFFER_FLAG_IS_SET(data, GST_BUFFER_FLAG_DELTA_UNIT) == 0)
+    packet.flags |= AV_PKT_FLAG_KEY;
+  else if (GST_BUFFER_FLAG_IS_SET(data, GST_BUFFER_FLAG_DISCONT))  // what it rests on was lost
+    packet.flags |= AV_PKT_FLAG_CORRUPT;
   if (gst_caps_is_equal(caps_.get(), gst_sample_get_caps(sample.get())) != 0) return true;
   if (!describe(stream, *sample)) return false;
   const auto parameters_size = static_cast<std::size_t>(stream.codecpar->extradata_size);
