@@ -7,6 +7,7 @@
 #include "planning/files/format.h"
 #include "planning/geometry/quantile.h"
 #include "planning/postop/fit_spread.h"
+#include "planning/postop/narrowing.h"
 #include "planning/postop/tunnel_search.h"
 
 namespace arthronaut::postop {
@@ -34,8 +35,8 @@ constexpr double kSomeMetal = 0.01;
 constexpr double kMostBend_mm = 0.6, kPiece_mm = 8, kPieceKnown_mm = 0.2;
 // Beyond the end of a socket there is no wall.
 constexpr double kBeyondFrom_mm = 2, kBeyondTo_mm = 10, kAsWide_mm = 1;
-// Nor is there as wide a one: of radii, and how much of it is to be seen for that.
-constexpr double kThinner_mm = 1, kLeastNarrow_mm = 4;
+// Nor is there as wide a one: how much of it is to be seen for that.
+constexpr double kLeastNarrow_mm = 4;
 constexpr double kMetalOfPiece = 0.05;
 constexpr double kPlugSeen = 0.3;  // of a stretch's wall, to be a plug's
 // Of a stretch, from which on it says nothing of the wall.
@@ -45,6 +46,7 @@ struct Candidate {
   TunnelFit fit;
   Passage passage{};
   SeenMouth mouth;
+  std::optional<double> narrows_mm = {};  // by its widths, from the entry
   double length_mm = 0, beyond_mm = 0, seen_share = 0, metal_share = 0, clear_mm = 0, bend_mm = 0;
   bool comes_out = false, has_end = false, leaves_images = false, goes_on = false, is_by_screw = false;
   std::vector<std::string> doubts;
@@ -146,11 +148,17 @@ class Finder {
       if (stretch.seen_share > kLeastSeen) contrasts.push_back(stretch.outside_hu - stretch.inside_hu);
     const auto end = blind_end_mm(sampler_, postop_from_plan_, candidate.passage, candidate.fit.radius_mm,
                                   geometry::median(std::move(contrasts), 0));
-    // What comes out may be a thinner bore beyond a socket, as for the loop of a button.
-    if (candidate.comes_out && !(end && thinner_beyond_mm(voxels, candidate, *end) > 0)) return;
+    // What comes out may be a thinner bore beyond a socket, as for the loop of a button: the widths tell
+    // where it begins, where it is long enough, else the grey does. A fit that ends there shows nothing of it
+    // any more.
+    if (const auto at = narrows_at_mm(candidate.fit.stretches)) candidate.narrows_mm = at;
+    std::optional<double> thinner_from = candidate.narrows_mm;
+    if (!(thinner_from && thinner_beyond_mm(voxels, candidate, *thinner_from) > 0)) thinner_from = end;
+    if (candidate.comes_out && !(thinner_from && thinner_beyond_mm(voxels, candidate, *thinner_from) > 0))
+      return;
     candidate.comes_out = false;
-    candidate.has_end = end.has_value();
-    if (end) candidate.length_mm = *end;
+    candidate.has_end = thinner_from.has_value();
+    if (thinner_from) candidate.length_mm = *thinner_from;
   }
 
   // The diameter of the thinner bore that is seen beyond a place; 0: none is.
