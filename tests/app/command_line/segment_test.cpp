@@ -69,7 +69,7 @@ TEST_F(SegmentCommand, JudgesTheBonesAndDrawsThem) {
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_THAT(result.output, AllOf(HasSubstr("femur: Closed: "), HasSubstr("tibia: Closed: "),
                                    HasSubstr("femur: Shape: nothing speaks against it"),
-                                   HasSubstr("femur: Beneath: "), HasSubstr("quality.pdf")));
+                                   HasSubstr("femur: Grey values: "), HasSubstr("quality.pdf")));
   std::ifstream pdf(folder_ / "quality.pdf", std::ios::binary);
   std::string begin(5, ' ');
   pdf.read(begin.data(), 5);

@@ -103,7 +103,8 @@ TEST_F(RegistrationRules, WhatWasRefusedAsksForMoreStrokes) {
   EXPECT_EQ(run_.state()->next_action, NextAction::Draw);
   run_.apply(Draw{true});
   EXPECT_EQ(run_.state()->next_action, NextAction::GoOnDrawing);
-  run_.draw(trial_.curves);
+  for (strokes::CurvePoint& point : spot) point.curve = 1;
+  run_.draw(spot);
   run_.apply(Draw{false});
   EXPECT_EQ(run_.state()->next_action, NextAction::RegisterStrokes) << "there are new ones";
 }
