@@ -5,6 +5,7 @@
 
 #include "navigation/pipeline/prefetched_source.h"
 #include "navigation/recording/rerun.h"
+#include "navigation/recording/session_overview.h"
 #include "planning/cases/case.h"
 #include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
@@ -97,10 +98,7 @@ void compare_registration(const RecordedSession& session, const operation::Opera
                           const ReplayOptions& options, ReplaySummary& summary) {
   const auto& then = session.registration();
   const auto& found = now.registration->in_force.registration;
-  const auto& events = session.events();
-  if (!then && session.was_finished() &&
-      std::any_of(events.begin(), events.end(),
-                  [](const SessionEvent& event) { return event.kind == kRegistrationEvent; }))
+  if (!then && must_hold_registration(session.was_finished(), session.events()))
     summary.differences.push_back({-1, "registration", 0, "", "registration.json is not there any more"});
   if (!options.bone || !then || session.header().source_kind.empty()) return;
   const bool is_reliable_now = found != nullptr && found->reliable;

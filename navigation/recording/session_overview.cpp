@@ -31,15 +31,6 @@ void as_far_as_whole(SessionOverview& overview, const Read& read) {
   }
 }
 
-// What a finished session has found last stands in a file of its own.
-void look_for_registration(SessionOverview& overview) {
-  const std::filesystem::path file = overview.folder / "registration.json";
-  if (!overview.was_finished || std::filesystem::exists(file)) return;
-  if (std::ranges::any_of(overview.events,
-                          [](const SessionEvent& event) { return event.kind == kRegistrationEvent; }))
-    tell(overview, file.string() + ": is not there any more");
-}
-
 void read_record(SessionOverview& overview) {
   SessionDatabase database = SessionDatabase::open(database_file(overview.folder));
   as_far_as_whole(overview, [&] {
@@ -75,6 +66,12 @@ RecordedSession::PlanChange SessionOverview::plan_of(const SessionEvent& event) 
   return plan_from_text(event.text, database_file(folder));
 }
 
+bool must_hold_registration(bool was_finished, const std::vector<SessionEvent>& events) {
+  return was_finished && std::ranges::any_of(events, [](const SessionEvent& event) {
+           return event.kind == kRegistrationEvent;
+         });
+}
+
 SessionOverview read_overview(const std::filesystem::path& session_folder) {
   SessionOverview overview;
   overview.folder = session_folder;
@@ -95,7 +92,9 @@ SessionOverview read_overview(const std::filesystem::path& session_folder) {
     if (const auto file = session_folder / "registration.json"; std::filesystem::exists(file))
       overview.registration = registration::read_registration_file(file);
   });
-  look_for_registration(overview);
+  if (const auto file = session_folder / "registration.json";
+      must_hold_registration(overview.was_finished, overview.events) && !std::filesystem::exists(file))
+    tell(overview, file.string() + ": is not there any more");
   return overview;
 }
 

@@ -31,6 +31,9 @@ struct SessionOverview {
   [[nodiscard]] RecordedSession::PlanChange plan_of(const SessionEvent& event) const;
 };
 
+// Whether a session must hold a registration.json: what a finished one has found last stands there.
+[[nodiscard]] bool must_hold_registration(bool was_finished, const std::vector<SessionEvent>& events);
+
 // Throws IoError or InvalidInput where nothing at all can be told: no folder, no session.json, or a newer
 // one.
 [[nodiscard]] SessionOverview read_overview(const std::filesystem::path& session_folder);

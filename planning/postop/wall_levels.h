@@ -46,9 +46,8 @@ class WallLevels {
   [[nodiscard]] const Level& inside() const { return inside_.level; }
   [[nodiscard]] const Level& outside(std::size_t sector) const { return outside_[sector].level; }
   [[nodiscard]] const Level& rim(std::size_t sector) const { return rim_[sector]; }
-  // The levels, parted.
+  // The level, parted.
   [[nodiscard]] double inside_hu() const { return inside_.hu; }
-  [[nodiscard]] double outside_hu(std::size_t sector) const { return outside_[sector].hu; }
   // Enough to tell.
   [[nodiscard]] bool has_inside() const { return inside_.level.count >= 8; }
   [[nodiscard]] bool has_outside(std::size_t sector) const { return outside_[sector].level.count >= 4; }

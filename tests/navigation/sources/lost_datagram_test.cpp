@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "navigation/sources/capture_time.h"
 #include "navigation/sources/frame_source.h"
@@ -60,17 +61,19 @@ class LossyRelay {
   std::thread relay_;
 };
 
-// After a loss every picture up to the next key frame rests on what did not come, and passes for whole: none
-// of them is given. A key frame comes every 60 pictures here, and the first that is given is one.
-TEST(Stream, WhatRestsOnALostPictureIsNotGiven) {
+// Between two pictures that are given, of a stream that loses a datagram after 20 of them.
+double longest_gap_s(const std::vector<std::string>& key_frames) {
   // Of this process alone, and none of those that streams of other tests are sent to.
   const int first = 10000 + ::getpid() * 2 % 8000;
   const std::string in = std::to_string(first), out = std::to_string(first + 1);
   LossyRelay relay(in, out);
-  const test::ChildProcess sender(
-      test::run_ffmpeg({"-re", "-f", "lavfi", "-i", "testsrc=size=320x240:rate=30,noise=alls=30:allf=t",
-                        "-c:v", "libx264", "-preset", "ultrafast", "-tune", "zerolatency", "-g", "60", "-f",
-                        "mpegts", "udp://127.0.0.1:" + in + "?pkt_size=1316"}));
+  std::vector<std::string> arguments{
+      "-re",        "-f",      "lavfi",   "-i",        "testsrc=size=320x240:rate=30,noise=alls=30:allf=t",
+      "-c:v",       "libx264", "-preset", "ultrafast", "-tune",
+      "zerolatency"};
+  arguments.insert(arguments.end(), key_frames.begin(), key_frames.end());
+  arguments.insert(arguments.end(), {"-f", "mpegts", "udp://127.0.0.1:" + in + "?pkt_size=1316"});
+  const test::ChildProcess sender(test::run_ffmpeg(arguments));
   const auto source = open_source("udp://127.0.0.1:" + out);
   double longest_s = 0;
   camera::FramePtr last = source->next();
@@ -81,8 +84,23 @@ TEST(Stream, WhatRestsOnALostPictureIsNotGiven) {
     longest_s = std::max(longest_s, static_cast<double>(next->timestamp_ns - last->timestamp_ns) * 1e-9);
     last = std::move(next);
   }
-  EXPECT_GT(longest_s, 0.4);
-  EXPECT_LT(longest_s, 1.5);
+  return longest_s;
+}
+
+// After a loss every picture up to the next key frame rests on what did not come, and passes for whole: none
+// of them is given. A key frame comes every 60 pictures here, and the first that is given is one.
+TEST(Stream, WhatRestsOnALostPictureIsNotGiven) {
+  const double gap_s = longest_gap_s({"-g", "60"});
+  EXPECT_GT(gap_s, 0.4);
+  EXPECT_LT(gap_s, 1.5);
+}
+
+// Many a camera sends no key frame but the first, and renews a part of every picture instead, here all of it
+// within 30: what is lost is given again when all parts are new.
+TEST(Stream, APictureThatIsRenewedInPartsIsGivenAgainWhenItIsWhole) {
+  const double gap_s = longest_gap_s({"-x264-params", "intra-refresh=1:keyint=30"});
+  EXPECT_GT(gap_s, 0.2);
+  EXPECT_LT(gap_s, 3);
 }
 
 }  // namespace

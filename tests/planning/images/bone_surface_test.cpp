@@ -57,18 +57,23 @@ Error error_of(const geometry::TriangleMesh& mesh) {
   return error;
 }
 
+// Of its label's surface, which is closed, in one piece, and as large as it.
+Error error_of_labelled_ellipsoid(const Eigen::Vector3d& spacing_mm, const Eigen::Vector3i& size) {
+  const Volume volume =
+      sampled(spacing_mm, size, [](const auto& p) { return ellipsoid_level(p) < 1 ? 5 : 0; });
+  const auto repair = bones::mend_mesh(surface_of_label(volume, 5).mesh);
+  EXPECT_TRUE(repair.report.is_closed);
+  EXPECT_EQ(repair.report.parts_found, 1U);
+  const double true_mm3 = 4.0 / 3 * geometry::kPi * kRadii.prod();
+  EXPECT_NEAR(repair.report.volume_mm3, true_mm3, 0.01 * true_mm3);
+  return error_of(repair.mesh);
+}
+
 // A label's surface in an oblique grid lies where the label is in the patient, to a fraction of a voxel.
 TEST(BoneSurface, OfALabelInAnObliqueGrid) {
   for (const Eigen::Vector3d& spacing : {Eigen::Vector3d(0.8, 0.8, 0.8), Eigen::Vector3d(0.8, 0.8, 2.0)}) {
     const Eigen::Vector3i size = (Eigen::Vector3d(110, 110, 110).cwiseQuotient(spacing)).cast<int>();
-    const Volume volume =
-        sampled(spacing, size, [](const auto& p) { return ellipsoid_level(p) < 1 ? 5 : 0; });
-    const auto repair = bones::mend_mesh(surface_of_label(volume, 5).mesh);
-    EXPECT_TRUE(repair.report.is_closed);
-    EXPECT_EQ(repair.report.parts_found, 1U);
-    const double true_mm3 = 4.0 / 3 * geometry::kPi * kRadii.prod();
-    EXPECT_NEAR(repair.report.volume_mm3, true_mm3, 0.01 * true_mm3);
-    const Error error = error_of(repair.mesh);
+    const Error error = error_of_labelled_ellipsoid(spacing, size);
     EXPECT_LT(error.mean_mm, 0.15 * spacing.maxCoeff());
     EXPECT_LT(error.worst_mm, 0.6 * spacing.maxCoeff());
   }
@@ -82,16 +87,10 @@ TEST(BoneSurface, OfThickSlicesGoesOverFromOneToTheNext) {
     Eigen::Vector3d spacing(0.5, 0.5, 0.5);
     spacing[axis] = 4;
     const Eigen::Vector3i size = (Eigen::Vector3d(90, 90, 90).cwiseQuotient(spacing)).cast<int>();
-    const Volume volume =
-        sampled(spacing, size, [](const auto& p) { return ellipsoid_level(p) < 1 ? 5 : 0; });
-    const auto repair = bones::mend_mesh(surface_of_label(volume, 5).mesh);
-    EXPECT_TRUE(repair.report.is_closed);
-    EXPECT_EQ(repair.report.parts_found, 1U);
-    const double true_mm3 = 4.0 / 3 * geometry::kPi * kRadii.prod();
-    EXPECT_NEAR(repair.report.volume_mm3, true_mm3, 0.01 * true_mm3) << "across " << axis;
-    const Error error = error_of(repair.mesh);
-    EXPECT_LT(error.mean_mm, 0.05 * spacing[axis]) << "across " << axis;
-    EXPECT_LT(error.worst_mm, 0.5 * spacing[axis]) << "across " << axis;
+    SCOPED_TRACE(axis);
+    const Error error = error_of_labelled_ellipsoid(spacing, size);
+    EXPECT_LT(error.mean_mm, 0.05 * spacing[axis]);
+    EXPECT_LT(error.worst_mm, 0.5 * spacing[axis]);
   }
 }
 
