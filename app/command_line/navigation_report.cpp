@@ -44,7 +44,10 @@ void say_guidance(const Context& context, const theatre::NavigationSummary& summ
   context.say(format("  offset %.2f mm: %s, %s; guide %.1f mm beyond the entry; one sigma %.2f mm, %.2f deg",
                      g.offset_mm, part(g.across_plan.side_is).c_str(), part(g.across_plan.up_is).c_str(),
                      g.depth_mm, g.sigma_offset_mm, g.sigma_angle_deg));
-  if (g.drill)
+  if (g.drill && g.drill->is_beside_plan())
+    context.say(
+        format("  drill %.1f mm beside the plan: nothing is said of what remains", g.drill->lateral_mm));
+  else if (g.drill)
     context.say(format("  drill %.1f mm deep, %.1f mm remaining, %.1f mm to the exit (+- %.1f mm)",
                        g.drill->depth_mm, g.drill->remaining_mm, g.drill->to_exit_mm, g.drill->sigma_mm));
 }

@@ -117,6 +117,8 @@ std::string words_of_checking(const operation::OperationState& state) {
       return "marker was out of sight: " + words;
     case ControlPointDue::CheckLooks:
       return kLooksOtherwise + words;
+    case ControlPointDue::CheckShift:
+      return "it lay elsewhere: " + words;
     case ControlPointDue::None:
     case ControlPointDue::Set:
     case ControlPointDue::CannotCheckLooks:

@@ -44,12 +44,14 @@ std::string guided_bundles(const recording::RecordedSession& session) {
 }
 
 std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session) {
-  bool is_verified = false, was_verified = false, was_skipped = false, is_confirmed = false;
+  bool is_verified = false, is_lost = false, was_verified = false, was_skipped = false, is_confirmed = false;
   std::string alarms, guide;
   for (const recording::SessionEvent& event : session.events()) {
-    const bool is_another =
-        event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent;
-    is_verified = event.kind == recording::kVerifiedEvent || (is_verified && !is_another);
+    const bool ends = event.kind == recording::kRegistrationEvent ||
+                      event.kind == recording::kGivenRegistrationEvent ||
+                      event.kind == recording::kVoidEvent || event.kind == recording::kVerificationLostEvent;
+    is_lost = event.kind == recording::kVerificationLostEvent || (is_lost && !ends);
+    is_verified = event.kind == recording::kVerifiedEvent || (is_verified && !ends);
     was_verified = was_verified || is_verified;
     was_skipped = was_skipped || event.kind == recording::kVerificationSkippedEvent;
     is_confirmed = is_confirmed || event.kind == recording::kTimeOutConfirmedEvent;
@@ -59,6 +61,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
   }
   const std::string verified =
       is_verified    ? "verified by touches"
+      : is_lost      ? "verified by touches that did not hold"
       : was_verified ? "verified by touches earlier; of the last registration nothing is recorded"
       : was_skipped  ? "SKIPPED"
                      : "not verified";
@@ -106,10 +109,11 @@ std::string clock_text(double seconds) {
 }
 
 std::vector<Step> steps_of(const recording::RecordedSession& session) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kSteps{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kSteps{
       {{recording::kRegistrationEvent, "bone registered"},
        {recording::kGivenRegistrationEvent, "registration brought along"},
        {recording::kVerifiedEvent, "registration verified"},
+       {recording::kVerificationLostEvent, "VERIFICATION LOST"},
        {recording::kConfirmedEvent, "registration confirmed"},
        {recording::kVerificationSkippedEvent, "VERIFICATION SKIPPED"},
        {recording::kVoidEvent, "registration void"},

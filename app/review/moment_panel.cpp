@@ -59,6 +59,23 @@ void draw_today(const widgets::Ui& ui, const ReviewScreen& screen) {
   widgets::text_in(ui.theme.body, widgets::kQuietText, today_words(*screen.today));
 }
 
+// Of a drill with a marker of its own; nobody saw how deep another one was. As Navigate said it then: with
+// its guide or without, beyond the plan "Too deep" and never a length with a minus sign, and beside the plan
+// no length at all.
+void draw_drill(const widgets::Ui& ui, const guidance::DrillDepth& drill) {
+  if (drill.is_beside_plan())
+    return widgets::status_row(ui, widgets::Severity::Caution, "Drill", "beside the plan");
+  const ImVec2 cursor = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(104);
+  widgets::Rect right{cursor.x, cursor.y, width, height};
+  const widgets::Rect left = right.cut_left(width / 2);
+  widgets::number_block(ui, left, "Drill depth", widgets::fixed(drill.depth_mm, 1), "mm",
+                        widgets::Severity::Quiet);
+  const guidance_severity::DrillText text = guidance_severity::drill_text(drill);
+  widgets::number_block(ui, right, text.name, text.mm, "mm", guidance_severity::severity_of_drill(drill));
+  ImGui::Dummy({width, height});
+}
+
 }  // namespace
 
 void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewScreen& screen) {
@@ -74,22 +91,11 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewS
                           "mm", guidance_severity::severity_of_offset(at.guidance));
     widgets::number_block(ui, row, "Angle", widgets::fixed(at.guidance.angle_deg, 1) + "\u00B0", "",
                           guidance_severity::severity_of_angle(at.guidance));
-    // Of a drill with a marker of its own; nobody saw how deep another one was.
-    const auto& drill = at.guidance.drill;
-    if (drill) {
-      widgets::Rect below{cursor.x, cursor.y + height, width, height};
-      const widgets::Rect below_left = below.cut_left(width / 2);
-      widgets::number_block(ui, below_left, "Drill depth", widgets::fixed(drill->depth_mm, 1), "mm",
-                            widgets::Severity::Quiet);
-      // As Navigate said it then: beyond the plan it is "Too deep", never a length with a minus sign.
-      const guidance_severity::DrillText text = guidance_severity::drill_text(*drill);
-      widgets::number_block(ui, below, text.name, text.mm, "mm",
-                            guidance_severity::severity_of_drill(*drill));
-    }
-    ImGui::Dummy({width, (drill ? 2 : 1) * height});
+    ImGui::Dummy({width, height});
   } else {
     widgets::status_row(ui, widgets::Severity::Quiet, "No guidance", screen.no_guidance_words());
   }
+  if (at.guidance.drill) draw_drill(ui, *at.guidance.drill);
   const auto& registration = screen.standing().registration;
   if (registration == nullptr)
     widgets::status_row(ui, widgets::Severity::Quiet, "Registration", "none at this moment");

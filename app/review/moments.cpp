@@ -19,9 +19,12 @@ using recording::SessionEvent;
 constexpr std::array<std::string_view, 6> kSteps{
     recording::kRegistrationEvent,     recording::kVerifiedEvent, recording::kConfirmedEvent,
     recording::kTimeOutConfirmedEvent, recording::kDrilledEvent,  recording::kDrilledTakenBackEvent};
-constexpr std::array<std::string_view, 5> kAlarms{
-    recording::kVoidEvent, recording::kVerificationSkippedEvent, recording::kDroppedPicturesEvent,
-    recording::kVideoStoppedEvent, recording::kRecordingStoppedEvent};
+constexpr std::array<std::string_view, 6> kAlarms{recording::kVoidEvent,
+                                                  recording::kVerificationLostEvent,
+                                                  recording::kVerificationSkippedEvent,
+                                                  recording::kDroppedPicturesEvent,
+                                                  recording::kVideoStoppedEvent,
+                                                  recording::kRecordingStoppedEvent};
 
 template <typename List>
 bool holds(const List& list, std::string_view kind) {

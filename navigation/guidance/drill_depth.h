@@ -27,16 +27,19 @@ struct DrillDepth {
   double depth_mm = 0;                                   // of the tip beyond the entry, along the plan
   double remaining_mm = 0;                               // planned length - depth; negative: too deep
   double to_exit_mm = 0;  // the same: a plan's length ends where its axis leaves the bone
-  double lateral_mm = 0;  // of the tip from the plan's axis
+  double lateral_mm = 0;  // of the tip from the plan's axis; not a number: not known
   // Predicted, one sigma: of the depth; of where the drill's axis crosses the plane through the entry across
-  // the plan, and of its direction, as GuidanceNumbers says them of the guide. Not known: not a number, as in
-  // what was recorded, which holds the depth's alone.
+  // the plan, and of its direction, as GuidanceNumbers says them of the guide. Not a number: not known. What
+  // was recorded before 2026-11-27 holds the depth's alone, and nothing of where the drill was.
   double sigma_mm = 0;
   double sigma_offset_mm = geometry::kNotKnown, sigma_angle_deg = geometry::kNotKnown;
   Breakout breakout = Breakout::Far;
   // Farther from the plan's axis than that, the plan's length and exit are not those of what is drilled.
   static constexpr double kMostLateral_mm = 5;
-  [[nodiscard]] bool is_at_plan() const { return lateral_mm <= kMostLateral_mm; }
+  [[nodiscard]] bool is_at_plan() const {
+    return lateral_mm <= kMostLateral_mm;
+  }  // not where it is not known
+  [[nodiscard]] bool is_beside_plan() const { return lateral_mm > kMostLateral_mm; }
 };
 
 // tip_mm, direction: of the drill, in the bone's frame. sigma_mm: of the depth.

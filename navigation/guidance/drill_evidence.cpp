@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
@@ -11,6 +12,8 @@ namespace arthronaut::guidance {
 namespace {
 
 constexpr std::size_t kCapacity = 2048;  // over a minute at 30 poses a second
+// What a pose can stand for at most: where it stood while no picture came, nobody saw.
+constexpr std::int64_t kLongest_ns = 100'000'000;
 
 template <typename Poses, typename Value>
 double median_of(const Poses& poses, const Value& value) {
@@ -48,11 +51,17 @@ std::string_view to_text(EvidenceOutcome outcome) {
 
 DrillEvidence::Store::Store() { poses_.reserve(kCapacity); }
 
-void DrillEvidence::Store::add(const Pose& pose) {
+void DrillEvidence::Store::add(Pose pose) {
+  passed_over_ns_ += pose.stands_for_ns;
   if (++passed_over_ < stride_) return;
   passed_over_ = 0;
+  pose.stands_for_ns = std::exchange(passed_over_ns_, 0);
   if (poses_.size() == kCapacity) {
-    for (std::size_t i = 0; i < kCapacity / 2; ++i) poses_[i] = poses_[2 * i + 1];
+    for (std::size_t i = 0; i < kCapacity / 2; ++i) {
+      const std::int64_t before_ns = poses_[2 * i].stands_for_ns;
+      poses_[i] = poses_[2 * i + 1];
+      poses_[i].stands_for_ns += before_ns;
+    }
     poses_.resize(kCapacity / 2);
     stride_ *= 2;
   }
@@ -63,6 +72,7 @@ void DrillEvidence::Store::clear() {
   poses_.clear();
   stride_ = 1;
   passed_over_ = 0;
+  passed_over_ns_ = 0;
 }
 
 DrillEvidence::DrillEvidence(const tunnels::Tunnel& planned, const DrillEvidenceLimits& limits)
@@ -73,7 +83,7 @@ DrillEvidence::DrillEvidence(const tunnels::Tunnel& planned, const DrillEvidence
   require(limits.most_depth_mm > limits.least_depth_mm, "most_depth_mm must be above least_depth_mm");
   require(limits.most_lateral_mm > 0, "most_lateral_mm must be above 0");
   require(limits.window_mm > 0, "window_mm must be above 0");
-  require(limits.least_poses > 0, "least_poses must be above 0");
+  require(limits.least_s > 0, "least_s must be above 0");
 }
 
 void DrillEvidence::clear() {
@@ -84,11 +94,15 @@ void DrillEvidence::clear() {
 }
 
 void DrillEvidence::add(const GuidanceNumbers& numbers) {
+  const std::int64_t before_ns =
+      std::exchange(newest_ns_, numbers.timestamp_ns).value_or(numbers.timestamp_ns);
+  const std::int64_t stands_for_ns =
+      std::clamp(numbers.timestamp_ns - before_ns, std::int64_t{0}, kLongest_ns);
   if (numbers.drill) {
     const DrillDepth& drill = *numbers.drill;
     if (drill.depth_mm >= limits_.least_drilled_mm && drill.lateral_mm <= limits_.most_lateral_mm)
       drill_.add({drill.tip_mm, drill.direction, drill.depth_mm, drill.sigma_offset_mm, drill.sigma_angle_deg,
-                  numbers.timestamp_ns});
+                  numbers.timestamp_ns, stands_for_ns});
   }
   if (!numbers.is_valid()) return;
   nearest_mm_ = valid_count_ == 0 ? numbers.tip_to_entry_mm : std::min(nearest_mm_, numbers.tip_to_entry_mm);
@@ -99,7 +113,7 @@ void DrillEvidence::add(const GuidanceNumbers& numbers) {
   const Eigen::Vector3d from_entry = numbers.guide_point_mm - planned_.entry_mm;
   if ((from_entry - from_entry.dot(along) * along).norm() > limits_.most_lateral_mm) return;
   guide_.add({numbers.guide_point_mm, numbers.guide_direction, numbers.depth_mm, numbers.sigma_offset_mm,
-              numbers.sigma_angle_deg, numbers.timestamp_ns});
+              numbers.sigma_angle_deg, numbers.timestamp_ns, stands_for_ns});
 }
 
 void DrillEvidence::summarise(const std::vector<Pose>& poses, DrillEvidenceSummary& summary) const {
@@ -112,7 +126,9 @@ void DrillEvidence::summarise(const std::vector<Pose>& poses, DrillEvidenceSumma
   std::copy_if(poses.begin(), poses.end(), std::back_inserter(counted),
                [&](const Pose& pose) { return std::abs(pose.depth_mm - deepest_mm) <= limits_.window_mm; });
   summary.pose_count = static_cast<int>(counted.size());
-  if (counted.size() < limits_.least_poses) return;
+  std::int64_t counted_ns = 0;
+  for (const Pose& pose : counted) counted_ns += pose.stands_for_ns;
+  if (static_cast<double>(counted_ns) < limits_.least_s * 1e9) return;
   summary.outcome = EvidenceOutcome::Seen;
   summary.direction = median_vector(counted, [](const Pose& pose) { return pose.direction; }).normalized();
   summary.entry_mm = median_vector(

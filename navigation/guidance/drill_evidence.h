@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -25,14 +26,15 @@ struct DrillEvidenceLimits {
   double least_drilled_mm = 2;
   // The poses that count lie this near to the deepest (the 90 % quantile, so that one jump decides nothing).
   double window_mm = 1;
-  std::size_t least_poses = 15;  // half a second
+  // And together stand for so long: each for the time since the frame before it, a lost picture's at most.
+  double least_s = 0.5;
 };
 
 enum class EvidenceOutcome {
   NoGuidance,    // no valid numbers in the whole time
   NeverTouched,  // the guide's end never came to the bone
   BesideEntry,   // it stood as deep as the bone, but not at the planned entry
-  TooShort,      // it stood there, for too few poses
+  TooShort,      // it stood there, too shortly
   Seen,
 };
 [[nodiscard]] std::string_view to_text(EvidenceOutcome outcome);  // plain words
@@ -40,7 +42,7 @@ enum class EvidenceOutcome {
 struct DrillEvidenceSummary {
   EvidenceOutcome outcome = EvidenceOutcome::NoGuidance;
   bool is_of_drill = false;  // of a drill with a marker of its own; else of the guide
-  int pose_count = 0;        // that the axis rests on; also when there are too few
+  int pose_count = 0;        // that the axis rests on; also when they are of too short a time
   // The nearest that the guide's end came to the planned entry, whatever the outcome but NoGuidance.
   double nearest_mm = 0;
   // Meaningful when is_usable(). Medians, bone frame: where the axis crosses the plane through the planned
@@ -57,10 +59,10 @@ struct DrillEvidenceSummary {
 // Thread-free. add() allocates nothing: the store has a fixed size, and thins itself out when it is full.
 class DrillEvidence {
  public:
-  // The plan that is drilled. Throws InvalidInput when a limit makes no sense (a window or a count that is
-  // not above 0).
+  // The plan that is drilled. Throws InvalidInput when a limit makes no sense (a window or a time that is not
+  // above 0).
   explicit DrillEvidence(const tunnels::Tunnel& planned, const DrillEvidenceLimits& limits = {});
-  // Every frame's numbers; those that are not valid are passed over.
+  // Every frame's numbers, in the order of time; those that are not valid are passed over.
   void add(const GuidanceNumbers& numbers);
   // For the next hole.
   void clear();
@@ -71,19 +73,21 @@ class DrillEvidence {
   struct Pose {
     Eigen::Vector3d point_mm, direction;
     double depth_mm = 0, sigma_offset_mm = 0, sigma_angle_deg = 0;
-    std::int64_t timestamp_ns = 0;
+    std::int64_t timestamp_ns = 0, stands_for_ns = 0;
   };
-  // Of fixed capacity; full, it keeps every other pose and from then on takes every other one.
+  // Of fixed capacity; full, it keeps every other pose and from then on takes every other one, each with the
+  // time of those that it stands for.
   class Store {
    public:
     Store();
-    void add(const Pose& pose);
+    void add(Pose pose);
     void clear();
     [[nodiscard]] const std::vector<Pose>& poses() const { return poses_; }
 
    private:
     std::vector<Pose> poses_;
     std::size_t stride_ = 1, passed_over_ = 0;
+    std::int64_t passed_over_ns_ = 0;
   };
   void summarise(const std::vector<Pose>& poses, DrillEvidenceSummary& summary) const;
 
@@ -92,6 +96,7 @@ class DrillEvidence {
   Store guide_, drill_;
   std::size_t valid_count_ = 0, deep_enough_count_ = 0;
   double nearest_mm_ = 0;
+  std::optional<std::int64_t> newest_ns_;  // of the frames that were looked at, whatever they held
 };
 
 }  // namespace arthronaut::guidance

@@ -28,6 +28,7 @@ enum class JournalKind {
   Void,                 // text: why
   Confirmed,            // by a touch
   Verified,
+  VerificationLost,  // of the one in force; text: why
   VerificationSkipped,
   TimeOutConfirmed,  // text: what was on the screen
   GuideChecked,      // text: how far its tip was off, or that nobody checked it

@@ -160,7 +160,7 @@ struct Operation::Parts {
     std::size_t point_count = 0;  // that were drawn then, and the strokes that were not used
     std::set<int> excluded;
     bool is_under_way = false, is_wanted = false;
-    int frames_since_look = 0;
+    std::int64_t looked_ns = 0;
   } fitting;
   // How the registration that strokes give follows the errors of probe and camera; by stroke.
   std::map<int, guidance::BiasSums> bias_of_stroke;
@@ -207,7 +207,7 @@ struct Operation::Parts {
   struct Drilling {
     std::optional<guidance::DrillEvidence> evidence;  // of the plan in force
     bool evidence_is_seen = false;
-    int frames_since_look = 0;
+    std::int64_t looked_ns = 0;
     std::optional<double> depth_stop_mm;
     DrilledState drilled;
   } drilling;
@@ -222,6 +222,7 @@ struct Operation::Parts {
     Standing standing = Standing::None;
     std::optional<std::size_t> entry;
     bool is_verified = false;
+    std::optional<std::size_t> verified_entry;  // that the journal says is verified, whatever stands now
   } followed;
   std::vector<RegistrationRequest> requests;
   std::uint64_t request_count = 0;

@@ -6,14 +6,21 @@ namespace arthronaut::operation {
 
 namespace {
 
-// Looking twice a second whether something new was drawn is enough.
-constexpr int kFramesBetweenLooks = 30;
+// Looking twice a second whether something new was drawn, or enough was seen of a drill, is enough.
+constexpr std::int64_t kBetweenLooks_ns = 500'000'000;
 // A marker that was out of sight for so long may have been hit meanwhile.
 constexpr std::int64_t kLongLoss_ns = 30'000'000'000;
 // A guide that is away for longer was put down: the hand is free for something else.
 constexpr std::int64_t kGuideAway_ns = 2'000'000'000;
 // A control point that was touched so lately need not be touched again before drilling.
 constexpr std::int64_t kControlHolds_ns = 300'000'000'000;
+
+// Another source has another clock.
+bool is_time_to_look(std::int64_t now_ns, std::int64_t& looked_ns) {
+  if (now_ns >= looked_ns && now_ns - looked_ns < kBetweenLooks_ns) return false;
+  looked_ns = now_ns;
+  return true;
+}
 
 }  // namespace
 
@@ -79,6 +86,14 @@ void Operation::Parts::follow_ledger() {
     followed.standing = in_force.standing;
   }
   followed.entry = ledger.entry_in_force();
+  if (followed.verified_entry && followed.verified_entry == followed.entry &&
+      !(*ledger.entries())[*followed.entry].is_verified) {
+    followed.verified_entry.reset();
+    note(JournalKind::VerificationLost, ledger.touches().lie_off_the_bone()
+                                            ? "a touch lies off the bone"
+                                            : "its touches do not count any more");
+  }
+  if (in_force.is_verified) followed.verified_entry = followed.entry;
   if (in_force.is_verified && (!followed.is_verified || is_another)) note(JournalKind::Verified);
   followed.is_verified = in_force.is_verified;
   changed = true;
@@ -86,8 +101,10 @@ void Operation::Parts::follow_ledger() {
 
 void Operation::Parts::set_plan(const std::optional<PlannedTunnel>& next, bool moves_target) {
   plan = next;
-  if (moves_target)
+  if (moves_target) {
+    ledger.aim_at(plan ? std::optional(plan->tunnel.entry_mm) : std::nullopt);
     ask(plan ? AimAt{plan->tunnel.entry_mm, plan->tunnel.direction} : AimAt{std::nullopt, std::nullopt});
+  }
   // What was seen, read and drilled was of another plan; the numbers of the last picture are too.
   drilling.evidence = plan ? std::optional<guidance::DrillEvidence>(plan->tunnel) : std::nullopt;
   drilling.evidence_is_seen = false;
@@ -109,7 +126,8 @@ std::optional<std::size_t> Operation::Parts::guide_in_view() const {
 
 void Operation::Parts::take_frame() {
   ++frame_count;
-  if (frame.guidance.is_valid() && time_out() == TimeOut::Due)
+  // A drill with a marker of its own is seen, and said, without the guide.
+  if ((frame.guidance.is_valid() || frame.guidance.drill) && time_out() == TimeOut::Due)
     hide_guidance(guidance::GuidanceState::NotConfirmed);
   if (frame.guidance.is_valid() && !guide_check.state().may_guide())
     hide_guidance(guidance::GuidanceState::GuideNotChecked);
@@ -210,9 +228,8 @@ void Operation::Parts::watch_guidance() {
   if (guide_is_seen && !in_view.guide_was_seen) changed = true;
   in_view.guide_was_seen = in_view.guide_was_seen || guide_is_seen;
   if (drilling.evidence) drilling.evidence->add(frame.guidance);
-  // Summing it up costs more than a frame should: twice a second is soon enough to be asked.
-  if (++drilling.frames_since_look >= kFramesBetweenLooks) {
-    drilling.frames_since_look = 0;
+  // Summing it up costs more than a frame should.
+  if (is_time_to_look(frame.timestamp_ns, drilling.looked_ns)) {
     drilling.evidence_is_seen = drilling.evidence && drilling.evidence->summary().is_usable();
   }
   if (!frame.guidance.is_valid()) return;
@@ -234,9 +251,8 @@ Verification Operation::Parts::verification() const {
 
 void Operation::Parts::look_for_registration() {
   if (!setup.registers_after_mm || !plan || !guide_in_view() ||
-      ++fitting.frames_since_look < kFramesBetweenLooks)
+      !is_time_to_look(frame.timestamp_ns, fitting.looked_ns))
     return;
-  fitting.frames_since_look = 0;
   const std::optional<std::size_t> entry = ledger.entry_in_force();
   const bool is_settled = entry && (*ledger.entries())[*entry].origin != RegistrationOrigin::WhileDrawing &&
                           ledger.in_force().standing == Standing::Stands;
@@ -283,12 +299,13 @@ void Operation::Parts::take_touch(bool is_control_point) {
                 is_set ? "control point not asked: it was set when the bone may have moved already"
                        : "control point not set: the picture shows that the bone has moved");
   if (!is_set) in_view.control_set_ns = frame.timestamp_ns;
+  ledger.touch_control_point(*tip_mm);
+  // What asked for it asks on: whether the marker has moved is not answered.
+  if (ledger.touches().control_point_lies_off()) return;
   in_view.control_touched_ns = frame.timestamp_ns;
   in_view.was_lost_for_long = false;
-  ledger.touch_control_point(*tip_mm);
   if (!contour.is_in_doubt || !contour.doubt_has_control_point) return;
-  const auto shift_mm = ledger.touches().last().distance_mm;
-  if (shift_mm && *shift_mm <= setup.limits.max_control_shift_mm) look_anew();
+  if (is_set) look_anew();  // it lies where it lay
 }
 
 void Operation::Parts::apply(const OfferPlan& offer) {
@@ -324,6 +341,7 @@ bool Operation::Parts::guided_lately() const {
 
 ControlPointDue Operation::Parts::control_point_due() const {
   if (!has_source || ledger.in_force().standing != Standing::Stands) return ControlPointDue::None;
+  if (ledger.touches().control_point_lies_off()) return ControlPointDue::CheckShift;
   if (contour.is_in_doubt && contour.doubt_has_control_point) return ControlPointDue::CheckLooks;
   if (places_in_doubt() > 0) return ControlPointDue::CannotCheckLooks;
   if (!ledger.touches().has_control_point()) return ControlPointDue::Set;

@@ -48,8 +48,19 @@ class Digest {
   std::uint64_t hash_ = 0xCBF29CE484222325U;
 };
 
+// Where none is seen nothing: records of before there was this stay as they were.
+void add_drill(Digest& digest, const std::optional<guidance::DrillDepth>& drill) {
+  if (!drill) return;
+  digest.add_matrix(drill->tip_mm);
+  digest.add_matrix(drill->direction);
+  for (const double number : {drill->depth_mm, drill->remaining_mm, drill->to_exit_mm, drill->lateral_mm,
+                              drill->sigma_mm, drill->sigma_offset_mm, drill->sigma_angle_deg})
+    digest.add(number);
+}
+
 void add_guidance(Digest& digest, const guidance::GuidanceNumbers& g) {
   digest.add(g.state);
+  add_drill(digest, g.drill);
   if (!g.is_valid()) return;
   digest.add_matrix(g.guide_point_mm);
   digest.add_matrix(g.guide_direction);
@@ -58,7 +69,6 @@ void add_guidance(Digest& digest, const guidance::GuidanceNumbers& g) {
         g.offset_proximal_mm, g.offset_lateral_mm, g.depth_mm, g.sigma_offset_mm, g.sigma_angle_deg})
     digest.add(number);
   digest.add(g.drill.has_value());
-  if (g.drill) digest.add(g.drill->depth_mm);
 }
 
 void add_frame(Digest& digest, const pipeline::FrameResult& frame) {
@@ -182,6 +192,8 @@ NextAction next_action_of(const OperationState& state) {
   if (in_force.standing == Standing::Void && in_force.can_be_confirmed && !state.draws)
     return NextAction::ConfirmByTouch;
   if (in_force.standing != Standing::Stands) return action_without_registration(state);
+  // Until that is answered no touch and no number says anything.
+  if (state.control_point_due == ControlPointDue::CheckShift) return NextAction::CheckControlPoint;
   // What is to be done does not change with a picture in which the guide is not seen.
   const bool guides = state.guided_lately;
   if (state.verification == Verification::NotYet && !guides) {

@@ -78,6 +78,7 @@ enum class ControlPointDue {
   // So it is, and no control point was set before: one that is set now learns where the bone lies since.
   // Asked for until as many places were touched as verify; what they say is the surgeon's to judge.
   CannotCheckLooks,
+  CheckShift,  // touched again it lay elsewhere: once more tells a bumped marker from a probe that slipped
 };
 
 // The nine steps of an operation.

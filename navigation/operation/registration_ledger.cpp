@@ -1,5 +1,7 @@
 #include "navigation/operation/registration_ledger.h"
 
+#include "planning/files/format.h"
+
 namespace arthronaut::operation {
 
 namespace {
@@ -15,9 +17,24 @@ RegistrationPtr doubted(const registration::RegistrationSummary& found, std::vec
   return summary;
 }
 
+RegistrationPtr known_at(const RegistrationPtr& found, const std::optional<Eigen::Vector3d>& target_mm) {
+  if (!target_mm || !found->has_pose) return found;
+  const double error_mm = registration::predicted_error_mm(*found, *target_mm);
+  if (error_mm == found->predicted_tre_mm) return found;
+  auto summary = std::make_shared<registration::RegistrationSummary>(*found);
+  summary->predicted_tre_mm = error_mm;
+  if (found->reliable && error_mm > registration::kMaxError_mm) {
+    summary->reliable = false;
+    summary->reasons = {files::format(
+        "at the tunnel of this plan %.2f mm is its predicted error: touch nearer to it", error_mm)};
+  }
+  return summary;
+}
+
 bool is_same(const RegistrationPtr& a, const RegistrationPtr& b) {
   if (a == b) return true;
   return a != nullptr && b != nullptr && a->reliable == b->reliable && a->reasons == b->reasons &&
+         a->predicted_tre_mm == b->predicted_tre_mm &&
          a->marker_from_bone.translation_mm == b->marker_from_bone.translation_mm &&
          a->marker_from_bone.rotation.coeffs() == b->marker_from_bone.rotation.coeffs();
 }
@@ -175,8 +192,20 @@ TouchAlarm RegistrationLedger::alarm() const {
 
 void RegistrationLedger::forget_touches() {
   touches_.clear();
+  for (std::size_t i = 0; i < entries_->size(); ++i)
+    if ((*entries_)[i].is_verified)
+      change_entry(i, [](RegistrationEntry& entry) { entry.is_verified = false; });
   seen_drift_mm_.reset();
   judge();
+}
+
+void RegistrationLedger::aim_at(const std::optional<Eigen::Vector3d>& target_in_bone_mm) {
+  target_in_bone_mm_ = target_in_bone_mm;
+  judge();
+  // Errors at two places can't be compared: the next one has to be better there.
+  const bool found_itself = best_tre_mm_ < std::numeric_limits<double>::infinity() && entry_in_force_;
+  best_tre_mm_ = found_itself && in_force_.registration->reliable ? in_force_.registration->predicted_tre_mm
+                                                                  : std::numeric_limits<double>::infinity();
 }
 
 void RegistrationLedger::forget_strokes() {
@@ -215,27 +244,27 @@ RegistrationInForce RegistrationLedger::judged() const {
   RegistrationInForce judged;
   if (!entry_in_force_) return judged;
   const RegistrationEntry& entry = (*entries_)[*entry_in_force_];
-  judged.registration = entry.registration;
+  judged.registration = known_at(entry.registration, target_in_bone_mm_);
   judged.mismatch = registration::mismatch_of(entry.of, now_);
   if (judged.mismatch) {
     judged.standing = Standing::Void;
     judged.can_be_confirmed = registration::can_be_confirmed(entry.of, now_);
     judged.registration =
-        doubted(*entry.registration, {registration::in_words(*judged.mismatch, entry.of, now_)});
+        doubted(*judged.registration, {registration::in_words(*judged.mismatch, entry.of, now_)});
     return judged;
   }
-  if (!entry.registration->has_pose || !entry.registration->reliable) {
+  if (!judged.registration->has_pose || !judged.registration->reliable) {
     judged.standing = Standing::NotReliable;
     return judged;
   }
   if (const TouchAlarm told = alarm()) {
     judged.standing = Standing::Alarm;
-    judged.registration = doubted(*entry.registration, {in_words(told)});
+    judged.registration = doubted(*judged.registration, {in_words(told)});
     return judged;
   }
   if (doubt_) {
     judged.standing = Standing::InDoubt;
-    judged.registration = doubted(*entry.registration, *doubt_);
+    judged.registration = doubted(*judged.registration, *doubt_);
     return judged;
   }
   judged.standing = Standing::Stands;
@@ -247,6 +276,9 @@ RegistrationInForce RegistrationLedger::judged() const {
 void RegistrationLedger::judge() {
   const RegistrationEntry* entry = entry_in_force_ ? &(*entries_)[*entry_in_force_] : nullptr;
   touches_.judge(entry != nullptr ? entry->registration.get() : nullptr, surface_.get(), cartilage_, now_);
+  // What touches verified a touch takes back: one off the bone says that something is not as it was.
+  if (entry != nullptr && entry->is_verified && touches_.lie_off_the_bone())
+    change_entry(*entry_in_force_, [](RegistrationEntry& denied) { denied.is_verified = false; });
   RegistrationInForce next = judged();
   if (next.standing == Standing::Stands && !next.is_verified && touches_.verify()) {
     change_entry(*entry_in_force_, [](RegistrationEntry& verified) { verified.is_verified = true; });

@@ -31,7 +31,7 @@ struct RegistrationEntry {
   RegistrationOrigin origin = RegistrationOrigin::WhileDrawing;
   RegistrationPtr registration;  // as it was found
   registration::Provenance of;
-  bool is_verified = false;       // by touches
+  bool is_verified = false;       // by touches, of which none lies off the bone and none was forgotten
   bool marker_has_moved = false;  // since: it can't be taken again
 };
 
@@ -86,8 +86,11 @@ class RegistrationLedger {
   // bone may have moved already (control_point_is_older is false) says nothing, as if there were none. The
   // first alarm stays; nothing without a registration that stands.
   void bone_moved_in_picture(double drift_mm, bool control_point_is_older);
-  // The touches were wrong and not the marker: takes an alarm away.
+  // The touches were wrong and not the marker: takes an alarm away, and what they verified.
   void forget_touches();
+  // Another plan is in force: what was found is known there as well as its covariance says, and no longer
+  // reliable where that is worse than registration::kMaxError_mm. Empty: as it was found.
+  void aim_at(const std::optional<Eigen::Vector3d>& target_in_bone_mm);
   // What was drawn is gone: the next registration has to earn its place anew. Touches stay.
   void forget_strokes();
   // The world marker sits elsewhere: nothing found before holds, for good.
@@ -119,6 +122,7 @@ class RegistrationLedger {
   bool is_chosen_ = false;
   // Doubt told by strokes drawn after the newest fit of all strokes; its reasons.
   std::optional<std::vector<std::string>> doubt_;
+  std::optional<Eigen::Vector3d> target_in_bone_mm_;              // of another plan than it was begun with
   std::optional<double> seen_drift_mm_;                           // in the picture; empty: none
   bool control_point_is_older_ = false;                           // than that drift
   std::uint64_t fitted_after_ = 0;                                // requests, at the newest fit

@@ -171,13 +171,17 @@ Touches::Last Touches::last() const {
   return last;
 }
 
-TouchAlarm Touches::alarm() const {
-  TouchAlarm alarm;
-  alarm.control_shift_mm = control_shift_mm_;
-  alarm.touches_off = static_cast<int>(
+int Touches::touches_off() const {
+  return static_cast<int>(
       std::count_if(residuals_mm_.begin(), residuals_mm_.end(), [&](const auto& residual_mm) {
         return residual_mm && std::abs(*residual_mm) > limits_.max_touch_error_mm;
       }));
+}
+
+TouchAlarm Touches::alarm() const {
+  TouchAlarm alarm;
+  alarm.control_shift_mm = control_shift_mm_;
+  alarm.touches_off = touches_off();
   if (control_violations_ >= limits_.violations_to_alarm)
     alarm.kind = TouchAlarm::Kind::ControlPointMoved;
   else if (alarm.touches_off >= limits_.violations_to_alarm)

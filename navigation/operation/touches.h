@@ -92,6 +92,10 @@ class Touches {
              const registration::Provenance& now);
 
   [[nodiscard]] bool has_control_point() const { return !control_touches_.empty(); }
+  // Touched last it was not where it was: that answers nothing yet, and is no alarm by itself.
+  [[nodiscard]] bool control_point_lies_off() const { return control_violations_ > 0; }
+  // Of those that were judged one lies so far off the bone that it is a violation.
+  [[nodiscard]] bool lie_off_the_bone() const { return touches_off() > 0; }
   [[nodiscard]] std::size_t count() const { return touches_.size(); }
   // Where they were, world-marker frame; of the control point: as it was touched first.
   [[nodiscard]] std::vector<Eigen::Vector3d> places_mm() const;
@@ -123,6 +127,7 @@ class Touches {
   };
   // Of those that were judged and are at different places: how far off the bone they lie.
   [[nodiscard]] std::vector<double> misses_mm() const;
+  [[nodiscard]] int touches_off() const;
   struct ControlTouch {
     Eigen::Vector3d tip_in_marker_mm;
     registration::Provenance of;

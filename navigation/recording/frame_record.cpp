@@ -49,10 +49,33 @@ strokes::PoseRow pose_at(const Statement& row, const RecordedFrame& frame) {
   return pose;
 }
 
+// remaining_mm stands in column 14, all else from 18 on.
+std::optional<guidance::DrillDepth> drill_at(const Statement& row) {
+  // Of before 2026-11-22 none: what they call remaining was the guide's, nobody saw the drill.
+  constexpr int kColumns = 21, kColumnsWithPlace = 30;
+  if (row.column_count() < kColumns || row.is_null(18)) return std::nullopt;
+  guidance::DrillDepth drill;
+  drill.depth_mm = row.number(18);
+  drill.remaining_mm = row.number(14);
+  drill.to_exit_mm = row.number(19);
+  drill.sigma_mm = row.number(20);
+  drill.breakout = guidance::breakout_of(drill.to_exit_mm, drill.sigma_mm);
+  // Of before 2026-11-27 nobody knows where the drill was, so that nothing can rest on it.
+  drill.lateral_mm = geometry::kNotKnown;
+  if (row.column_count() < kColumnsWithPlace) return drill;
+  drill.lateral_mm = row.number(21);
+  if (!row.is_null(22)) drill.sigma_offset_mm = row.number(22);
+  if (!row.is_null(23)) drill.sigma_angle_deg = row.number(23);
+  drill.tip_mm = vector_at(row, 24);
+  drill.direction = vector_at(row, 27);
+  return drill;
+}
+
 guidance::GuidanceNumbers guidance_at(const Statement& row, const RecordedFrame& frame) {
   guidance::GuidanceNumbers g;
   g.timestamp_ns = frame.timestamp_ns;
   g.state = row.one_of(1, guidance::GuidanceState::GuideNotChecked);
+  g.drill = drill_at(row);  // seen without its guide, too
   if (!g.is_valid()) return g;
   g.guide_point_mm = vector_at(row, 2);
   g.guide_direction = vector_at(row, 5);
@@ -64,19 +87,7 @@ guidance::GuidanceNumbers guidance_at(const Statement& row, const RecordedFrame&
   g.depth_mm = row.number(13);
   g.sigma_offset_mm = row.number(15);
   g.sigma_angle_deg = row.number(16);
-  // Sessions of before 2026-11-22 end here. What they call remaining was the guide's: nobody saw the drill.
-  constexpr int kColumns = 21;
-  if (row.column_count() >= kColumns) {
-    g.offset_lateral_mm = row.number(17);
-    if (!row.is_null(18)) {
-      g.drill.emplace();
-      g.drill->depth_mm = row.number(18);
-      g.drill->remaining_mm = row.number(14);
-      g.drill->to_exit_mm = row.number(19);
-      g.drill->sigma_mm = row.number(20);
-      g.drill->breakout = guidance::breakout_of(g.drill->to_exit_mm, g.drill->sigma_mm);
-    }
-  }
+  if (constexpr int kLateral = 17; row.column_count() > kLateral) g.offset_lateral_mm = row.number(kLateral);
   g.offset_mm = Eigen::Vector3d(g.offset_anterior_mm, g.offset_proximal_mm, g.offset_lateral_mm).norm();
   return g;
 }
@@ -111,7 +122,8 @@ FrameInserter::FrameInserter(SessionDatabase& database, const tools::ToolSet& to
       marker_(database.prepare("INSERT INTO markers VALUES(?,?,?,?,?,?,?,?,?,?,?,?)")),
       body_(database.prepare("INSERT INTO bodies VALUES(?,?,?,?,?,?,?,?,?)")),
       outside_(database.prepare("INSERT INTO outside VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),
-      guidance_(database.prepare("INSERT INTO guidance VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {
+      guidance_(database.prepare("INSERT INTO guidance "
+                                 "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {
   const auto add = [&](const auto& body) {
     if (!body.markers.empty()) bodies_of_several_.push_back(body.marker_id);
   };
@@ -160,7 +172,7 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
 
   const guidance::GuidanceNumbers& g = result.guidance;
   guidance_.bind(1, result.frame_index).bind(2, static_cast<int>(g.state));
-  for (int position = 3; position <= 21; ++position) guidance_.bind_null(position);
+  for (int position = 3; position <= 30; ++position) guidance_.bind_null(position);
   if (g.is_valid()) {
     bind_vector(guidance_, 3, g.guide_point_mm);
     bind_vector(guidance_, 6, g.guide_direction);
@@ -168,10 +180,14 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
     guidance_.bind(12, g.offset_anterior_mm).bind(13, g.offset_proximal_mm).bind(14, g.depth_mm);
     guidance_.bind(16, g.sigma_offset_mm).bind(17, g.sigma_angle_deg);
     guidance_.bind(18, g.offset_lateral_mm);
-    if (g.drill) {
-      guidance_.bind(15, g.drill->remaining_mm).bind(19, g.drill->depth_mm);
-      guidance_.bind(20, g.drill->to_exit_mm).bind(21, g.drill->sigma_mm);
-    }
+  }
+  if (g.drill) {
+    const guidance::DrillDepth& drill = *g.drill;
+    guidance_.bind(15, drill.remaining_mm).bind(19, drill.depth_mm).bind(20, drill.to_exit_mm);
+    guidance_.bind(21, drill.sigma_mm).bind(22, drill.lateral_mm);
+    guidance_.bind(23, drill.sigma_offset_mm).bind(24, drill.sigma_angle_deg);  // not a number: NULL
+    bind_vector(guidance_, 25, drill.tip_mm);
+    bind_vector(guidance_, 28, drill.direction);
   }
   guidance_.run();
 }

@@ -63,6 +63,8 @@ std::string_view kind_of(JournalKind kind) {
       return kConfirmedEvent;
     case JournalKind::Verified:
       return kVerifiedEvent;
+    case JournalKind::VerificationLost:
+      return kVerificationLostEvent;
     case JournalKind::VerificationSkipped:
       return kVerificationSkippedEvent;
     case JournalKind::TimeOutConfirmed:

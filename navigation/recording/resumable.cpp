@@ -40,6 +40,7 @@ class LastRegistration {
     if (event.kind == kVoidEvent) doubt_.clear();
     if (event.kind == kAlarmEvent && !event.text.empty()) alarm_ = event.text;
     if (event.kind == kVerifiedEvent) was_verified_ = true;
+    if (event.kind == kVerificationLostEvent) was_verified_ = false;
     if (event.kind == kCommandEvent)
       take(operation::command_from_text(event.text, session.folder().string()));
   }

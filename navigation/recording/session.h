@@ -79,6 +79,7 @@ inline constexpr std::string_view kLookEvent = "second look";  // text: index of
 inline constexpr std::string_view kAlarmEvent = "alarm";       // text: what it says; empty: it is over
 inline constexpr std::string_view kVoidEvent = "registration void";  // text: why
 inline constexpr std::string_view kVerifiedEvent = "registration verified";
+inline constexpr std::string_view kVerificationLostEvent = "verification lost";        // text: why
 inline constexpr std::string_view kConfirmedEvent = "registration confirmed";          // text: by what
 inline constexpr std::string_view kVerificationSkippedEvent = "verification skipped";  // text: how
 inline constexpr std::string_view kTimeOutConfirmedEvent =

@@ -33,6 +33,7 @@ class Steps {
     if (event.kind == kGivenRegistrationEvent && registered_ns_ == kNever) guided_ns_ = at;
     const bool is_trusted = event.kind == kVerifiedEvent || event.kind == kConfirmedEvent;
     if (is_trusted && verified_ns_ == kNever) verified_ns_ = guided_ns_ = at;
+    if (event.kind == kVerificationLostEvent) verified_ns_ = kNever;
     if (event.kind == kDrilledEvent) drilled_ns_ = at;
     if (event.kind == kDrilledTakenBackEvent) drilled_ns_ = kNever;
   }
@@ -99,6 +100,7 @@ void read_record(const fs::path& folder, SessionFacts& facts) {
     steps.follow(event);
     if (event.kind == kAlarmEvent && !event.text.empty()) ++facts.alarm_count;
     if (event.kind == kVerifiedEvent) facts.was_verified = true;
+    if (event.kind == kVerificationLostEvent) facts.was_verified = false;
     if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent)
       is_void = facts.was_verified = false;  // what verified the one before says nothing of this one
     if (event.kind == kVoidEvent) {

@@ -138,20 +138,22 @@ void append_guidance_line(std::int64_t frame, std::int64_t timestamp_ns, const g
   append_number(text, static_cast<double>(timestamp_ns) * 1e-9);
   text += ',';
   text += guidance::to_text(g.state);
-  if (g.is_valid()) {
-    for (const double value : {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm,
-                               g.offset_proximal_mm, g.depth_mm})
-      append_number(text, value);
-    append_drill(text, g, &guidance::DrillDepth::remaining_mm);
-    for (const double value : {g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(),
-                               g.guide_point_mm.y(), g.guide_point_mm.z(), g.guide_direction.x(),
-                               g.guide_direction.y(), g.guide_direction.z(), g.offset_lateral_mm})
-      append_number(text, value);
-    append_drill(text, g, &guidance::DrillDepth::depth_mm);
-    append_drill(text, g, &guidance::DrillDepth::to_exit_mm);
-  } else {
-    text.append(18, ',');
-  }
+  const auto append_of_guide = [&](std::initializer_list<double> values) {
+    for (const double value : values) {
+      if (g.is_valid())
+        append_number(text, value);
+      else
+        text += ',';
+    }
+  };
+  append_of_guide({g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm,
+                   g.offset_proximal_mm, g.depth_mm});
+  append_drill(text, g, &guidance::DrillDepth::remaining_mm);
+  append_of_guide({g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(), g.guide_point_mm.y(),
+                   g.guide_point_mm.z(), g.guide_direction.x(), g.guide_direction.y(), g.guide_direction.z(),
+                   g.offset_lateral_mm});
+  append_drill(text, g, &guidance::DrillDepth::depth_mm);
+  append_drill(text, g, &guidance::DrillDepth::to_exit_mm);
   text += '\n';
 }
 

@@ -49,6 +49,8 @@ std::string what_of(const JournalEntry& entry) {
       return "registration confirmed";
     case JournalKind::Verified:
       return "registration verified";
+    case JournalKind::VerificationLost:
+      return "verification lost";
     case JournalKind::VerificationSkipped:
       return "verification skipped";
     case JournalKind::TimeOutConfirmed:

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "planning/geometry/error.h"
@@ -15,6 +16,19 @@ tunnels::Tunnel plan() {
   tunnel.direction = Eigen::Vector3d(-1, 0.2, 0.5).normalized();
   return tunnel;
 }
+
+// Frames at 60 a second, or as many as are asked for.
+class Frames {
+ public:
+  explicit Frames(double per_second = 60) : step_ns_(std::llround(1e9 / per_second)) {}
+  void add(DrillEvidence& evidence, GuidanceNumbers numbers) {
+    numbers.timestamp_ns = now_ns_ += step_ns_;
+    evidence.add(numbers);
+  }
+
+ private:
+  std::int64_t step_ns_, now_ns_ = 0;
+};
 
 // A guide whose end stands `depth_mm` beyond the entry along the plan, on the line through `entry`.
 GuidanceNumbers guide_at(double depth_mm, const Eigen::Vector3d& entry, const Eigen::Vector3d& direction) {
@@ -38,11 +52,12 @@ TEST(DrillEvidence, FindsTheAxisOfTheGuideOnTheBone) {
   const Eigen::Vector3d entry = plan().entry_mm + plan().direction.unitOrthogonal() * 1.5;
   const Eigen::Vector3d direction = (plan().direction + Eigen::Vector3d(0, 0.03, 0.01)).normalized();
   DrillEvidence evidence(plan());
+  Frames frames;
   for (double depth = -10; depth < -0.5; depth += 0.5)
-    evidence.add(guide_at(depth, entry + Eigen::Vector3d(1, 1, 1), direction));
+    frames.add(evidence, guide_at(depth, entry + Eigen::Vector3d(1, 1, 1), direction));
   for (int i = 0; i < 60; ++i)
-    evidence.add(
-        guide_at(0.2, entry + Eigen::Vector3d(noise(random), noise(random), noise(random)), direction));
+    frames.add(evidence, guide_at(0.2, entry + Eigen::Vector3d(noise(random), noise(random), noise(random)),
+                                  direction));
   const DrillEvidenceSummary summary = evidence.summary();
   ASSERT_TRUE(summary.is_usable()) << to_text(summary.outcome);
   EXPECT_FALSE(summary.is_of_drill);
@@ -58,8 +73,9 @@ TEST(DrillEvidence, FindsTheAxisOfTheGuideOnTheBone) {
 // A guide that hovered, however long and however well aimed, drilled nothing that anybody saw.
 TEST(DrillEvidence, Hazard29TheGuideNeverTouchedTheBone) {
   DrillEvidence evidence(plan());
+  Frames frames;
   EXPECT_EQ(evidence.summary().outcome, EvidenceOutcome::NoGuidance);
-  for (int i = 0; i < 500; ++i) evidence.add(guide_at(-4, plan().entry_mm, plan().direction));
+  for (int i = 0; i < 500; ++i) frames.add(evidence, guide_at(-4, plan().entry_mm, plan().direction));
   EXPECT_EQ(evidence.summary().outcome, EvidenceOutcome::NeverTouched);
   EXPECT_NEAR(evidence.summary().nearest_mm, 4, 1e-9);
 }
@@ -67,34 +83,67 @@ TEST(DrillEvidence, Hazard29TheGuideNeverTouchedTheBone) {
 // As deep as the bone but 9 mm beside the entry: the plane through the entry is not bone.
 TEST(DrillEvidence, Hazard29DeepEnoughBesideTheEntryIsNoEvidence) {
   DrillEvidence evidence(plan());
+  Frames frames;
   const Eigen::Vector3d beside = plan().entry_mm + 9 * plan().direction.unitOrthogonal();
-  for (int i = 0; i < 500; ++i) evidence.add(guide_at(0, beside, plan().direction));
+  for (int i = 0; i < 500; ++i) frames.add(evidence, guide_at(0, beside, plan().direction));
   EXPECT_EQ(evidence.summary().outcome, EvidenceOutcome::BesideEntry);
 }
 
 // A guide's end 20 mm inside the bone is not where a guide can be.
 TEST(DrillEvidence, Hazard29AGuideInsideTheBoneIsNoEvidence) {
   DrillEvidence evidence(plan());
-  for (int i = 0; i < 500; ++i) evidence.add(guide_at(20, plan().entry_mm, plan().direction));
+  Frames frames;
+  for (int i = 0; i < 500; ++i) frames.add(evidence, guide_at(20, plan().entry_mm, plan().direction));
   EXPECT_EQ(evidence.summary().outcome, EvidenceOutcome::NeverTouched);
 }
 
-// A third of a second on the bone is a touch; what is not valid does not count.
+// A third of a second on the bone is a touch, and half a second of standing there is not, however many
+// pictures a second there are; what is not valid does not count.
 TEST(DrillEvidence, Hazard29AShortTouchIsNoEvidence) {
+  for (const double per_second : {120.0, 60.0, 30.0, 10.0}) {
+    SCOPED_TRACE(per_second);
+    DrillEvidence evidence(plan());
+    Frames frames(per_second);
+    const GuidanceNumbers stands = guide_at(0, plan().entry_mm, plan().direction);
+    GuidanceNumbers lost = stands;
+    lost.state = GuidanceState::GuideLost;
+    frames.add(evidence, lost);
+    const int third = static_cast<int>(per_second / 3), rest = static_cast<int>(std::ceil(per_second / 5));
+    for (int i = 0; i < third; ++i) frames.add(evidence, stands);
+    for (int i = 0; i < 500; ++i) frames.add(evidence, lost);
+    EXPECT_EQ(evidence.summary().outcome, EvidenceOutcome::TooShort);
+    EXPECT_EQ(evidence.summary().pose_count, third);
+    for (int i = 0; i < rest; ++i) frames.add(evidence, stands);
+    EXPECT_TRUE(evidence.summary().is_usable());
+    evidence.clear();
+    EXPECT_EQ(evidence.summary().outcome, EvidenceOutcome::NoGuidance);
+  }
+}
+
+// Where it was between two pictures that lie far apart nobody saw.
+TEST(DrillEvidence, APoseStandsForNoLongerThanALostPicture) {
   DrillEvidence evidence(plan());
-  for (int i = 0; i < 10; ++i) evidence.add(guide_at(0, plan().entry_mm, plan().direction));
-  GuidanceNumbers lost = guide_at(0, plan().entry_mm, plan().direction);
-  lost.state = GuidanceState::GuideLost;
-  for (int i = 0; i < 500; ++i) evidence.add(lost);
+  Frames frames(0.5);
+  for (int i = 0; i < 4; ++i) frames.add(evidence, guide_at(0, plan().entry_mm, plan().direction));
   EXPECT_EQ(evidence.summary().outcome, EvidenceOutcome::TooShort);
-  EXPECT_EQ(evidence.summary().pose_count, 10);
-  evidence.clear();
+}
+
+// What a record does not say of a drill's place is no place.
+TEST(DrillEvidence, ADrillWhosePlaceIsNotKnownIsNoEvidence) {
+  DrillEvidence evidence(plan());
+  Frames frames;
+  GuidanceNumbers numbers;
+  numbers.state = GuidanceState::GuideLost;
+  numbers.drill = drill_depth(plan(), 30, plan().entry_mm + 10 * plan().direction, plan().direction, 0.3);
+  numbers.drill->lateral_mm = geometry::kNotKnown;
+  for (int i = 0; i < 120; ++i) frames.add(evidence, numbers);
   EXPECT_EQ(evidence.summary().outcome, EvidenceOutcome::NoGuidance);
 }
 
 // A drill that is seen says more than its guide: the axis is its own, the depth its tip's.
 TEST(DrillEvidence, TheDrillsOwnPosesCountFirst) {
   DrillEvidence evidence(plan());
+  Frames frames;
   const Eigen::Vector3d leaning = (plan().direction + Eigen::Vector3d(0, 0.02, 0)).normalized();
   for (int i = 0; i <= 60; ++i) {
     GuidanceNumbers numbers = guide_at(0, plan().entry_mm, plan().direction);
@@ -103,7 +152,7 @@ TEST(DrillEvidence, TheDrillsOwnPosesCountFirst) {
     numbers.drill->sigma_offset_mm = 0.4;
     numbers.drill->sigma_angle_deg = 0.6;
     if (i % 2 == 1) numbers.state = GuidanceState::GuideLost;
-    for (int k = 0; k < 3; ++k) evidence.add(numbers);
+    for (int k = 0; k < 3; ++k) frames.add(evidence, numbers);
   }
   const DrillEvidenceSummary summary = evidence.summary();
   ASSERT_TRUE(summary.is_usable());
@@ -118,7 +167,9 @@ TEST(DrillEvidence, TheDrillsOwnPosesCountFirst) {
 // An hour of it: the store stays as large as it was, and the answer is that of all of the time.
 TEST(DrillEvidence, ThinsItselfOut) {
   DrillEvidence evidence(plan());
-  for (int i = 0; i < 100000; ++i) evidence.add(guide_at(0.001 * (i % 7), plan().entry_mm, plan().direction));
+  Frames frames;
+  for (int i = 0; i < 100000; ++i)
+    frames.add(evidence, guide_at(0.001 * (i % 7), plan().entry_mm, plan().direction));
   const DrillEvidenceSummary summary = evidence.summary();
   ASSERT_TRUE(summary.is_usable());
   EXPECT_LE(summary.pose_count, 2048);

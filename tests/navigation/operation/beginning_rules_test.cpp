@@ -48,6 +48,33 @@ TEST(TimeOut, Hazard20NothingGuidesLiveBeforeItIsConfirmed) {
   EXPECT_EQ(told.find("right femur, patient shown, plan 9.0 mm wide and 30.0 mm long, mesh "), 0U) << told;
 }
 
+// A drill with a marker of its own is seen without its guide, and guides as little.
+TEST(TimeOut, Hazard20NoDrillIsShownOrRememberedBeforeItIsConfirmed) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source(SourceKind::Live);
+  run.start_unconfirmed(source);
+  run.apply(given(run, source));
+  const PlannedTunnel plan = test::phantom_plan();
+  const auto show_drill = [&] {
+    pipeline::FrameResult frame = run.frame();
+    frame.guidance.timestamp_ns = frame.timestamp_ns;
+    frame.guidance.drill =
+        guidance::drill_depth(plan.tunnel, plan.length_mm, plan.tunnel.entry_mm + 20 * plan.tunnel.direction,
+                              plan.tunnel.direction, 0.3);
+    run.show(frame);
+  };
+  for (int i = 0; i < 100; ++i) {
+    show_drill();
+    ASSERT_FALSE(run.state()->frame.guidance.drill);
+  }
+  run.apply(ConfirmTimeOut{true});
+  run.apply(TunnelDrilled{});
+  EXPECT_EQ(run.state()->drilled.outcome, DrilledState::Outcome::NoEvidence) << "it rests on what was before";
+  for (int i = 0; i < 100; ++i) show_drill();
+  EXPECT_TRUE(run.state()->frame.guidance.drill);
+  EXPECT_TRUE(run.state()->drilled.has_evidence);
+}
+
 // Of two tunnels in a bone the record says which one was confirmed.
 TEST(TimeOut, Hazard38TheRecordNamesTheTunnel) {
   PhantomOperation run;

@@ -1,37 +1,20 @@
 // What follows from commands and frames: plan, verification, control point, touches, the tunnel as drilled.
-#include <gtest/gtest.h>
+#include "tests/navigation/operation/operation_rules.h"
 
-#include "tests/navigation/operation/phantom_operation.h"
+#include <gtest/gtest.h>
 
 namespace arthronaut::operation {
 namespace {
 
 using registration::phantom_bone;
 using test::PhantomOperation;
+using OperationRules = test::OperationRules;
 
 PlannedTunnel phantom_plan_moved() {
   PlannedTunnel plan = test::phantom_plan();
   plan.tunnel.entry_mm.x() += 2;
   return plan;
 }
-
-class OperationRules : public ::testing::Test {
- protected:
-  void SetUp() override {
-    const SourceSetup source = test::scripted_source();
-    run_.start(source);
-    run_.show(run_.frame());
-  }
-  void give() {
-    run_.apply(test::true_registration(trial_, run_.operation().now()));
-    ASSERT_EQ(run_.in_force().standing, Standing::Stands);
-  }
-  [[nodiscard]] Eigen::Vector3d on_bone(double dx_mm, double lifted_mm = 0) const {
-    return test::on_bone(trial_, dx_mm, lifted_mm);
-  }
-  experiments::Trial trial_ = phantom_bone().trial(experiments::TrialNoise::Dry, 1);
-  PhantomOperation run_;
-};
 
 // Guidance keeps the plan in force until the edited one is taken over.
 TEST_F(OperationRules, AnEditedPlanIsOfferedAndNotTakenUnasked) {
@@ -92,96 +75,48 @@ TEST_F(OperationRules, ThePlanInForceIsWhatTheRegistrationAimsAt) {
   EXPECT_TRUE(aims().empty()) << "of before there was this";
 }
 
+// What is known of a registration is known at the plan in force: where the next plan's entry lies too far
+// from what was touched, it does not guide there, and guides again where it is known.
+TEST_F(OperationRules, AnotherPlanIsGuidedToAsWellAsTheRegistrationIsKnownThere) {
+  GiveRegistration give = test::true_registration(trial_, run_.operation().now());
+  const Eigen::Vector3d entry_mm = test::phantom_plan().tunnel.entry_mm;
+  // 0.1 mm a coordinate at the entry, and a turn about it of 0.05 rad.
+  geometry::Matrix6d about_entry = geometry::Matrix6d::Zero(), to_origin = geometry::Matrix6d::Identity();
+  about_entry.topLeftCorner<3, 3>().diagonal().setConstant(0.1 * 0.1);
+  about_entry.bottomRightCorner<3, 3>().diagonal().setConstant(0.05 * 0.05);
+  to_origin.topRightCorner<3, 3>() = geometry::cross_matrix(entry_mm);
+  give.registration.covariance = to_origin * about_entry * to_origin.transpose();
+  give.registration.predicted_tre_mm = registration::predicted_error_mm(give.registration, entry_mm);
+  run_.apply(give);
+  ASSERT_EQ(run_.in_force().standing, Standing::Stands);
+  const auto take_over = [&](double away_mm) {
+    PlannedTunnel plan = test::phantom_plan();
+    plan.tunnel.entry_mm.x() += away_mm;
+    run_.apply(OfferPlan{plan});
+    run_.apply(TakePlanOver{});
+    const double turned_mm = std::sqrt(2.0) * 0.05 * away_mm;
+    EXPECT_NEAR(run_.in_force().registration->predicted_tre_mm, std::hypot(std::sqrt(3.0) * 0.1, turned_mm),
+                1e-9);
+  };
+  take_over(4);
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+  take_over(40);
+  EXPECT_EQ(run_.in_force().standing, Standing::NotReliable);
+  EXPECT_FALSE(run_.in_force().registration->reliable);
+  take_over(0);
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+}
+
 // What was seen of the guide was relative to the plan before.
 TEST_F(OperationRules, AnotherPlanForgetsTheEvidenceOfDrilling) {
   give();
-  for (int i = 0; i < 30; ++i) run_.show_guide(0.5);
+  for (int i = 0; i < 40; ++i) run_.show_guide(0.5);
   EXPECT_TRUE(run_.state()->drilled.has_evidence);
   PlannedTunnel edited = test::phantom_plan();
   edited.length_mm += 2;
   run_.apply(OfferPlan{edited});
   run_.apply(TakePlanOver{});
   EXPECT_FALSE(run_.state()->drilled.has_evidence);
-}
-
-// Guidance that begins without a touch that verifies is not refused, and it is recorded, once.
-TEST_F(OperationRules, VerificationIsAskedForAndSkippingItIsRecorded) {
-  give();
-  run_.apply(Draw{false});
-  EXPECT_EQ(run_.state()->verification, Verification::NotYet);
-  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
-  for (int i = 0; i < 3; ++i) run_.show_guide(-5);
-  EXPECT_EQ(run_.state()->verification, Verification::Skipped);
-  EXPECT_EQ(run_.count(JournalKind::VerificationSkipped), 1);
-  EXPECT_NE(run_.last_text(JournalKind::VerificationSkipped), "");
-  give();
-  EXPECT_EQ(run_.state()->verification, Verification::NotYet) << "of another registration nothing was said";
-  run_.apply(SkipVerification{});
-  EXPECT_EQ(run_.state()->verification, Verification::Skipped);
-  EXPECT_EQ(run_.last_text(JournalKind::VerificationSkipped), "asked for");
-  for (const double dx_mm : {0.0, 4.0, -4.0}) run_.touch(on_bone(dx_mm));
-  EXPECT_EQ(run_.state()->verification, Verification::ByTouches);
-  EXPECT_EQ(run_.count(JournalKind::Verified), 1);
-}
-
-// Enough places were touched, one of them 1.2 mm off the bone: no touch more can verify, and none is asked
-// for. More strokes may, and then all of them are registered.
-TEST_F(OperationRules, TouchesThatDenyARegistrationAskForStrokesAndNotForTouches) {
-  give();
-  run_.apply(Draw{false});
-  for (const double dx_mm : {0.0, 4.0}) run_.touch(on_bone(dx_mm));
-  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
-  run_.touch(on_bone(-4, 1.2));
-  ASSERT_EQ(run_.state()->verification, Verification::NotYet);
-  ASSERT_EQ(run_.state()->registration->in_force.standing, Standing::Stands);
-  EXPECT_EQ(run_.state()->next_action, NextAction::RegisterAnew);
-  run_.apply(Draw{true});
-  EXPECT_EQ(run_.state()->next_action, NextAction::GoOnDrawing) << "nothing was drawn yet";
-  run_.show_tip(on_bone(0));
-  EXPECT_EQ(run_.state()->next_action, NextAction::RegisterStrokes);
-  run_.apply(ForgetTouches{});
-  run_.apply(Draw{false});
-  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch) << "the touches were wrong";
-}
-
-TEST_F(OperationRules, SkippingWithoutARegistrationIsNothing) {
-  run_.apply(SkipVerification{});
-  EXPECT_EQ(run_.state()->verification, Verification::NotYet);
-  EXPECT_EQ(run_.count(JournalKind::VerificationSkipped), 0);
-}
-
-// Asked for after registration, after the marker was lost for 30 s, and before drilling when it was touched
-// more than five minutes ago.
-TEST_F(OperationRules, TheControlPointIsDueWhenTheMarkerMayHaveMoved) {
-  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None) << "nothing is registered";
-  give();
-  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::Set);
-  const Eigen::Vector3d control = on_bone(6);
-  run_.touch(control, TouchControlPoint{});
-  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
-
-  run_.wait(29);
-  run_.show(run_.frame());
-  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
-  pipeline::FrameResult lost = run_.frame();
-  lost.camera_from_world.is_valid = false;
-  run_.show(lost);
-  run_.wait(31);
-  run_.show(run_.frame());
-  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckAfterLoss);
-  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
-  run_.apply(SkipVerification{});
-  EXPECT_EQ(run_.state()->next_action, NextAction::CheckControlPoint);
-  run_.touch(control, TouchControlPoint{});
-  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
-
-  run_.show_guide(-8);
-  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None) << "it was touched just now";
-  for (int i = 0; i < 16; ++i) {
-    run_.wait(20);
-    run_.show_guide(-8);
-  }
-  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckBeforeDrilling);
 }
 
 // A guide that is lost for a picture, or for a second, asks for nothing else; one that was put down does.
@@ -211,40 +146,6 @@ TEST_F(OperationRules, WhatIsNextStaysWhileTheGuideIsLostForAMoment) {
   run_.wait(20);
   run_.show(run_.frame());
   EXPECT_EQ(run_.state()->next_action, NextAction::RecordDrilled) << "drilled, and the guide put down";
-}
-
-// Between two sources nobody saw the marker, and how long that was nobody knows: the control point is asked
-// for again before anything guides on.
-TEST_F(OperationRules, Hazard25BetweenTwoSourcesTheMarkerWasOutOfSight) {
-  give();
-  run_.touch(on_bone(6), TouchControlPoint{});
-  run_.apply(SkipVerification{});
-  ASSERT_EQ(run_.state()->control_point_due, ControlPointDue::None);
-  run_.operation().end_source();
-  run_.start(test::scripted_source());
-  run_.show(run_.frame());
-  ASSERT_EQ(run_.in_force().standing, Standing::Stands);
-  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckAfterLoss);
-  EXPECT_EQ(run_.state()->next_action, NextAction::CheckControlPoint);
-  run_.touch(on_bone(6), TouchControlPoint{});
-  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
-}
-
-// A loss that is told once is over with the touch, whatever source it was in.
-TEST_F(OperationRules, ABumpedMarkerEndsGuidanceUntilItIsSaidWhatItWas) {
-  give();
-  const Eigen::Vector3d control = on_bone(6), bump(0, 0, 2.4);
-  run_.touch(control, TouchControlPoint{});
-  run_.touch(control + bump, TouchControlPoint{});
-  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
-  run_.touch(control + bump, TouchControlPoint{});
-  EXPECT_EQ(run_.in_force().standing, Standing::Alarm);
-  EXPECT_FALSE(run_.in_force().registration->reliable);
-  EXPECT_EQ(run_.state()->next_action, NextAction::CheckWorldMarker);
-  EXPECT_EQ(run_.count(JournalKind::Alarm), 1);
-  run_.apply(ForgetTouches{});
-  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
-  EXPECT_EQ(run_.last_text(JournalKind::Alarm), "") << "the alarm is over";
 }
 
 // The surgeon's word without a guide that stood on the bone records nothing.

@@ -95,6 +95,7 @@ class PhantomOperation {
       numbers.guide_direction = state()->plan->tunnel.direction;
       numbers.guide_point_mm = state()->plan->tunnel.entry_mm + depth_mm * numbers.guide_direction;
       numbers.depth_mm = depth_mm;
+      numbers.timestamp_ns = with_guide.timestamp_ns;
     }
     show(with_guide);
   }

@@ -54,7 +54,12 @@ inline pipeline::FrameResult frame_result(std::int64_t index) {
     result.guidance.drill->depth_mm = x;
     result.guidance.drill->remaining_mm = 30 - x;
     result.guidance.drill->to_exit_mm = 31 - x;
+    result.guidance.drill->lateral_mm = 0.2 + x / 60;
     result.guidance.drill->sigma_mm = 0.4;
+    result.guidance.drill->sigma_offset_mm = 0.5 + x / 70;
+    result.guidance.drill->sigma_angle_deg = 0.6 + x / 80;
+    result.guidance.drill->tip_mm = {x / 11, 2, -x};
+    result.guidance.drill->direction = Eigen::Vector3d(3, 1, x).normalized();
   }
   return result;
 }

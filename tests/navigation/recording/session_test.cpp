@@ -67,10 +67,20 @@ TEST_F(Session, ReadsBackExactlyWhatWasRecorded) {
     if (wanted.guidance.is_valid()) {
       EXPECT_EQ(frame.guidance.angle_deg, wanted.guidance.angle_deg);
       EXPECT_EQ(frame.guidance.offset_lateral_mm, wanted.guidance.offset_lateral_mm);
-      ASSERT_EQ(frame.guidance.drill.has_value(), wanted.guidance.drill.has_value());
-      if (wanted.guidance.drill) {
-        EXPECT_EQ(frame.guidance.drill->remaining_mm, wanted.guidance.drill->remaining_mm);
-      }
+    }
+    // With its guide and without.
+    ASSERT_EQ(frame.guidance.drill.has_value(), wanted.guidance.drill.has_value());
+    if (wanted.guidance.drill) {
+      const guidance::DrillDepth &drill = *frame.guidance.drill, &shown = *wanted.guidance.drill;
+      EXPECT_EQ(drill.tip_mm, shown.tip_mm);
+      EXPECT_EQ(drill.direction, shown.direction);
+      EXPECT_EQ(drill.depth_mm, shown.depth_mm);
+      EXPECT_EQ(drill.remaining_mm, shown.remaining_mm);
+      EXPECT_EQ(drill.to_exit_mm, shown.to_exit_mm);
+      EXPECT_EQ(drill.lateral_mm, shown.lateral_mm);
+      EXPECT_EQ(drill.sigma_mm, shown.sigma_mm);
+      EXPECT_EQ(drill.sigma_offset_mm, shown.sigma_offset_mm);
+      EXPECT_EQ(drill.sigma_angle_deg, shown.sigma_angle_deg);
     }
   }
   ASSERT_EQ(session.events().size(), 1u);

@@ -7,6 +7,7 @@
 #include "navigation/recording/operation_record.h"
 #include "navigation/recording/session_database.h"
 #include "tests/navigation/operation/ball_pictures.h"
+#include "tests/navigation/operation/phantom_operation.h"
 #include "tests/navigation/theatre/theatre_sources.h"
 #include "tests/temporary_folder.h"
 
@@ -95,6 +96,59 @@ TEST_F(RerunTest, HowTheBoneLooksIsTheRecordsWordAlone) {
   EXPECT_EQ(due(), ControlPointDue::CannotCheckLooks);
   tell_in_record(session, kMovesAt + 20, operation::kLooksAsItDid);
   EXPECT_EQ(due(), undoubted);
+}
+
+// The drill in one frame, depth_mm beyond the planned entry and 1 mm beside it; its guide is out of view.
+pipeline::FrameResult with_drill(pipeline::FrameResult frame, double depth_mm) {
+  const operation::PlannedTunnel plan = test::phantom_plan();
+  const Eigen::Vector3d tip_mm =
+      plan.tunnel.entry_mm + depth_mm * plan.tunnel.direction + plan.tunnel.direction.unitOrthogonal();
+  frame.guidance.drill =
+      guidance::drill_depth(plan.tunnel, plan.length_mm, tip_mm, plan.tunnel.direction, 0.3);
+  frame.guidance.drill->sigma_offset_mm = 0.4;
+  frame.guidance.drill->sigma_angle_deg = 0.5;
+  frame.guidance.timestamp_ns = frame.timestamp_ns;
+  return frame;
+}
+
+// A drill that is seen without its guide is what "drilled" rests on: from the record alone it is the same
+// drill in every frame, and the same tunnel.
+TEST_F(RerunTest, ADrillWithoutItsGuideIsTheSameFromTheRecordAlone) {
+  test::PhantomOperation run;
+  const operation::SourceSetup source = test::scripted_source();
+  const std::filesystem::path folder = folder_ / "drill";
+  std::filesystem::create_directory(folder);
+  OperationRecord record(folder, run.operation().setup(), source, {}, "");
+  record.add(run.operation().take_journal());
+  run.on_journal = [&](const auto& entries) { record.add(entries); };
+  run.on_frame = [&](const operation::OperationState& state) { record.add_frame(nullptr, state, false); };
+  run.start(source);
+  const auto trial = registration::phantom_bone().trial(experiments::TrialNoise::Dry, 1);
+  run.apply(test::true_registration(trial, operation::provenance_of(run.operation().setup(), source)));
+  for (int i = 0; i <= 120; ++i) run.show(with_drill(run.frame(), std::min(0.3 * i, 25.0)));
+  run.apply(operation::TunnelDrilled{});
+  const auto drilled = run.state()->drilled;
+  ASSERT_TRUE(drilled.tunnel);
+  EXPECT_NEAR(drilled.tunnel->depth_mm.value(), 25, 0.1);
+  run.operation().end_source();
+  record.add(run.operation().take_journal());
+  record.finish({});
+
+  const RecordedSession session(folder);
+  operation::OperationSetup setup = setup_of(session);
+  setup.surface = run.operation().setup().surface;
+  Rerun rerun(setup, Registrations::NotFollowed, nullptr);
+  rerun.start(session);
+  for (const RecordedFrame& frame : session.frames()) {
+    rerun.play_before(frame.index);
+    ASSERT_EQ(operation::digest_of_decisions(*rerun.process(frame)), frame.digests->decisions) << frame.index;
+  }
+  rerun.play_rest();
+  const auto again = rerun.state()->drilled;
+  ASSERT_TRUE(again.tunnel);
+  EXPECT_EQ(again.tunnel->measured.entry_mm, drilled.tunnel->measured.entry_mm);
+  EXPECT_EQ(again.tunnel->measured.direction, drilled.tunnel->measured.direction);
+  EXPECT_EQ(again.tunnel->depth_mm, drilled.tunnel->depth_mm);
 }
 
 }  // namespace

@@ -1,0 +1,189 @@
+// What follows from touches: verification, the control point, an alarm.
+#include "tests/navigation/operation/operation_rules.h"
+
+namespace arthronaut::operation {
+namespace {
+
+using OperationRules = test::OperationRules;
+
+// Guidance that begins without a touch that verifies is not refused, and it is recorded, once.
+TEST_F(OperationRules, VerificationIsAskedForAndSkippingItIsRecorded) {
+  give();
+  run_.apply(Draw{false});
+  EXPECT_EQ(run_.state()->verification, Verification::NotYet);
+  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
+  for (int i = 0; i < 3; ++i) run_.show_guide(-5);
+  EXPECT_EQ(run_.state()->verification, Verification::Skipped);
+  EXPECT_EQ(run_.count(JournalKind::VerificationSkipped), 1);
+  EXPECT_NE(run_.last_text(JournalKind::VerificationSkipped), "");
+  give();
+  EXPECT_EQ(run_.state()->verification, Verification::NotYet) << "of another registration nothing was said";
+  run_.apply(SkipVerification{});
+  EXPECT_EQ(run_.state()->verification, Verification::Skipped);
+  EXPECT_EQ(run_.last_text(JournalKind::VerificationSkipped), "asked for");
+  for (const double dx_mm : {0.0, 4.0, -4.0}) run_.touch(on_bone(dx_mm));
+  EXPECT_EQ(run_.state()->verification, Verification::ByTouches);
+  EXPECT_EQ(run_.count(JournalKind::Verified), 1);
+}
+
+// Enough places were touched, one of them 1.2 mm off the bone: no touch more can verify, and none is asked
+// for. More strokes may, and then all of them are registered.
+TEST_F(OperationRules, TouchesThatDenyARegistrationAskForStrokesAndNotForTouches) {
+  give();
+  run_.apply(Draw{false});
+  for (const double dx_mm : {0.0, 4.0}) run_.touch(on_bone(dx_mm));
+  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
+  run_.touch(on_bone(-4, 1.2));
+  ASSERT_EQ(run_.state()->verification, Verification::NotYet);
+  ASSERT_EQ(run_.state()->registration->in_force.standing, Standing::Stands);
+  EXPECT_EQ(run_.state()->next_action, NextAction::RegisterAnew);
+  run_.apply(Draw{true});
+  EXPECT_EQ(run_.state()->next_action, NextAction::GoOnDrawing) << "nothing was drawn yet";
+  run_.show_tip(on_bone(0));
+  EXPECT_EQ(run_.state()->next_action, NextAction::RegisterStrokes);
+  run_.apply(ForgetTouches{});
+  run_.apply(Draw{false});
+  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch) << "the touches were wrong";
+}
+
+TEST_F(OperationRules, SkippingWithoutARegistrationIsNothing) {
+  run_.apply(SkipVerification{});
+  EXPECT_EQ(run_.state()->verification, Verification::NotYet);
+  EXPECT_EQ(run_.count(JournalKind::VerificationSkipped), 0);
+}
+
+// Asked for after registration, after the marker was lost for 30 s, and before drilling when it was touched
+// more than five minutes ago.
+TEST_F(OperationRules, TheControlPointIsDueWhenTheMarkerMayHaveMoved) {
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None) << "nothing is registered";
+  give();
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::Set);
+  const Eigen::Vector3d control = on_bone(6);
+  run_.touch(control, TouchControlPoint{});
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+
+  run_.wait(29);
+  run_.show(run_.frame());
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+  pipeline::FrameResult lost = run_.frame();
+  lost.camera_from_world.is_valid = false;
+  run_.show(lost);
+  run_.wait(31);
+  run_.show(run_.frame());
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckAfterLoss);
+  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
+  run_.apply(SkipVerification{});
+  EXPECT_EQ(run_.state()->next_action, NextAction::CheckControlPoint);
+  run_.touch(control, TouchControlPoint{});
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+
+  run_.show_guide(-8);
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None) << "it was touched just now";
+  for (int i = 0; i < 16; ++i) {
+    run_.wait(20);
+    run_.show_guide(-8);
+  }
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckBeforeDrilling);
+}
+
+// Between two sources nobody saw the marker, and how long that was nobody knows: the control point is asked
+// for again before anything guides on.
+TEST_F(OperationRules, Hazard25BetweenTwoSourcesTheMarkerWasOutOfSight) {
+  give();
+  run_.touch(on_bone(6), TouchControlPoint{});
+  run_.apply(SkipVerification{});
+  ASSERT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+  run_.operation().end_source();
+  run_.start(test::scripted_source());
+  run_.show(run_.frame());
+  ASSERT_EQ(run_.in_force().standing, Standing::Stands);
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckAfterLoss);
+  EXPECT_EQ(run_.state()->next_action, NextAction::CheckControlPoint);
+  run_.touch(on_bone(6), TouchControlPoint{});
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+}
+
+// A loss that is told once is over with the touch, whatever source it was in.
+TEST_F(OperationRules, ABumpedMarkerEndsGuidanceUntilItIsSaidWhatItWas) {
+  give();
+  const Eigen::Vector3d control = on_bone(6), bump(0, 0, 2.4);
+  run_.touch(control, TouchControlPoint{});
+  run_.touch(control + bump, TouchControlPoint{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+  run_.touch(control + bump, TouchControlPoint{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Alarm);
+  EXPECT_FALSE(run_.in_force().registration->reliable);
+  EXPECT_EQ(run_.state()->next_action, NextAction::CheckWorldMarker);
+  EXPECT_EQ(run_.count(JournalKind::Alarm), 1);
+  run_.apply(ForgetTouches{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+  EXPECT_EQ(run_.last_text(JournalKind::Alarm), "") << "the alarm is over";
+}
+
+// Touched again and found elsewhere, a control point answers nothing: it is asked for once more, before all
+// else, until it lies where it lay or tells an alarm.
+TEST_F(OperationRules, AControlPointThatLiesElsewhereIsAskedForAgain) {
+  give();
+  const Eigen::Vector3d control = on_bone(6), slip(0, 0, 2.4);
+  run_.touch(control, TouchControlPoint{});
+  run_.apply(SkipVerification{});
+  pipeline::FrameResult lost = run_.frame();
+  lost.camera_from_world.is_valid = false;
+  run_.show(lost);
+  run_.wait(31);
+  run_.show(run_.frame());
+  ASSERT_EQ(run_.state()->control_point_due, ControlPointDue::CheckAfterLoss);
+  run_.touch(control + slip, TouchControlPoint{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands) << "the probe may have slipped";
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckShift);
+  run_.show_guide(-5);
+  EXPECT_EQ(run_.state()->next_action, NextAction::CheckControlPoint) << "whatever is in view";
+  run_.touch(control, TouchControlPoint{});
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None) << "it had slipped";
+
+  run_.touch(control + slip, TouchControlPoint{});
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckShift) << "nobody had asked for it";
+  run_.touch(control + slip, TouchControlPoint{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Alarm);
+}
+
+// What touches verified is not verified any more once one lies off the bone, or they are said to be wrong.
+TEST_F(OperationRules, AVerificationEndsWithItsTouches) {
+  give();
+  run_.apply(Draw{false});
+  const auto verify = [&] {
+    for (const double dx_mm : {0.0, 4.0, -4.0}) run_.touch(on_bone(dx_mm));
+    ASSERT_EQ(run_.state()->verification, Verification::ByTouches);
+    ASSERT_TRUE(run_.in_force().is_verified);
+  };
+  verify();
+  run_.touch(on_bone(8, 5));
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands) << "one alone is no alarm";
+  EXPECT_FALSE(run_.in_force().is_verified);
+  EXPECT_EQ(run_.state()->verification, Verification::NotYet);
+  EXPECT_EQ(run_.count(JournalKind::VerificationLost), 1);
+  EXPECT_EQ(run_.state()->next_action, NextAction::RegisterAnew) << "no further touch can verify";
+  run_.apply(ForgetTouches{});
+  EXPECT_EQ(run_.count(JournalKind::VerificationLost), 1) << "that was said";
+  verify();
+  run_.apply(ForgetTouches{});
+  EXPECT_FALSE(run_.in_force().is_verified);
+  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
+  EXPECT_EQ(run_.count(JournalKind::VerificationLost), 2);
+  EXPECT_EQ(run_.count(JournalKind::Verified), 2);
+}
+
+// Two touches off the bone, told as an alarm and then as wrong, leave nothing verified.
+TEST_F(OperationRules, AnAlarmOfTouchesThatIsTakenAwayLeavesNothingVerified) {
+  give();
+  for (const double dx_mm : {0.0, 4.0, -4.0}) run_.touch(on_bone(dx_mm));
+  run_.touch(on_bone(8, 5));
+  run_.touch(on_bone(-8, 5));
+  ASSERT_EQ(run_.in_force().standing, Standing::Alarm);
+  run_.apply(ForgetTouches{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+  EXPECT_FALSE(run_.in_force().is_verified);
+}
+
+}  // namespace
+}  // namespace arthronaut::operation
