@@ -21,10 +21,12 @@ tunnels::Tunnel plan() {
 class Frames {
  public:
   explicit Frames(double per_second = 60) : step_ns_(std::llround(1e9 / per_second)) {}
-  void add(DrillEvidence& evidence, GuidanceNumbers numbers) {
+  // Stamps the numbers.
+  void add(DrillEvidence& evidence, GuidanceNumbers& numbers) {
     numbers.timestamp_ns = now_ns_ += step_ns_;
     evidence.add(numbers);
   }
+  void add(DrillEvidence& evidence, GuidanceNumbers&& numbers) { add(evidence, numbers); }
 
  private:
   std::int64_t step_ns_, now_ns_ = 0;
@@ -104,8 +106,8 @@ TEST(DrillEvidence, Hazard29AShortTouchIsNoEvidence) {
     SCOPED_TRACE(per_second);
     DrillEvidence evidence(plan());
     Frames frames(per_second);
-    const GuidanceNumbers stands = guide_at(0, plan().entry_mm, plan().direction);
-    GuidanceNumbers lost = stands;
+    GuidanceNumbers stands = guide_at(0, plan().entry_mm, plan().direction);
+    GuidanceNumbers lost;
     lost.state = GuidanceState::GuideLost;
     frames.add(evidence, lost);
     const int third = static_cast<int>(per_second / 3), rest = static_cast<int>(std::ceil(per_second / 5));
