@@ -228,6 +228,11 @@ void Operation::Parts::watch_guidance() {
   if (guide_is_seen && !in_view.guide_was_seen) changed = true;
   in_view.guide_was_seen = in_view.guide_was_seen || guide_is_seen;
   if (drilling.evidence) drilling.evidence->add(frame.guidance);
+  // Through the wrong medium it was seen until now, too.
+  if (drilling.evidence && frame.guidance.state == guidance::GuidanceState::WrongMedium) {
+    drilling.evidence->clear();
+    drilling.evidence_is_seen = false;
+  }
   // Summing it up costs more than a frame should.
   if (is_time_to_look(frame.timestamp_ns, drilling.looked_ns)) {
     drilling.evidence_is_seen = drilling.evidence && drilling.evidence->summary().is_usable();

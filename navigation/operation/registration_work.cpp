@@ -29,15 +29,29 @@ RegistrationWork::RegistrationWork(const std::function<SurfaceIndexPtr()>& bone,
     bone_ = bone();
     online_ = std::make_unique<registration::OnlineRegistration>(bone_, options_.online);
     publish([](RegistrationOutcome& outcome) { outcome.bone_is_ready = true; });
-  } catch (const std::exception& error) {  // the reason is an outcome like any other: it stands on the screen
-    online_.reset();
-    publish([&](RegistrationOutcome& outcome) { outcome.failure = error.what(); });
+  } catch (const std::exception& error) {
+    fail(error);
   }
+}
+
+// The reason is an outcome like any other: it stands on the screen.
+void RegistrationWork::fail(const std::exception& error) {
+  online_.reset();
+  publish([&](RegistrationOutcome& outcome) { outcome.failure = error.what(); });
 }
 
 bool RegistrationWork::work_in(const RegistrationRequest& request) {
   ++request_count_;
   if (online_ == nullptr) return false;
+  try {
+    return carry_out(request);
+  } catch (const std::exception& error) {  // of memory that is short, above all
+    fail(error);
+    return true;
+  }
+}
+
+bool RegistrationWork::carry_out(const RegistrationRequest& request) {
   if (const auto* wanted = std::get_if<FitAll>(&request)) {
     fit(*wanted);
     return true;

@@ -76,7 +76,9 @@ class RegistrationWork {
 
  private:
   void publish(const std::function<void(RegistrationOutcome&)>& change);
+  bool carry_out(const RegistrationRequest& request);
   void fit(const FitAll& request);
+  void fail(const std::exception& error);
 
   RegistrationWorkOptions options_;
   SurfaceIndexPtr bone_;

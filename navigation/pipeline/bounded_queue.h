@@ -48,6 +48,10 @@ class BoundedQueue {
     closed_ = true;
     changed_.notify_all();
   }
+  [[nodiscard]] bool is_closed() const {
+    const std::lock_guard lock(mutex_);
+    return closed_;
+  }
   [[nodiscard]] bool is_drained() const {
     const std::lock_guard lock(mutex_);
     return closed_ && messages_.empty();

@@ -159,7 +159,7 @@ void OperationRecord::add(const std::vector<JournalEntry>& entries) {
     if (entry.kind == JournalKind::Plan)
       recorder_->set_plan(entry.plan ? std::optional(entry.plan->tunnel) : std::nullopt,
                           entry.plan ? entry.plan->length_mm : 0);
-    if (entry.achieved) write_achieved(folder_, entry);
+    if (entry.achieved) recorder_->add_file([folder = folder_, entry] { write_achieved(folder, entry); });
     if (const auto event = event_of(entry)) recorder_->add_event(*event);
   }
 }

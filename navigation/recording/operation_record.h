@@ -41,6 +41,9 @@ class OperationRecord {
   void add_event(std::string_view kind, const std::string& text, std::int64_t timestamp_ns) {
     recorder_->add_event({timestamp_ns, std::string(kind), text});
   }
+  // See SessionRecorder.
+  void never_wait() { recorder_->never_wait(); }
+  [[nodiscard]] bool is_stuck() const { return recorder_->is_stuck(); }
   // Throws IoError. The strokes are those that count.
   void finish(const strokes::Curves& strokes);
 

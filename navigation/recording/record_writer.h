@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,6 +32,9 @@ struct RegistrationFile {
   registration::RegistrationSummary registration;
   std::optional<registration::Provenance> of;
 };
+struct OtherFile {
+  std::function<void()> write;
+};
 struct HeaderFile {
   SessionHeader header;
 };
@@ -42,8 +46,9 @@ struct FrameDigests {
   std::int64_t frame = 0;
   SessionRecorder::StateDigests digests;
 };
-using Message = std::variant<pipeline::FrameResult, SessionEvent, KeptPicture, PartBegun, PartEnded,
-                             RegistrationFile, strokes::Curves, FrameDigests, FrameLatency, HeaderFile>;
+using Message =
+    std::variant<pipeline::FrameResult, SessionEvent, KeptPicture, PartBegun, PartEnded, RegistrationFile,
+                 OtherFile, strokes::Curves, FrameDigests, FrameLatency, HeaderFile>;
 
 // One thread at a time. Members throw IoError.
 class RecordWriter {
@@ -64,6 +69,7 @@ class RecordWriter {
   void put(const PartBegun& part);
   void put(const PartEnded& part);
   void put(const RegistrationFile& file);
+  void put(const OtherFile& file) { file.write(); }
   void put(const HeaderFile& file);
   void put(const FrameDigests& frame);
   void put(const FrameLatency& frame);

@@ -213,9 +213,7 @@ std::optional<Resumable> find_resumable(const std::filesystem::path& case_folder
       auto found = resumable_from(session);
       if (found) found->passed_over = std::move(passed_over);
       return found;
-    } catch (const InvalidInput& error) {
-      passed_over.emplace_back(error.what());
-    } catch (const IoError& error) {
+    } catch (const std::runtime_error& error) {  // its files may go away meanwhile, too
       passed_over.emplace_back(error.what());
     }
   }

@@ -111,11 +111,11 @@ struct DiskLimits {
   std::function<std::uintmax_t(const std::filesystem::path& folder)> free_bytes = files::free_bytes_at;
 };
 
-// Writes while the operation goes on. Calls hand over to a writer thread by a bounded, lossless queue (more
-// than a minute of frames; only a disk that hangs for longer makes a call wait); the writer commits at least
-// twice a second. Pictures go through a queue and a thread of their own. An error of the disk reaches the
-// next call, or finish(), as IoError; such a session is never finished, and where the video alone could not
-// be written it says so (kVideoStoppedEvent).
+// Writes while the operation goes on. Calls hand over to a writer thread by a bounded, lossless queue (half a
+// minute of frames at 60 a second); a disk that hangs for longer makes a call wait, or ends the record, as
+// never_wait() says; the writer commits at least twice a second. Pictures go through a queue and a thread of
+// their own. An error of the disk reaches the next call, or finish(), as IoError; such a session is never
+// finished, and where the video alone could not be written it says so (kVideoStoppedEvent).
 //
 // Free space is looked at with every commit. When it runs short the video ends (kVideoStoppedEvent; pictures
 // are then left out and counted), and before the disk is full the whole record: what was made is committed,
@@ -136,6 +136,11 @@ class SessionRecorder {
   void copy_video(const std::filesystem::path& video_or_pattern);
   // Keeps only where the video is.
   void refer_to_video(const std::filesystem::path& video_or_pattern);
+  // From now on no call but finish() and the destructor waits for the disk: the one that finds the queue full
+  // throws IoError, and the record has ended. For live sources, whose guidance waits for nothing.
+  void never_wait();
+  // So it has ended: the disk has taken nothing for long, and finish() and the destructor wait until it does.
+  [[nodiscard]] bool is_stuck() const;
   // How append_picture() keeps them: without a call, Lossless. Of the source its packets count, and how many
   // pictures a second encoded files say they have, for players. Before the first.
   void keep_pictures(PicturesAs as, const sources::SourceInfo& source = {});
@@ -164,6 +169,8 @@ class SessionRecorder {
   };
   void append_latency(const Latency& latency);
   void add_event(const SessionEvent& event);
+  // A file of the record, written by `write` in the writer's thread, before whatever is told after it.
+  void add_file(std::function<void()> write);
   // What guidance is computed from, from the next frame on.
   void set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm);
   void set_registration(const registration::RegistrationSummary& registration,

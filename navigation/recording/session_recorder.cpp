@@ -20,7 +20,7 @@ namespace arthronaut::recording {
 
 namespace {
 
-constexpr std::size_t kWaitingMessages = 4096;
+constexpr std::size_t kWaitingMessages = 8192;
 constexpr auto kCommitEvery =
     std::chrono::milliseconds(400);  // below the half second that the header promises
 
@@ -100,7 +100,15 @@ struct SessionRecorder::State {
 
   void send(Message message) {
     if (finished) throw InvalidInput(folder, "", "the session is finished: nothing more can be recorded");
-    if (!queue.push(std::move(message))) join_and_report();
+    if (waits) {
+      if (!queue.push(std::move(message))) join_and_report();
+      return;
+    }
+    if (queue.try_push(std::move(message))) return;
+    if (!is_stuck && queue.is_closed()) join_and_report();  // the writer has ended by itself
+    is_stuck = true;
+    queue.close();
+    throw IoError(folder, "recording stopped: the disk has taken nothing for too long");
   }
 
   void join_and_report() {
@@ -172,7 +180,8 @@ struct SessionRecorder::State {
   std::thread worker;
   std::exception_ptr error;
   std::atomic<bool> video_stopped = false;
-  bool video_failed = false;  // the disk did not take it; said to the caller
+  bool video_failed = false;            // the disk did not take it; said to the caller
+  bool waits = true, is_stuck = false;  // for the disk
   bool out_of_space = false;  // why there is an error: all was kept; the writer thread's until it has ended
   PictureWriterOptions keeping;
   std::optional<PictureWriter> pictures;
@@ -214,6 +223,12 @@ void SessionRecorder::refer_to_video(const std::filesystem::path& video_or_patte
   const std::string name = std::filesystem::absolute(video_or_pattern).string();
   state_->rewrite_header([&](SessionHeader& header) { header.video = name; });
 }
+
+void SessionRecorder::never_wait() { state_->waits = false; }
+
+bool SessionRecorder::is_stuck() const { return state_->is_stuck; }
+
+void SessionRecorder::add_file(std::function<void()> write) { state_->send(OtherFile{std::move(write)}); }
 
 void SessionRecorder::keep_pictures(PicturesAs as, const sources::SourceInfo& source) {
   state_->keeping = {.as = as, .packets = source.packets, .frames_per_second = source.frames_per_second};
@@ -274,6 +289,7 @@ void SessionRecorder::set_curves(const strokes::Curves& curves) { state_->send(c
 void SessionRecorder::finish() {
   State& s = *state_;
   if (s.finished) return;
+  s.waits = true;
   // What pictures still wait is told to the writer of the record, which ends after them.
   std::exception_ptr video_error;
   try {
@@ -298,7 +314,7 @@ void SessionRecorder::finish() {
                   "was moved or deleted while it was being recorded; the end of the record is missing");
   s.formats.finish();
   if (video_error) std::rethrow_exception(video_error);
-  if (s.video_failed) return;  // said at the call that met it; such a record is not finished
+  if (s.video_failed || s.is_stuck) return;  // said at the call that met it; such a record is not finished
   s.cover_to_end();
   s.database.execute("INSERT INTO ending VALUES(1)");
   s.database.seal();

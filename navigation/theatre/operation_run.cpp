@@ -71,6 +71,7 @@ void OperationRun::begin_record() {
     const std::filesystem::path folder = make_session_folder_();
     record_ = std::make_unique<recording::OperationRecord>(folder, operation_.setup(), theatre_source_.setup,
                                                            source_->info(), continues_, pictures_as_);
+    if (theatre_source_.setup.kind == sources::SourceKind::Live) record_->never_wait();
     session_folder_ = folder;
     continues_ = folder.filename().string();
     record_->add(std::exchange(early_, {}));
@@ -88,6 +89,7 @@ void OperationRun::write(const What& what) {
     what(*record_);
   } catch (const std::runtime_error& error) {
     record_trouble_ = error.what();
+    if (record_->is_stuck()) stuck_.take(std::move(record_));
     record_.reset();
   }
 }

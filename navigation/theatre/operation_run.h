@@ -18,6 +18,7 @@
 #include "navigation/theatre/registration_service.h"
 #include "navigation/theatre/source_watch.h"
 #include "navigation/tracker/pose_source.h"
+#include "navigation/worker/letting_go.h"
 
 namespace arthronaut::theatre {
 
@@ -127,6 +128,7 @@ class OperationRun {
   MakeSessionFolder make_session_folder_;
   TheatreSource theatre_source_;
   std::unique_ptr<pipeline::PrefetchedSource> source_;
+  worker::LettingGo stuck_;  // records whose disk takes nothing: guidance does not wait for their end
   std::unique_ptr<recording::OperationRecord> record_;
   std::filesystem::path session_folder_;
   std::vector<operation::JournalEntry> early_;  // from before the first source
