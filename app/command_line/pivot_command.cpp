@@ -107,7 +107,8 @@ void calibrate_tip(Context& context, const PivotArguments& arguments) {
     auto values = nlohmann::ordered_json::array();
     for (int i = 0; i < 9; ++i) values.push_back(error(i / 3, i % 3));
     document["tip_covariance_mm2"] = std::move(values);  // as tools.json keeps it
-    document["half_change_mm"] = summary.half_change_mm;
+    document["half_change_mm"] = summary.half_change_mm < 0 ? nlohmann::ordered_json()
+                                                            : nlohmann::ordered_json(summary.half_change_mm);
     document["pivot_mm"] = files::to_json(summary.pivot_in_fixed_mm);
   }
   files::write_json(arguments.output, document);

@@ -34,7 +34,8 @@ nlohmann::ordered_json json_of(const images::ImageSeries& series) {
           {"description", series.description},
           {"images", series.image_count},
           {"size", {series.size.x(), series.size.y(), series.size.z()}},
-          {"spacing_mm", files::to_json(series.spacing_mm)},
+          {"spacing_mm",
+           series.spacing_mm.minCoeff() > 0 ? files::to_json(series.spacing_mm) : nlohmann::ordered_json()},
           {"readable", series.is_readable()},
           {"wrong", std::move(wrong)},
           {"files", std::move(files)}};

@@ -31,8 +31,11 @@ std::vector<Row> tip_rows(const tools::PivotCalibrationSummary& tip) {
                          at_most(limits.max_sigma_mm, 2)));
   rows.push_back(limited("Bias by noise", tip.bias_mm <= limits.max_bias_mm, hundredths(tip.bias_mm) + " mm",
                          at_most(limits.max_bias_mm, 1)));
-  rows.push_back(limited("First half against second", tip.half_change_mm <= limits.max_half_change_mm,
-                         hundredths(tip.half_change_mm) + " mm", at_most(limits.max_half_change_mm, 2)));
+  const bool is_compared = tip.half_change_mm >= 0;
+  rows.push_back(limited("First half against second",
+                         is_compared && tip.half_change_mm <= limits.max_half_change_mm,
+                         is_compared ? hundredths(tip.half_change_mm) + " mm" : "too few poses",
+                         at_most(limits.max_half_change_mm, 2)));
   rows.push_back({Severity::Quiet, "Left out",
                   std::to_string(tip.pose_count - tip.inlier_count) + " of " +
                       std::to_string(tip.pose_count) + " poses"});

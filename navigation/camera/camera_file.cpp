@@ -17,20 +17,6 @@ namespace {
 constexpr std::string_view kFormat = "arthronaut.camera";
 constexpr int kVersion = 1;
 
-// "medium" is a word or a number.
-double read_medium(const files::JsonObject& root) {
-  if (root.is_number("medium")) {
-    const double index = root.number("medium");
-    if (!(index >= 0.9 && index <= 2)) root.fail("medium", "a refractive index must lie in [0.9, 2]");
-    return index;
-  }
-  try {
-    return refractive_index_from_text(root.text("medium"));
-  } catch (const InvalidInput&) {
-    root.fail("medium", "must be air, water, saline or a refractive index");
-  }
-}
-
 nlohmann::ordered_json medium_to_json(double index) {
   const std::string text = medium_to_text(index);
   if (text == "air" || text == "water" || text == "saline") return text;
@@ -66,7 +52,7 @@ CalibrationRecord read_camera_file(const std::filesystem::path& file) {
       ((size - Eigen::Vector2d::Ones()) - c.boundary.center_px).minCoeff() < 0)
     boundary.fail("center_px", "must lie in the image");
   c.boundary.radius_px = boundary.positive_number("radius_px");
-  c.refractive_index = read_medium(root);
+  c.refractive_index = refractive_index_from(root, "medium");
   if (root.has("covariance")) c.covariance = files::read_covariance(root, "covariance", 6);
   if (root.has("rms_px")) record.rms_px = root.number("rms_px");
   if (root.has("date_utc")) record.date_utc = root.text("date_utc");

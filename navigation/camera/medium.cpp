@@ -2,9 +2,9 @@
 
 #include <array>
 #include <charconv>
-#include <sstream>
 #include <utility>
 
+#include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::camera {
@@ -27,13 +27,27 @@ double refractive_index_from_text(std::string_view medium) {
   return index;
 }
 
+double refractive_index_from(const files::JsonObject& json, std::string_view key) {
+  if (json.is_number(key)) {
+    const double index = json.number(key);
+    if (!(index >= 0.9 && index <= 2)) json.fail(key, "a refractive index must lie in [0.9, 2]");
+    return index;
+  }
+  try {
+    return refractive_index_from_text(json.text(key));
+  } catch (const InvalidInput&) {
+    json.fail(key, "must be air, water, saline or a refractive index");
+  }
+}
+
 std::string medium_to_text(double refractive_index) {
   for (const auto& [name, index] : kNamed) {
     if (refractive_index == index) return std::string(name);
   }
-  std::ostringstream text;
-  text << refractive_index;
-  return text.str();
+  // As short as it can be and still be read back as the same number: files hold it, and compare it.
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), refractive_index);
+  return {text.data(), end};
 }
 
 }  // namespace arthronaut::camera

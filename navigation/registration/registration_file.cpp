@@ -21,6 +21,8 @@ RegistrationSummary summary_from(const files::JsonObject& document) {
     summary.marker_from_bone = document.rigid_transform("marker_from_bone");
     summary.rms_mm = document.number("rms_mm");
     summary.predicted_tre_mm = document.number("predicted_tre_mm");
+    for (const char* key : {"rms_mm", "predicted_tre_mm"})
+      if (document.number(key) < 0) document.fail(key, "must not be negative");
   }
   summary.inlier_fraction = document.number("inlier_fraction");
   summary.point_count = document.int32("point_count");
@@ -59,11 +61,15 @@ nlohmann::ordered_json to_json(const Provenance& of) {
 Provenance provenance_from(const files::JsonObject& json) {
   Provenance of;
   of.mesh_sha256 = json.text("mesh_sha256");
-  of.bone = bones::bone_kind_from_text(json.text("bone"));
+  try {
+    of.bone = bones::bone_kind_from_text(json.text("bone"));
+  } catch (const InvalidInput& error) {
+    json.fail("bone", error.what());
+  }
   of.world_marker_id = json.int32("marker_id");
   of.camera = json.text("camera");
   of.tools = json.text("tools");
-  of.refractive_index = camera::refractive_index_from_text(json.text("medium"));
+  of.refractive_index = camera::refractive_index_from(json, "medium");
   const auto source = sources::source_kind_from_text(json.text("source"));
   if (!source) json.fail("source", "must be live, recording or simulation");
   of.source = *source;

@@ -89,6 +89,7 @@ class Navigation {
     const operation::OperationStatePtr state = run_.state_of_frame();
     const pipeline::FrameResult& frame = state->frame;
     summary_.statistics.add(frame, frame.processing_ms);
+    world_was_seen_ = world_was_seen_ || frame.world_is_seen();
     summary_.frames_with_tip += frame.tip_is_valid ? 1 : 0;
     summary_.last_state = frame.guidance.state;
     summary_.frames_registered += state->registration->in_force.standing == operation::Standing::Stands;
@@ -185,11 +186,14 @@ class Navigation {
                                : "there is no bone to register the strokes to");
     } else if (summary_.standing != Standing::Stands) {
       reasons = summary_.registration->reasons;
+    } else if (!world_was_seen_) {
+      reasons.emplace_back("the world marker was seen in no frame: nothing was navigated");
     }
   }
 
   const NavigationObserver& observer_;
   const bool is_outside_;
+  bool world_was_seen_ = false;
   OperationRun run_;
   NavigationSummary summary_;
   SourceTrouble trouble_ = SourceTrouble::None;

@@ -167,12 +167,13 @@ double predicted_bias_mm(const PivotCalibrationSummary& summary) {
   return 2 * length * noise_rad * noise_rad / std::max(1 - m * m, 1e-9);
 }
 
+// Below 0: one half alone does not tell a tip.
 double half_change_mm(const std::vector<Pose>& poses, const std::vector<double>& weights) {
   std::vector<double> first(weights), second(weights);
   const std::size_t middle = weights.size() / 2;
   for (std::size_t i = 0; i < weights.size(); ++i) (i < middle ? second : first)[i] = 0;
   const auto a = fit_tip(poses, first), b = fit_tip(poses, second);
-  if (!a || !b) return 1e3;
+  if (!a || !b) return -1;
   return std::max((a->tip - b->tip).norm(), (a->pivot - b->pivot).norm());
 }
 
@@ -210,6 +211,8 @@ void judge(const PivotCalibrationOptions& options, PivotCalibrationSummary& summ
            files::format("noise shortens the tip by about %.2f mm, at most %.2f mm allowed", summary.bias_mm,
                          options.max_bias_mm));
   }
+  if (summary.half_change_mm < 0)
+    refuse(Outcome::TipUncertain, "too few poses to compare the two halves of the motion");
   if (summary.half_change_mm > options.max_half_change_mm) {
     refuse(Outcome::TipUncertain,
            files::format("the two halves of the motion differ by %.2f mm, at most %.2f mm allowed",

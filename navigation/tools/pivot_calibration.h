@@ -54,7 +54,8 @@ struct PivotCalibrationSummary {
   Eigen::Matrix3d tip_covariance_mm2 = Eigen::Matrix3d::Zero();  // in the tool frame
   double rms_mm = -1;                                            // 3D residual of the inliers
   double cone_deg = 0;                                           // half-angle, see the options
-  double sigma_mm = -1, bias_mm = -1, half_change_mm = -1;
+  double sigma_mm = -1, bias_mm = -1;
+  double half_change_mm = -1;  // below 0: not known, since one half alone does not tell a tip
   int pose_count = 0, inlier_count = 0, distinct_count = 0;
   std::vector<bool> is_inlier;  // one for each pose
   // How the shaft was tilted in each pose from its mean direction, about two fixed axes: the cone as it

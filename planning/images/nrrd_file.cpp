@@ -1,4 +1,5 @@
 #include <cmath>
+#include <optional>
 
 #include "planning/geometry/error.h"
 #include "planning/images/volume_bytes.h"
@@ -178,8 +179,27 @@ void merge_layers(Volume& volume, const std::filesystem::path& file, std::size_t
   volume.notes.push_back("segments that overlap were laid over each other, the last on top");
 }
 
+// Of origin and directions. Without a word of it millimetres, as everywhere in medicine; so, too, where a
+// unit is not told ("", "???").
+double mm_per_unit(const std::filesystem::path& file, const std::string& space_units) {
+  static const std::map<std::string, double> kLengths{{"um", 1e-3}, {"mm", 1}, {"cm", 10},
+                                                      {"m", 1000},  {"", 1},   {"???", 1}};
+  std::optional<double> mm;
+  for (std::size_t at = space_units.find('"'); at != std::string::npos;) {
+    const std::size_t end = space_units.find('"', at + 1);
+    if (end == std::string::npos) throw InvalidInput(file, "space units", "a quotation mark is missing");
+    const auto unit = kLengths.find(trimmed(lower_case(space_units.substr(at + 1, end - at - 1))));
+    if (unit == kLengths.end() || unit->second != mm.value_or(unit->second))
+      throw InvalidInput(file, "space units", "must be one length for all axes: um, mm, cm or m");
+    mm = unit->second;
+    at = space_units.find('"', end + 1);
+  }
+  return mm.value_or(1);
+}
+
 void read_axes(const std::filesystem::path& file, const Header& header, Volume& volume) {
-  const Eigen::Vector3d signs = lps_from_space(file, header.field("space"));
+  const Eigen::Vector3d scaled_signs =
+      lps_from_space(file, header.field("space")) * mm_per_unit(file, header.field("space units"));
   std::string text = header.field("space directions");
   if (lower_case(text).starts_with("none")) text.erase(0, 4);
   const auto directions = numbers_of(file, "space directions", text);
@@ -189,9 +209,10 @@ void read_axes(const std::filesystem::path& file, const Header& header, Volume& 
   if (origin.size() != 3) throw InvalidInput(file, "space origin", "must hold 3 numbers");
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 0; i < 3; ++i) {
-      volume.lps_from_index.linear()(i, axis) = signs[i] * directions[static_cast<std::size_t>(3 * axis + i)];
+      volume.lps_from_index.linear()(i, axis) =
+          scaled_signs[i] * directions[static_cast<std::size_t>(3 * axis + i)];
     }
-    volume.lps_from_index.translation()[axis] = signs[axis] * origin[static_cast<std::size_t>(axis)];
+    volume.lps_from_index.translation()[axis] = scaled_signs[axis] * origin[static_cast<std::size_t>(axis)];
   }
 }
 

@@ -21,9 +21,11 @@ TEST(Medium, RefusesWhatIsNoMedium) {
 }
 
 TEST(Medium, TextRoundTrips) {
-  for (const char* text : {"air", "water", "saline", "1.336"}) {
+  for (const char* text : {"air", "water", "saline", "1.336", "1.33451234"}) {
     EXPECT_EQ(medium_to_text(refractive_index_from_text(text)), text);
   }
+  const double third = 4.0 / 3;
+  EXPECT_EQ(refractive_index_from_text(medium_to_text(third)), third);
 }
 
 }  // namespace arthronaut::camera

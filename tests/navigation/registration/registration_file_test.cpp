@@ -43,6 +43,38 @@ TEST(RegistrationFile, WhatItIsOfComesBack) {
   EXPECT_FALSE(read_registration_record(folder / "plain.json").of) << "it does not say";
 }
 
+// However many digits the medium has, what was registered in it is of it.
+TEST(RegistrationFile, TheMediumComesBackToTheLastDigit) {
+  const test::TemporaryFolder folder;
+  const Provenance of{"ab12",     bones::BoneKind::Femur,        0, 0, "", "",
+                      1.33451234, sources::SourceKind::Recording};
+  write_registration_file(folder / "registration.json", some_registration(), &of);
+  const RegistrationRecord record = read_registration_record(folder / "registration.json");
+  EXPECT_EQ(record.of.value().refractive_index, of.refractive_index);
+}
+
+// What is wrong with it is said with the file and the place; a medium may be a number.
+TEST(RegistrationFile, WhatItIsOfIsRefusedWithItsPlace) {
+  const test::TemporaryFolder folder;
+  const Provenance of{"ab12", bones::BoneKind::Femur, 0, 0, "", "", 1.333, sources::SourceKind::Live};
+  const std::filesystem::path file = folder / "registration.json";
+  const auto refusal_of = [&](const std::string& was, const std::string& is) -> std::string {
+    write_registration_file(file, some_registration(), &of);
+    std::string text = files::read_text(file);
+    text.replace(text.find(was), was.size(), is);
+    files::write_atomically(file, text);
+    try {
+      EXPECT_EQ(read_registration_record(file).of.value().refractive_index, 1.333);
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal_of("\"water\"", "1.333"), "");
+  EXPECT_EQ(refusal_of("\"water\"", "\"watr\"").find(file.string() + ": of.medium: "), 0U);
+  EXPECT_EQ(refusal_of("\"femur\"", "\"fibula\"").find(file.string() + ": of.bone: "), 0U);
+}
+
 // A kind of source that does not exist must not pass for a real one.
 TEST(RegistrationFile, ABrokenOfIsRefused) {
   const test::TemporaryFolder folder;

@@ -77,9 +77,23 @@ TEST_F(NavigateSource, CountsPicturesThatShowedTheBoneWhereItLay) {
   EXPECT_EQ(summary.frames_registered, kPictures);
   EXPECT_EQ(registered, kPictures);
   EXPECT_EQ(summary.frames_bone_seen, seen);
+  EXPECT_TRUE(summary.reasons.empty());
   // Looked at for a second before anything is said, with 15 pictures a second.
   EXPECT_GT(seen, kPictures / 2);
   EXPECT_LT(seen, kPictures - 14);
+}
+
+// With a registration and a bone that is in no picture nothing was navigated, and nothing is called a
+// success.
+TEST_F(NavigateSource, SaysThatTheWorldMarkerWasInNoPicture) {
+  NavigateOptions blind = options(sources::SourceKind::Recording);
+  const auto trial = registration::phantom_bone().trial(experiments::TrialNoise::Dry, 1);
+  blind.registration =
+      test::true_registration(trial, operation::provenance_of(blind.operation, blind.source));
+  const NavigationSummary summary = navigate_source(pictures(5), blind);
+  ASSERT_EQ(summary.standing, operation::Standing::Stands);
+  ASSERT_EQ(summary.reasons.size(), 1U);
+  EXPECT_NE(summary.reasons.front().find("world marker"), std::string::npos) << summary.reasons.front();
 }
 
 // A later frame than was asked for is the end, before it was worked in.

@@ -122,6 +122,20 @@ TEST(PivotCalibration, RefusesATipThatSlid) {
   EXPECT_FALSE(calibrate_pivot(poses).is_usable());
 }
 
+// Where a half of the motion tells no tip, nothing is compared: no number, and the reason.
+TEST(PivotCalibration, SaysThatTheHalvesOfTooFewPosesCannotBeCompared) {
+  std::vector<RigidTransform> poses = Motion().poses();
+  const std::size_t step = poses.size() / 4;
+  poses = {poses[0], poses[step], poses[2 * step], poses[3 * step]};
+  const auto summary = calibrate_pivot(poses);
+  ASSERT_TRUE(summary.has_tip());
+  EXPECT_LT(summary.half_change_mm, 0);
+  EXPECT_FALSE(summary.is_usable());
+  EXPECT_NE(std::find(summary.reasons.begin(), summary.reasons.end(),
+                      "too few poses to compare the two halves of the motion"),
+            summary.reasons.end());
+}
+
 // Nothing to go by is an outcome, not an exception and not a number.
 TEST(PivotCalibration, RefusesTooFewPosesAndNoMotion) {
   EXPECT_EQ(calibrate_pivot({}).outcome, PivotCalibrationSummary::Outcome::TooFewPoses);

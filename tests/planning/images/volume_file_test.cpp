@@ -53,6 +53,26 @@ TEST(VolumeFile, EveryFormatGivesTheSameVolume) {
   }
 }
 
+// A file that counts in centimetres is as large as it is.
+TEST(VolumeFile, AnNrrdInAnotherUnitIsReadInMillimetres) {
+  const TemporaryFolder folder;
+  const std::string in_mm = test::nrrd(test::oblique_volume(), false, false);
+  const auto with_units = [&](const std::string& units) {
+    std::string text = in_mm;
+    text.insert(text.find("sizes"), "space units: " + units + "\n");
+    write_bytes(folder / "a.nrrd", text);
+    return read_volume(folder / "a.nrrd").lps_from_index.matrix();
+  };
+  const Eigen::Matrix4d mm = with_units(R"("mm" "mm" "mm")");
+  Eigen::Matrix4d cm = with_units(R"("cm" "cm" "cm")");
+  EXPECT_LT((mm - test::oblique_volume().lps_from_index.matrix()).norm(), 1e-3);
+  cm.topRows<3>() /= 10;
+  EXPECT_LT((cm - mm).norm(), 1e-9);
+  EXPECT_EQ(with_units(R"("" "" "")"), mm) << "not told";
+  EXPECT_THROW((void)with_units(R"("mm" "cm" "mm")"), InvalidInput);
+  EXPECT_THROW((void)with_units(R"("in" "in" "in")"), InvalidInput);
+}
+
 TEST(VolumeFile, TruncatedFilesAreRefused) {
   const TemporaryFolder folder;
   for (const auto& [name, contents] : test::all_volume_forms(test::oblique_volume())) {
