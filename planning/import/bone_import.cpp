@@ -9,6 +9,7 @@
 #include "planning/geometry/error.h"
 #include "planning/images/bone_surface.h"
 #include "planning/images/volume_file.h"
+#include "planning/import/bone_labels.h"
 #include "planning/import/cut_check.h"
 #include "planning/import/failure_reason.h"
 #include "planning/import/shape_check.h"
@@ -29,20 +30,10 @@ using Tell = std::function<void(const ImportProgress&)>;
 // Air in a CT; no other modality has values this low that means anything.
 constexpr float kAir_hu = -500;
 
-// The words of a file name, in lower case: runs of letters.
 std::vector<std::string> words_of(const std::filesystem::path& source) {
   std::filesystem::path named = source;
   if (!named.has_filename()) named = named.parent_path();  // "folder/"
-  std::vector<std::string> words(1);
-  for (const char c : named.filename().string()) {
-    const bool is_upper = c >= 'A' && c <= 'Z', is_lower = c >= 'a' && c <= 'z';
-    if (is_upper || is_lower) {
-      words.back() += is_upper ? static_cast<char>(c - 'A' + 'a') : c;
-    } else {
-      words.emplace_back();
-    }
-  }
-  return words;
+  return words_in(named.filename().string());
 }
 
 // The one of two answers whose word occurs, when the other's does not.
@@ -148,36 +139,12 @@ void refuse_without_threshold(const Volume& volume, const std::filesystem::path&
       {.reason = FailureReason::IsNoCt});
 }
 
-std::string word_of(BoneKind kind) { return std::string(bones::to_text(kind)); }
-
 std::string list_of(const std::vector<std::pair<int, std::size_t>>& labels) {
   std::string list;
   for (const auto& [value, count] : labels) {
     if (value != 0) list += (list.empty() ? "" : ", ") + std::to_string(value);
   }
   return list;
-}
-
-// By the names of the segments; a name that stands twice is nobody's.
-std::map<BoneKind, int> labels_by_name(const Volume& volume, std::vector<std::string>& lines) {
-  std::map<BoneKind, int> labels;
-  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
-    std::vector<const Segment*> named;
-    for (const Segment& segment : volume.segments) {
-      const auto words = words_of(segment.name);
-      const std::string word(bones::to_text(kind));
-      const bool is_part = std::any_of(words.begin(), words.end(), [](const std::string& w) {
-        return w.starts_with("cart") || w == "cancellous" || w == "marrow";
-      });
-      if (!is_part && std::any_of(words.begin(), words.end(),
-                                  [&](const std::string& w) { return w.find(word) != std::string::npos; }))
-        named.push_back(&segment);
-    }
-    if (named.size() != 1) continue;
-    labels[kind] = named.front()->label;
-    lines.push_back("segment \"" + named.front()->name + "\" is the " + word_of(kind));
-  }
-  return labels;
 }
 
 // nullopt where the surfaces are the labels' own.
@@ -282,12 +249,17 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
     } else if (!options.labels.empty()) {
       import_labels(images_of_bones, options.labels, options, result, tell);
     } else if (is_label_map && !options.threshold) {
-      const auto named = labels_by_name(volume, result.lines);
+      auto named = labels_by_name(volume, result.lines);
+      if (named.empty() && volume.segments.empty()) {
+        tell({ImportStage::LookingAtBones});
+        named = labels_by_shape(volume, result.lines);
+      }
       if (named.empty() || (options.kind && !named.contains(*options.kind))) {
         throw refusal(
             source,
             "is a label map with the labels " + list_of(labels) +
-                ": say which are the bones, for example --label femur=" + std::to_string(labels[1].first),
+                ": say which are the bones, for example --label femur=" + std::to_string(labels[1].first) +
+                (labels.size() > 2 ? ",tibia=" + std::to_string(labels[2].first) : ""),
             {.reason = FailureReason::NeedsLabels, .labels = found_labels(volume)});
       }
       import_labels(images_of_bones, named, options, result, tell);
