@@ -133,6 +133,9 @@ class Loop {
         carry_out(*request);
       }
     }
+    // What the surgeon said before the case was closed belongs into its record.
+    while (auto request = inbox_.poll())
+      if (const auto* command = std::get_if<operation::Command>(&*request)) take(*command);
   }
 
  private:

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "navigation/recording/session.h"
 #include "tests/navigation/theatre/theatre_sources.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::theatre {
 namespace {
@@ -111,6 +113,32 @@ TEST(LiveOperationRecord, TroubleIsPublished) {
   EXPECT_EQ(live.latest()->phase, Phase::Ended);
   EXPECT_NE(live.latest()->record_trouble.find("disk full"), std::string::npos);
   EXPECT_EQ(live.latest()->operation->frame_count, 4);
+}
+
+// What is said in the moment in which the case is closed is in its record.
+TEST(LiveOperationRecord, HoldsWhatWasSaidAsItWasClosed) {
+  const test::TemporaryFolder folder;
+  constexpr long kSaid = 50;
+  {
+    LiveOptions options;
+    options.operation = test::phantom_setup();
+    options.bone = [] { return registration::phantom_bone().prepared; };
+    options.make_session_folder = [&] { return folder.path(); };
+    LiveOperation live(options, [] {});
+    TheatreSource source = test::plain_source(0, false, SourceKind::Live);
+    source.open = [] { return std::make_unique<SlowSource>(1000, false, 8); };
+    live.start(source);
+    for (int i = 0; i < 2000 && live.latest()->picture == nullptr; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_NE(live.latest()->picture, nullptr);
+    for (long i = 0; i < kSaid; ++i) live.apply(operation::ReadDepthStop{20});
+    live.request_stop();
+  }
+  const recording::RecordedSession session(folder.path());
+  EXPECT_EQ(std::count_if(
+                session.events().begin(), session.events().end(),
+                [](const recording::SessionEvent& event) { return event.kind == recording::kCommandEvent; }),
+            kSaid);
 }
 
 }  // namespace
