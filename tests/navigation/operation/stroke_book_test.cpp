@@ -88,6 +88,10 @@ TEST(StrokeBook, TheTraceOfAnHourOfDrawingIsBounded) {
   const Eigen::Vector3d place = same.points()[1000].position_mm;
   for (int i = 0; i < 1000; ++i) same.add(kHour / 60.0 + i / 60.0, place);
   EXPECT_EQ(same.trace(), before);
+  // What stepped off the screen is there again when it is drawn again.
+  for (int i = 0; i < 20; ++i) wide.add(kHour / 60.0 + i / 60.0, wide.points()[i].position_mm);
+  EXPECT_LT(wide.trace()->back().position_mm.x(), 20 * 0.6);
+  EXPECT_LT(wide.trace()->back().position_mm.y(), 0.6);
 }
 
 }  // namespace
