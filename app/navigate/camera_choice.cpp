@@ -78,7 +78,7 @@ std::optional<LivePictures> CameraChoice::chosen() const {
 
 std::optional<LivePictures> CameraChoice::take_address(std::string typed) {
   const std::size_t first = typed.find_first_not_of(" \t"), last = typed.find_last_not_of(" \t");
-  typed = first == std::string::npos ? "" : typed.substr(first, last - first + 1);
+  typed = first == std::string::npos ? "" : sources::with_small_scheme(typed.substr(first, last - first + 1));
   trouble_.clear();
   try {  // what was typed is answered where it was typed
     if (typed.starts_with(kTracker)) {
@@ -92,8 +92,14 @@ std::optional<LivePictures> CameraChoice::take_address(std::string typed) {
     trouble_ = refused.what();
     return std::nullopt;
   }
-  if (sources::is_stream_address(typed))
+  // One that can't be opened must not end what runs.
+  if (sources::is_stream_address(typed)) {
+    if (const std::string why = sources::why_no_stream(typed); !why.empty()) {
+      trouble_ = sources::shown_address(typed) + ": " + why;
+      return std::nullopt;
+    }
     return LivePictures{sources::shown_address(typed), std::nullopt, typed};
+  }
   trouble_ =
       "No address: rtsp://HOST/PATH, udp://@:PORT, gst:PIPELINE ! appsink, /dev/video0?rate=60, "
       "igtl://TRACKER:PORT";

@@ -124,9 +124,12 @@ std::string SetupView::next_step() const {
 void SetupView::take_typed_path() {
   typed_.is_open = false;
   close_gallery();
+  typed_.text = sources::with_small_scheme(typed_.text);
   std::filesystem::path path = typed_.text;
   const bool is_stream = sources::is_stream_address(typed_.text);
   if (!is_stream && !path.has_filename()) path = path.parent_path();  // "pictures/"
+  if (const std::string why = is_stream ? sources::why_no_stream(typed_.text) : ""; !why.empty())
+    return step().source.refuse(sources::shown_address(typed_.text) + ": " + why);
   step().station->stop();
   if (sources::is_camera_address(typed_.text)) {
     try {

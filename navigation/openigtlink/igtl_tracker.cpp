@@ -13,6 +13,7 @@
 #include "navigation/openigtlink/igtl_reader.h"
 #include "navigation/openigtlink/tracker_connection.h"
 #include "navigation/sources/capture_time.h"
+#include "navigation/sources/frame_source.h"
 #include "navigation/sources/source_line.h"
 #include "navigation/worker/worker.h"
 #include "planning/geometry/error.h"
@@ -157,12 +158,13 @@ class Reading {
 
 }  // namespace
 
-TrackerAddress tracker_address(std::string_view text) {
+TrackerAddress tracker_address(std::string_view typed) {
+  const std::string text = sources::with_small_scheme(std::string(typed));
   const auto fail = [&](const char* why) {
-    throw InvalidInput("\"" + std::string(text) + "\" is no tracker's address (igtl://HOST:PORT): " + why);
+    throw InvalidInput("\"" + text + "\" is no tracker's address (igtl://HOST:PORT): " + why);
   };
   if (!text.starts_with(kScheme)) fail("it does not begin with igtl://");
-  std::string_view rest = text.substr(kScheme.size());
+  std::string_view rest = std::string_view(text).substr(kScheme.size());
   TrackerAddress address;
   const bool is_bracketed = rest.starts_with('[');
   const std::size_t bracket = is_bracketed ? rest.find(']') : 0;

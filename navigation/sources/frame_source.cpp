@@ -6,6 +6,7 @@
 #include "navigation/sources/camera_device.h"
 #include "navigation/sources/camera_modes.h"
 #include "navigation/sources/gstreamer_pipeline.h"
+#include "navigation/sources/libav.h"
 #include "navigation/sources/logged_source.h"
 #include "navigation/sources/network_stream.h"
 #include "navigation/sources/source_files.h"
@@ -63,9 +64,25 @@ std::unique_ptr<FrameSource> open_video(const std::filesystem::path& video_or_pa
   return logged(open_video_file(video_or_pattern, LumaOf::Colours));
 }
 
-bool is_stream_address(std::string_view text) { return text.starts_with(kPipeline) || is_address(text); }
+bool is_stream_address(std::string_view text) {
+  return is_address(text) || with_small_scheme(std::string(text)).starts_with(kPipeline);
+}
 
-std::unique_ptr<FrameSource> open_stream(const std::string& address) {
+std::string with_small_scheme(std::string address) {
+  const std::size_t end = is_address(address) ? address.find("://") : kPipeline.size();
+  std::string small = address;
+  for (std::size_t i = 0; i < std::min(end, small.size()); ++i)
+    small[i] = static_cast<char>(std::tolower(static_cast<unsigned char>(small[i])));
+  return is_address(address) || small.starts_with(kPipeline) ? small : address;
+}
+
+std::string why_no_stream(const std::string& address) {
+  const std::string small = with_small_scheme(address);
+  return small.starts_with(kPipeline) ? "" : why_no_address(small);
+}
+
+std::unique_ptr<FrameSource> open_stream(const std::string& named) {
+  const std::string address = with_small_scheme(named);
   if (address.starts_with(kPipeline))
     return logged(open_gstreamer_pipeline(address.substr(kPipeline.size())));
   return logged(open_network_stream(address));

@@ -72,6 +72,12 @@ class FrameSource {
 [[nodiscard]] std::unique_ptr<FrameSource> open_stream(const std::string& address);
 // Whether text names a stream, by its form alone.
 [[nodiscard]] bool is_stream_address(std::string_view text);
+// As addresses are kept and compared: what stands before "://", or "gst:", in small letters, since a phone
+// and a manual write "Rtsp://" and mean the same. Other text as it is.
+[[nodiscard]] std::string with_small_scheme(std::string address);
+// Why no stream can be opened by this address, without opening anything: nobody knows its kind ("rstp://").
+// Empty where somebody does.
+[[nodiscard]] std::string why_no_stream(const std::string& address);
 
 // As an address or a pipeline may stand on a screen, in a message and in a record: of
 // "rtsp://user:password@host/scope" without what is before the "@", and "***" for a password that is given by

@@ -55,6 +55,14 @@ std::string libav_message(int error) {
   return text;
 }
 
+std::string why_no_address(const std::string& address) {
+  // RTSP is a container to libavformat, and stands on no list of its protocols.
+  const bool is_rtsp = address.starts_with("rtsp://") || address.starts_with("rtsps://");
+  return is_rtsp || avio_find_protocol_name(address.c_str()) != nullptr
+             ? ""
+             : libav_message(AVERROR_PROTOCOL_NOT_FOUND);
+}
+
 double frames_per_second_of(const AVStream& stream) {
   const AVRational rate = stream.avg_frame_rate.num > 0 ? stream.avg_frame_rate : stream.r_frame_rate;
   return rate.num > 0 && rate.den > 0 ? av_q2d(rate) : 0;

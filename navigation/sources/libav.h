@@ -40,6 +40,8 @@ using LibavOutput = std::unique_ptr<AVFormatContext, CloseOutput>;
 
 // "Invalid data found when processing input".
 [[nodiscard]] std::string libav_message(int error);
+// Why libavformat opens no such address, by its kind, in small letters, alone; empty where it may.
+[[nodiscard]] std::string why_no_address(const std::string& address);
 // As the container says, else as it was guessed of the first pictures; 0: neither.
 [[nodiscard]] double frames_per_second_of(const AVStream& stream);
 

@@ -5,7 +5,7 @@
 
 namespace arthronaut::sources {
 
-// As open_stream() of an address.
+// As open_stream() of an address whose kind is in small letters.
 [[nodiscard]] std::unique_ptr<FrameSource> open_network_stream(const std::string& address);
 
 }  // namespace arthronaut::sources

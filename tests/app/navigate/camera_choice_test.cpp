@@ -114,8 +114,20 @@ TEST(CameraChoice, TakesTheAddressOfAStreamAndNothingElse) {
     EXPECT_FALSE(taken->device);
   }
   EXPECT_EQ(choice.take_address(" udp://@:5000 ")->address, "udp://@:5000");
+  EXPECT_EQ(choice.take_address("RTSP://Tower/Scope")->address, "rtsp://Tower/Scope")
+      << "the same stream as in small letters";
   for (const char* typed : {"", "  ", "tower", "/dev/video", "/dev/video0?size=big", "clip.mkv", "://"})
     EXPECT_FALSE(choice.take_address(typed)) << typed;
+}
+
+// A slip of the finger ends nothing that runs: it is answered where it was typed.
+TEST(CameraChoice, RefusesAKindOfAddressThatNobodyKnowsBeforeAnythingIsOpened) {
+  CameraChoice choice;
+  choice.open({}, {});
+  EXPECT_FALSE(choice.take_address("rstp://nurse:secret@tower/scope"));
+  EXPECT_NE(choice.trouble().find("rstp://tower/scope: no kind of address that is known"), std::string::npos)
+      << choice.trouble();
+  EXPECT_TRUE(choice.is_open());
 }
 
 // A tracker's address opens no pictures: it is kept for those that are chosen next, until another is typed or
@@ -126,6 +138,9 @@ TEST(CameraChoice, KeepsTheAddressOfAnOutsideTracker) {
   choice.choose_field();
   EXPECT_TRUE(choice.wants_text());
   EXPECT_FALSE(choice.take_address(" igtl://tower:18944 "));
+  EXPECT_EQ(choice.tracker(), "igtl://tower:18944");
+  EXPECT_EQ(choice.trouble(), "");
+  EXPECT_FALSE(choice.take_address("Igtl://tower:18944"));
   EXPECT_EQ(choice.tracker(), "igtl://tower:18944");
   EXPECT_EQ(choice.trouble(), "");
   for (const char* wrong : {"igtl://tower:port", "igtl://:18944", "igtl://tower:99999"}) {

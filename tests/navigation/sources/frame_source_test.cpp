@@ -45,5 +45,25 @@ TEST(StalledSource, ADeviceFileAndAnAddressAreNamed) {
   EXPECT_THAT(message_of<IoError>([] { (void)open_video("/nowhere/clip.mkv"); }), HasSubstr("no such file"));
 }
 
+// Phones and manuals begin an address with a capital.
+TEST(StreamAddress, IsTheSameWhateverItsLettersAre) {
+  EXPECT_EQ(with_small_scheme("Rtsp://Tower/Scope"), "rtsp://Tower/Scope");
+  EXPECT_EQ(with_small_scheme("GST:videotestsrc ! appsink"), "gst:videotestsrc ! appsink");
+  EXPECT_EQ(with_small_scheme("Clip.mkv"), "Clip.mkv");
+  EXPECT_EQ(with_small_scheme("Gs"), "Gs");
+  EXPECT_TRUE(is_stream_address("Gst:videotestsrc ! appsink"));
+  EXPECT_EQ(kind_of_source("UDP://@:5000"), SourceKind::Live);
+  const std::unique_ptr<FrameSource> opened =
+      open_stream("GST:videotestsrc num-buffers=1 ! video/x-raw,format=BGR ! appsink");
+  EXPECT_NE(opened->next(), nullptr);
+}
+
+TEST(StreamAddress, OfAKindThatNobodyKnowsIsToldWithoutOpening) {
+  for (const char* address : {"rtsp://a/b", "RTSPS://a/b", "udp://@:1", "srt://a:1", "tcp://a:1", "rtp://@:1",
+                              "http://a/b", "gst:videotestsrc ! appsink"})
+    EXPECT_EQ(why_no_stream(address), "") << address;
+  EXPECT_THAT(why_no_stream("rstp://a/b"), HasSubstr("rtsp://, rtsps://, udp://"));
+}
+
 }  // namespace
 }  // namespace arthronaut::sources
