@@ -61,14 +61,17 @@ void read_header(const fs::path& folder, SessionFacts& facts) {
   facts.is_exercise = is_exercise(header);
 }
 
-void read_registration(const fs::path& folder, SessionFacts& facts) {
-  const fs::path file = folder / "registration.json";
+void read_registration_file(const fs::path& file, SessionFacts& facts) {
   if (!fs::exists(file)) return;
   const auto registration = registration::read_registration_file(file);
   facts.registration_is_reliable = registration.has_pose && registration.reliable;
   if (!registration.has_pose) return;
   facts.registration_rms_mm = registration.rms_mm;
   facts.predicted_error_mm = registration.predicted_tre_mm;
+}
+
+void read_registration(const fs::path& folder, SessionFacts& facts) {
+  read_registration_file(folder / "registration.json", facts);
 }
 
 void read_achieved(const fs::path& folder, SessionFacts& facts) {
@@ -94,21 +97,34 @@ void read_record(const fs::path& folder, SessionFacts& facts) {
   Statement events = database.prepare(
       "SELECT timestamp_ns, kind, text FROM events WHERE kind NOT IN ('command', 'outcome', 'plan') ORDER BY "
       "id");
-  bool is_void = false;
+  // What stands for a tunnel is what it was drilled by: once the marker is out, nothing is registered any
+  // more.
+  struct Trust {
+    std::string registration;  // its file
+    bool is_void = false, was_verified = false;
+  };
+  Trust now;
+  std::optional<Trust> drilled_by;
   while (events.step()) {
     const SessionEvent event{events.integer(0), events.text(1), events.text(2)};
     steps.follow(event);
     if (event.kind == kAlarmEvent && !event.text.empty()) ++facts.alarm_count;
-    if (event.kind == kVerifiedEvent) facts.was_verified = true;
-    if (event.kind == kVerificationLostEvent) facts.was_verified = false;
+    if (event.kind == kVerifiedEvent) now.was_verified = true;
+    if (event.kind == kVerificationLostEvent) now.was_verified = false;
     if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent)
-      is_void = facts.was_verified = false;  // what verified the one before says nothing of this one
+      now = {event.text};  // what verified the one before says nothing of this one
     if (event.kind == kVoidEvent) {
-      is_void = true;
-      facts.was_verified = false;
+      now.is_void = true;
+      now.was_verified = false;
     }
+    if (event.kind == kDrilledEvent) drilled_by = now;
+    if (event.kind == kDrilledTakenBackEvent) drilled_by.reset();
   }
-  if (is_void && facts.registration_is_reliable) facts.registration_is_reliable = false;
+  const Trust& counts = drilled_by ? *drilled_by : now;
+  facts.was_verified = counts.was_verified;
+  if (counts.registration != now.registration && !counts.registration.empty())
+    read_registration_file(folder / counts.registration, facts);
+  if (counts.is_void && facts.registration_is_reliable) facts.registration_is_reliable = false;
   steps.fill(facts);
   facts.was_finished = database.prepare("SELECT finished FROM ending").step();
 }

@@ -33,10 +33,18 @@ class SessionFactsTest : public ::testing::Test {
     pipeline::FrameResult frame = test::frame_result(0);
     frame.timestamp_ns = kMinute_ns;
     recorder.append(frame);
+    int registration_count = 0;
     for (const auto& [minutes, kind] : events) {
-      if (kind == kRegistrationEvent) recorder.set_registration(registration_);
+      std::string text = kind == kAlarmEvent ? "the marker was bumped" : "";
+      if (kind == kRegistrationEvent) {
+        recorder.set_registration(registration_);
+        text = "registration_" + std::to_string(++registration_count) + ".json";
+      }
       const auto at = kMinute_ns + static_cast<std::int64_t>(minutes * static_cast<double>(kMinute_ns));
-      recorder.add_event({at, std::string(kind), kind == kAlarmEvent ? "the marker was bumped" : ""});
+      recorder.add_event({at, std::string(kind), text});
+      // As the operation records that the marker was taken out.
+      registration_.has_pose = registration_.reliable = kind != kDrilledEvent;
+      if (kind == kDrilledEvent) registration_.reasons = {"the world marker was placed anew"};
     }
     if (finishes) recorder.finish();
   }
@@ -115,6 +123,15 @@ TEST_F(SessionFactsTest, AVoidRegistrationIsNotReliable) {
   record({{1.0, kRegistrationEvent}, {2.0, kVerifiedEvent}, {3.0, kVoidEvent}});
   EXPECT_EQ(read().registration_is_reliable, false);
   EXPECT_FALSE(read().was_verified);
+}
+
+// The marker is taken out at the end of every operation: what was drilled before rests on what stood then.
+TEST_F(SessionFactsTest, ATunnelCountsByTheRegistrationThatItWasDrilledBy) {
+  record({{1.0, kRegistrationEvent}, {2.0, kVerifiedEvent}, {3.0, kDrilledEvent}, {4.0, kRegistrationEvent}});
+  const library::SessionFacts facts = read();
+  EXPECT_EQ(facts.registration_is_reliable, true);
+  EXPECT_TRUE(facts.was_verified);
+  EXPECT_EQ(facts.predicted_error_mm, 0.6);
 }
 
 TEST_F(SessionFactsTest, WhatVerifiedOneRegistrationDoesNotVerifyTheNext) {
