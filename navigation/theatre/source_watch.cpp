@@ -13,7 +13,9 @@ namespace {
 constexpr std::int64_t kSilence_ns = 300'000'000, kLongestSilence_ns = 1'000'000'000;
 // What is over in a moment is on the screen long enough to be read.
 constexpr std::int64_t kReadable_ns = 2'000'000'000, kSaidAnew_ns = 1'000'000'000;
-constexpr double kFew_ms = 50;  // between pictures; faster ones are late for want of a faster machine
+// Between pictures; faster ones, and those that were older when they came than the next one let them get, are
+// late for want of a faster machine.
+constexpr double kFew_ms = 50;
 // Sources of 30 pictures a second that are sent 60 times repeat half of them, and are none the worse for it.
 constexpr double kTooManyRepeats = 0.6;
 
@@ -41,6 +43,7 @@ bool SourceWatch::set(SourceTrouble trouble, const std::string& words) {
 
 void SourceWatch::shown_until(double age_ms, std::int64_t now_ns) {
   const bool is_too_old = age_ms > late_after_ms_;
+  if (is_too_old) replaced_ms_ = age_ms;
   too_old_ = too_old_ << 1 | std::bitset<6>(is_too_old ? 1 : 0);
   if (is_too_old) slow_ns_ = now_ns;
   is_slow_ = 2 * too_old_.count() >= too_old_.size() || (is_slow_ && now_ns - slow_ns_ < kReadable_ns);
@@ -91,7 +94,7 @@ bool SourceWatch::picture(const pipeline::PictureObservation& view, double guida
     late_said_ns_ = now_ns;
     return set(
         SourceTrouble::Slow,
-        gap_ms_ > kFew_ms
+        gap_ms_ > kFew_ms && 2 * gap_ms_ > replaced_ms_
             ? files::format("%.0f a second are too few: each is too old to guide by before the next one",
                             1000 / gap_ms_)
             : files::format("Each is over %.0f ms old before the next one is shown: end other programs",

@@ -48,6 +48,7 @@ class SourceWatch {
   std::string words_;
   std::int64_t last_picture_ns_ = 0, torn_ns_ = 0, late_ns_ = 0, late_said_ns_ = 0, slow_ns_ = 0;
   double late_ms_ = 0, gap_ms_ = 0;  // between pictures, lately
+  double replaced_ms_ = 0;           // how old one that was too old was when the next one was shown
   bool has_begun_ = false, was_torn_ = false, was_late_ = false, is_slow_ = false;
   std::bitset<6> too_old_;  // of those that were shown last
 };

@@ -250,5 +250,15 @@ TEST_F(SourceWatchTest, ALateScreenNowAndThenIsNoSlowSource) {
   EXPECT_THAT(watch_.words(), HasSubstr("end other programs")) << "pictures come often enough";
 }
 
+// 19 pictures a second that are 80 ms old when they come: twice as many would be too old just as well.
+TEST_F(SourceWatchTest, WhatIsLateByItselfIsNotBlamedOnItsRate) {
+  for (int i = 0; i < 60; ++i) {
+    watch_.shown_until(135, now_ns_);
+    pictures(well_, 53);
+  }
+  EXPECT_EQ(watch_.trouble(), SourceTrouble::Slow);
+  EXPECT_THAT(watch_.words(), HasSubstr("end other programs"));
+}
+
 }  // namespace
 }  // namespace arthronaut::theatre
