@@ -15,6 +15,11 @@ std::string point_text(const Eigen::Vector3d& point) {
 
 std::string at_most(double limit, int decimals) { return "at most " + fixed(limit, decimals); }
 
+// Below 0: a half that tells no tip of its own.
+std::string half_in_words(double change_mm) {
+  return change_mm >= 0 ? hundredths(change_mm) + " mm" : "no tip by one alone";
+}
+
 std::vector<Row> tip_rows(const tools::PivotCalibrationSummary& tip) {
   const tools::PivotCalibrationOptions limits;
   std::vector<Row> rows;
@@ -34,8 +39,7 @@ std::vector<Row> tip_rows(const tools::PivotCalibrationSummary& tip) {
   const bool is_compared = tip.half_change_mm >= 0;
   rows.push_back(limited("First half against second",
                          is_compared && tip.half_change_mm <= limits.max_half_change_mm,
-                         is_compared ? hundredths(tip.half_change_mm) + " mm" : "too few poses",
-                         at_most(limits.max_half_change_mm, 2)));
+                         half_in_words(tip.half_change_mm), at_most(limits.max_half_change_mm, 2)));
   rows.push_back({Severity::Quiet, "Left out",
                   std::to_string(tip.pose_count - tip.inlier_count) + " of " +
                       std::to_string(tip.pose_count) + " poses"});

@@ -211,9 +211,10 @@ void judge(const PivotCalibrationOptions& options, PivotCalibrationSummary& summ
            files::format("noise shortens the tip by about %.2f mm, at most %.2f mm allowed", summary.bias_mm,
                          options.max_bias_mm));
   }
-  if (summary.half_change_mm < 0)
-    refuse(Outcome::TipUncertain, "too few poses to compare the two halves of the motion");
-  if (summary.half_change_mm > options.max_half_change_mm) {
+  if (summary.half_change_mm < 0) {
+    refuse(Outcome::TipUncertain,
+           "one half of the motion alone does not tell where the tip is: tilt to all sides twice");
+  } else if (summary.half_change_mm > options.max_half_change_mm) {
     refuse(Outcome::TipUncertain,
            files::format("the two halves of the motion differ by %.2f mm, at most %.2f mm allowed",
                          summary.half_change_mm, options.max_half_change_mm));
