@@ -204,6 +204,13 @@ std::string advice_for(Measure measure, const ExerciseFacts& facts) {
   return "";
 }
 
+// Nothing is drilled there: what was done without a number is that it was said to be done.
+void tell_of_aiming_blindly(ScorePart& part) {
+  part.reason = "You said that you were done while no number was shown, or a wrong one.";
+  part.advice =
+      "Say that you are done while the numbers stand: without them nothing tells where the guide is.";
+}
+
 ScorePart part_of(const Mark& mark, const ExerciseFacts& facts) {
   ScorePart part;
   part.measure = mark.measure;
@@ -252,6 +259,9 @@ Score score_of(const Exercise& exercise, Level level, const ExerciseFacts& facts
   score.is_done = facts.is_done;
   for (const Mark& mark : exercise.marks) score.parts.push_back(part_of(mark, facts));
   count_how_only_where_reached(exercise.goal, facts, score.parts);
+  for (ScorePart& part : score.parts)
+    if (exercise.goal == Goal::Aim && part.measure == Measure::ActedOnBadData && facts.bad_data_mm > 0)
+      tell_of_aiming_blindly(part);
   double sum = 0;
   for (const ScorePart& part : score.parts) sum += part.points;
   // Whoever stops half-way has made no mistakes either.

@@ -136,6 +136,17 @@ TEST(Score, AdviceTellsGoneNumbersFromWrongOnes) {
 }
 
 // What costs most is said first, three things at most.
+// Where nothing is drilled, nothing is told of millimetres that were, nor of the drill.
+TEST(Score, AimingBlindlyIsToldAsSuch) {
+  ExerciseFacts facts = flawless();
+  facts.bad_data_mm = 2.4;
+  const ScorePart part =
+      part_of(score_of(*find_exercise("aim"), Level::Easy, facts), Measure::ActedOnBadData);
+  EXPECT_EQ(part.points, 0);
+  EXPECT_EQ(part.reason.find("mm"), std::string::npos) << part.reason;
+  EXPECT_EQ(part.advice.find("drill"), std::string::npos) << part.advice;
+}
+
 TEST(Score, AdviceComesByWhatItCosts) {
   ExerciseFacts facts = flawless();
   facts.entry_offset_mm = 4;  // 20 points
