@@ -1,6 +1,7 @@
 #include "app/navigate/finish_words.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "planning/files/format.h"
 
@@ -10,11 +11,17 @@ namespace {
 
 using widgets::Severity;
 
-std::string tunnel_in_words(const FinishedBone& bone) {
-  if (!bone.is_drilled) return "not drilled yet";
-  if (!bone.measured) return "drilled, by the surgeon's word";
-  return bone.measured->depth_mm ? files::format("drilled, %.1f mm deep", *bone.measured->depth_mm)
-                                 : "drilled and recorded; depth not read";
+std::string tunnel_in_words(const FinishedTunnel& tunnel) {
+  if (!tunnel.is_drilled) return "not drilled yet";
+  if (!tunnel.measured) return "drilled, by the surgeon's word";
+  return tunnel.measured->depth_mm ? files::format("drilled, %.1f mm deep", *tunnel.measured->depth_mm)
+                                   : "drilled and recorded; depth not read";
+}
+
+// "Femur tunnel", "Femur AM tunnel".
+std::string name_in_list(std::string name, const char* of_it) {
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return name + of_it;
 }
 
 const FinishedBone* find(const std::vector<FinishedBone>& bones, bones::BoneKind bone, bool is_same) {
@@ -25,28 +32,33 @@ const FinishedBone* find(const std::vector<FinishedBone>& bones, bones::BoneKind
 
 }  // namespace
 
+bool FinishedBone::is_drilled() const {
+  return !tunnels.empty() && std::ranges::all_of(tunnels, &FinishedTunnel::is_drilled);
+}
+
 FinishList finish_list(const std::vector<FinishedBone>& bones) {
   FinishList list;
   list.is_done = !bones.empty();
   for (const FinishedBone& bone : bones) {
-    std::string name(bones::to_text(bone.bone));
-    name[0] = bone.bone == bones::BoneKind::Femur ? 'F' : 'T';
-    // By word alone is not as good as seen.
-    const bool is_seen = bone.is_drilled && bone.measured;
-    list.lines.push_back(
-        {is_seen ? Severity::Good : Severity::Caution, name + " tunnel", tunnel_in_words(bone)});
-    list.lines.push_back({bone.marker_is_out ? Severity::Good : Severity::Caution, name + " marker",
+    for (const FinishedTunnel& tunnel : bone.tunnels) {
+      // By word alone is not as good as seen.
+      const bool is_seen = tunnel.is_drilled && tunnel.measured;
+      list.lines.push_back({is_seen ? Severity::Good : Severity::Caution,
+                            name_in_list(tunnels::name_of(tunnel.key), " tunnel"), tunnel_in_words(tunnel)});
+    }
+    list.lines.push_back({bone.marker_is_out ? Severity::Good : Severity::Caution,
+                          name_in_list(std::string(bones::to_text(bone.bone)), " marker"),
                           bone.marker_is_out ? "out" : "is still in the bone"});
-    list.is_done = list.is_done && bone.is_drilled && bone.marker_is_out;
+    list.is_done = list.is_done && bone.is_drilled() && bone.marker_is_out;
   }
   return list;
 }
 
 FinishAction finish_action(const std::vector<FinishedBone>& bones, bones::BoneKind bone, bool is_under_way) {
   const FinishedBone* const own = find(bones, bone, true);
-  if (own != nullptr && own->is_drilled && !own->marker_is_out) return FinishAction::TakeMarkerOut;
+  if (own != nullptr && own->is_drilled() && !own->marker_is_out) return FinishAction::TakeMarkerOut;
   const FinishedBone* const other = find(bones, bone, false);
-  if (other != nullptr && !(other->is_drilled && other->marker_is_out)) return FinishAction::OtherBone;
+  if (other != nullptr && !(other->is_drilled() && other->marker_is_out)) return FinishAction::OtherBone;
   return is_under_way ? FinishAction::EndSource : FinishAction::Nothing;
 }
 

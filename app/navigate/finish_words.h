@@ -8,17 +8,21 @@
 
 namespace arthronaut::navigate {
 
-// Of one bone that has a planned tunnel.
+struct FinishedTunnel {
+  tunnels::TunnelKey key = bones::BoneKind::Femur;
+  bool is_drilled = false;                            // by the surgeon's word
+  std::optional<operation::AchievedTunnel> measured;  // empty: nothing was
+};
+// Of one bone that has a planned tunnel, or two.
 struct FinishedBone {
   bones::BoneKind bone = bones::BoneKind::Femur;
-  bool is_drilled = false;     // all that are planned in it, by the surgeon's word
-  bool marker_is_out = false;  // likewise
-  // As it was measured, of the bone that is navigated; empty: nothing was measured, or not of this bone.
-  std::optional<operation::AchievedTunnel> measured;
+  std::vector<FinishedTunnel> tunnels;
+  bool marker_is_out = false;             // by the surgeon's word
+  [[nodiscard]] bool is_drilled() const;  // all of them
 };
 
 struct FinishList {
-  std::vector<CardLine> lines;  // two for each bone
+  std::vector<CardLine> lines;  // of each bone one for each tunnel, and one for its marker
   bool is_done = false;         // every line
 };
 [[nodiscard]] FinishList finish_list(const std::vector<FinishedBone>& bones);

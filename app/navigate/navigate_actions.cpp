@@ -122,20 +122,23 @@ void NavigateView::add_actions(widgets::Actions& actions) {
        [this] { return live_->keeps_video; },
        [this] { bones_.keep_video(!live_->keeps_video); },
        {"end the video's record", [this] { return live_->keeps_video; }}});
-  actions.add(
-      {"navigate.overlay",
-       "Plan on video",
-       "Full, off; it fades by itself",
-       GLFW_KEY_V,
-       0,
-       false,
-       {},
-       [this] { return choices_.overlay_on; },
-       // While a camera is chosen there is no plan to show, and the third pedal goes on to the next one.
-       [this] {
-         if (cameras_.is_open()) return cameras_.choose_next_offered();
-         cycle_overlay();
-       }});
+  actions.add({"navigate.overlay",
+               "Plan on video",
+               "Full, off; it fades by itself",
+               GLFW_KEY_V,
+               0,
+               false,
+               {},
+               [this] { return choices_.overlay_on; },
+               // While a camera or a tunnel is chosen the third pedal goes on to the next one.
+               [this] {
+                 if (cameras_.is_open()) return cameras_.choose_next_offered();
+                 if (model_ != nullptr && bones_.must_choose(choices_.bone)) {
+                   ++choices_.offered_tunnel;
+                   return;
+                 }
+                 cycle_overlay();
+               }});
   actions.add({"navigate.sounds",
                "Muted",
                "Lost, doubtful and reached are not heard while on; what is wrong with the sound device is "

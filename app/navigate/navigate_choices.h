@@ -25,7 +25,7 @@ struct NavigateChoices {
   double overlay_shown_at_s = 0;
   bool undistorts = false;
   std::optional<NavigateLayout> layout;  // empty: as things stand
-  double guidance_seen_s = -1e9;         // when guidance was valid last
+  double guidance_seen_s = -1e9;         // when something was guided last
   int stroke = -1;                       // selected
   // Said to be drilled since the case was opened: by which kind of source, and the very plan that guided. A
   // rehearsal says nothing of the patient, and a plan of before an edit nothing of the one after it.
@@ -36,11 +36,12 @@ struct NavigateChoices {
   std::set<std::pair<sources::SourceKind, tunnels::TunnelKey>> verified;
   // Whose world markers were said to be out, likewise.
   std::set<std::pair<sources::SourceKind, bones::BoneKind>> markers_out;
-  std::optional<operation::Step> looked_at;     // the surgeon went back to it; empty: the one of now
-  std::string next;                             // what is asked of the surgeon now
-  double next_since_s = 0;                      // and since when
-  SteadyWords missing;                          // what that waits for
-  bool goes_to_other_bone = false;              // once the source has ended
+  std::optional<operation::Step> looked_at;  // the surgeon went back to it; empty: the one of now
+  std::string next;                          // what is asked of the surgeon now
+  double next_since_s = 0;                   // and since when
+  SteadyWords missing;                       // what that waits for
+  std::size_t offered_tunnel = 0;   // of two that nobody has chosen from: the one that a press would choose
+  bool goes_to_other_bone = false;  // once the source has ended
   bool shows_menu = false, shows_more = false;  // of the menu its second page
   ReachedPlan reached;
   // Of the case, as it was when this mode was entered.
@@ -101,6 +102,7 @@ struct NavigateChoices {
     looked_at.reset();
     guidance_seen_s = -1e9;
     stroke = -1;
+    offered_tunnel = 0;
   }
 };
 

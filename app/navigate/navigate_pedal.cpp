@@ -1,5 +1,6 @@
 // What the pedals do in theatre: one for the next step, one for the way back. What is said to come next and
 // what a press does stand together here, so that they stay the same.
+#include <algorithm>
 #include <utility>
 
 #include "app/navigate/navigate_view.h"
@@ -84,12 +85,12 @@ std::string NavigateView::next_step() {
   if (left_behind() != nullptr) return "resume the operation that was left";
   if (const std::string own = lent_step(); !own.empty()) return own;
   if (choices_.looked_at) {
-    const Repeat repeat = repeat_of(*choices_.looked_at, *live_->operation);
+    const Repeat repeat = repeat_of(*choices_.looked_at);
     const bool is_shown = repeat == Repeat::ShowGuide && finishes() && is_running();
     return is_shown ? words_of(NextAction::FollowBullseye) : words_of(repeat, *choices_.looked_at);
   }
   const NextAction action = action_now();
-  if (const std::string choice = tunnel_to_choose(); !choice.empty()) return choice;
+  if (const auto offered = tunnel_to_choose()) return words_of_choosing(*offered);
   if (choices_.goes_to_other_bone) return "wait: the pictures end";
   if (finishes())
     return words_of(finish_action(finished_bones(), choices_.bone, is_under_way(*live_)), choices_.bone);
@@ -107,6 +108,8 @@ std::string NavigateView::next_step() {
   if (action == NextAction::VerifyByTouch) return words_of_verifying(*live_->operation);
   if (action == NextAction::CheckControlPoint) return words_of_checking(*live_->operation);
   if (action == NextAction::RegisterAnew) return words_of_registering_anew(*live_->operation);
+  if (action == NextAction::RecordDrilled && guided->bundle != norms::Bundle::Whole)
+    return "when the tunnel " + tunnels::name_of(*guided) + " is drilled: say so";
   const bool starts = action == NextAction::StartSource || action == NextAction::PlanTunnel;
   if (!starts) return words_of(action);
   if (must_set_up()) return "calibrate camera and tools in Set up";
@@ -155,8 +158,11 @@ void NavigateView::take_next_step() {
     return repeat_step(*std::exchange(choices_.looked_at, std::nullopt));
   }
   if (choices_.goes_to_other_bone) return;
-  if (tunnel_to_choose().empty() && finishes())
-    return finish_step(finish_action(finished_bones(), choices_.bone, is_under_way(*live_)));
+  if (const auto offered = tunnel_to_choose()) {
+    if (was_read()) choose_tunnel(offered->bundle);
+    return;
+  }
+  if (finishes()) return finish_step(finish_action(finished_bones(), choices_.bone, is_under_way(*live_)));
   if (awaits_picture(*live_) || is_in_wrong_medium() || !words_without_pictures().empty()) return;
   if (!bones_.guided(choices_.bone)) {
     if (!bones_.must_choose(choices_.bone)) go_elsewhere_(Elsewhere::Plan);
@@ -215,9 +221,8 @@ bool NavigateView::pedal_acts() {
   if (cameras_.is_open()) return cameras_.chosen().has_value();
   if (left_behind() != nullptr) return true;
   if (!lent_step().empty()) return false;
-  if (choices_.looked_at)
-    return !stays_there() && repeat_of(*choices_.looked_at, *live_->operation) != Repeat::NothingNow;
-  if (!tunnel_to_choose().empty()) return false;
+  if (choices_.looked_at) return !stays_there() && repeat_of(*choices_.looked_at) != Repeat::NothingNow;
+  if (tunnel_to_choose()) return was_read();
   if (finishes())
     return finish_action(finished_bones(), choices_.bone, is_under_way(*live_)) != FinishAction::Nothing &&
            was_read();
@@ -241,25 +246,6 @@ bool NavigateView::pedal_acts() {
   }
 }
 
-void NavigateView::finish_step(FinishAction action) {
-  if (!was_read()) return;
-  switch (action) {
-    case FinishAction::TakeMarkerOut:
-      log::info("world marker said to be out: " + std::string(bones::to_text(choices_.bone)));
-      choices_.markers_out.insert({live_->operation->source->kind, choices_.bone});
-      // From now on nothing may guide by where it sat.
-      return ask(operation::MarkerPlacedAnew{});
-    case FinishAction::OtherBone:
-      choices_.goes_to_other_bone = true;
-      if (is_under_way(*live_)) end_source();
-      return;
-    case FinishAction::EndSource:
-      return end_source();
-    case FinishAction::Nothing:
-      return;
-  }
-}
-
 void NavigateView::take_step_back() {
   if (choices_.shows_menu) {
     choices_.shows_menu = false;
@@ -273,16 +259,22 @@ void NavigateView::take_step_back() {
   choices_.looked_at = step_before(choices_.looked_at.value_or(step_of_now(rail())));
 }
 
+Repeat NavigateView::repeat_of(operation::Step step) const {
+  const auto& plan = live_->operation->plan;
+  const bool is_said_drilled = plan && choices_.is_drilled(*live_->operation, *plan);
+  return navigate::repeat_of(step, *live_->operation, is_said_drilled);
+}
+
 // At the step that was gone back to: its guide is shown already, in place of the check list, or what a press
 // would record has not been read.
 bool NavigateView::stays_there() {
-  const Repeat repeat = repeat_of(*choices_.looked_at, *live_->operation);
+  const Repeat repeat = repeat_of(*choices_.looked_at);
   return (repeat == Repeat::ShowGuide && finishes() && is_running()) ||
          (repeat == Repeat::NotDrilled && !was_read());
 }
 
 void NavigateView::repeat_step(operation::Step step) {
-  switch (repeat_of(step, *live_->operation)) {
+  switch (repeat_of(step)) {
     case Repeat::ShowPlan:
       return go_elsewhere_(Elsewhere::Plan);
     case Repeat::ShowSetUp:
@@ -341,41 +333,13 @@ RailContext NavigateView::rail_context() const {
   context.has_camera = simulates() || choices_.has_camera_file;
   context.tools = choices_.tools ? &*choices_.tools : nullptr;
   const auto finished = finished_bones();
-  context.is_drilled = is_drilled(finished);
-  context.was_measured = context.is_drilled && finished.front().measured.has_value();
+  context.is_drilled = finishes();
+  const auto was_measured = [](const FinishedTunnel& tunnel) { return tunnel.measured.has_value(); };
+  context.was_measured = context.is_drilled && std::ranges::all_of(finished.front().tunnels, was_measured);
   const auto& plan = live_->operation->plan;
   context.was_verified = kind_ && plan && choices_.verified.contains({*kind_, plan->tunnel.key()});
   context.marker_is_out = kind_ && choices_.markers_out.contains({*kind_, choices_.bone});
   return context;
-}
-
-bool NavigateView::is_drilled(const std::vector<FinishedBone>& bones) const {
-  return !bones.empty() && bones.front().bone == choices_.bone && bones.front().is_drilled;
-}
-
-bool NavigateView::finishes() const { return is_drilled(finished_bones()); }
-
-std::vector<FinishedBone> NavigateView::finished_bones() const {
-  std::vector<FinishedBone> bones;
-  if (model_ == nullptr) return bones;
-  const sources::SourceKind kind = kind_.value_or(sources::SourceKind::Live);
-  for (const bones::BoneKind kind_of_bone : {choices_.bone, choices_.other_bone()}) {
-    if (!model_->has_bone(kind_of_bone)) continue;
-    const auto keys = model_->knee().plan.of(kind_of_bone);
-    if (keys.empty()) continue;
-    FinishedBone bone{kind_of_bone, true, choices_.markers_out.contains({kind, kind_of_bone}), {}};
-    for (const tunnels::TunnelKey& key : keys) {
-      const auto said = choices_.drilled.find({kind, key});
-      const auto planned = bones_.planned(key);
-      bone.is_drilled = bone.is_drilled && said != choices_.drilled.end() && planned == said->second;
-      if (const auto measured = choices_.measured.find({kind, key});
-          measured != choices_.measured.end() && planned &&
-          operation::PlannedTunnel{measured->second.planned, planned->length_mm} == *planned)
-        bone.measured = measured->second;
-    }
-    bones.push_back(std::move(bone));
-  }
-  return bones;
 }
 
 // The probe stops drawing with a touch; the screen stays, so that the distance is read in large.

@@ -365,8 +365,8 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if ((live_->phase == Phase::NoSource || was_refused) && !notice_.empty()) display.detail = notice_;
   if (!live_->operation->plan && model_ != nullptr && bones_.must_choose(choices_.bone))
     display.detail = "Two tunnels are planned in this bone: choose AM (1) or PL (2)";
-  if (display.guidance_is_valid) {
-    // A guide that comes into view gets the screen, whatever was looked at before.
+  // A guide that comes into view gets the screen; where its numbers may not be shown, why not does.
+  if (display.guidance_is_valid || live_->operation->guided_lately) {
     if (now - choices_.guidance_seen_s > kGuideAway_s) choices_.layout.reset();
     choices_.guidance_seen_s = now;
   }

@@ -93,6 +93,7 @@ class NavigateView : public mode::Mode {
   void find_anew();
   // Another pedal: one step back, to do it again; after the first step the one of now is shown again.
   void take_step_back();
+  [[nodiscard]] Repeat repeat_of(operation::Step step) const;
   [[nodiscard]] bool stays_there();
   void repeat_step(operation::Step step);
   [[nodiscard]] bool pedal_acts();
@@ -100,7 +101,6 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] Rail rail() const { return rail_of(*live_->operation, rail_context()); }
   // Every bone with a planned tunnel, the one that is navigated first.
   [[nodiscard]] std::vector<FinishedBone> finished_bones() const;
-  [[nodiscard]] bool is_drilled(const std::vector<FinishedBone>& bones) const;  // of finished_bones()
   [[nodiscard]] bool finishes() const;  // all tunnels of this bone are drilled
   [[nodiscard]] bool takes_guide_in_simulation() const;
   [[nodiscard]] bool is_in_wrong_medium() const;
@@ -112,8 +112,9 @@ class NavigateView : public mode::Mode {
   // Of two tunnels in one bone, which is drilled: tunnel_choice.cpp.
   void add_tunnel_actions(widgets::Actions& actions);
   void choose_tunnel(norms::Bundle bundle);
-  // What to choose, in words; empty where nothing is.
-  [[nodiscard]] std::string tunnel_to_choose() const;
+  // The one that a press of the pedal would choose, where the surgeon has to choose, or may go on to it.
+  [[nodiscard]] std::optional<tunnels::TunnelKey> tunnel_to_choose() const;
+  [[nodiscard]] std::string words_of_choosing(const tunnels::TunnelKey& offered) const;
   // Another plan than the one in force is offered to an operation that runs, and nothing stands before it.
   [[nodiscard]] bool waits_for_take_over() const;
   void add_answer_actions(widgets::Actions& actions);

@@ -270,7 +270,7 @@ std::string words_of(Missing missing) {
   return "";
 }
 
-Repeat repeat_of(Step step, const OperationState& state) {
+Repeat repeat_of(Step step, const OperationState& state, bool is_said_drilled) {
   switch (step) {
     case Step::Plan:
       return Repeat::ShowPlan;
@@ -288,8 +288,9 @@ Repeat repeat_of(Step step, const OperationState& state) {
     case Step::Verify:
       return state.has_source ? Repeat::Touch : Repeat::NothingNow;
     case Step::Guide:
-      return state.drilled.outcome != operation::DrilledState::Outcome::NotSaid ? Repeat::NotDrilled
-                                                                                : Repeat::ShowGuide;
+      return is_said_drilled || state.drilled.outcome != operation::DrilledState::Outcome::NotSaid
+                 ? Repeat::NotDrilled
+                 : Repeat::ShowGuide;
     case Step::Finish:
       return Repeat::ShowFinish;
   }

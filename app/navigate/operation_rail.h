@@ -90,7 +90,9 @@ enum class Repeat {
   ShowFinish,    // the check list
   NothingNow,    // what it needs is not there
 };
-[[nodiscard]] Repeat repeat_of(operation::Step step, const operation::OperationState& state);
+// is_said_drilled: of the plan in force, maybe while another source ran.
+[[nodiscard]] Repeat repeat_of(operation::Step step, const operation::OperationState& state,
+                               bool is_said_drilled);
 // "draw more strokes on the bone": what that is, said as what comes next.
 [[nodiscard]] std::string words_of(Repeat repeat, operation::Step step);
 

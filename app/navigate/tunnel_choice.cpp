@@ -26,18 +26,27 @@ void NavigateView::look_along_plan() {
   scene_.look(scene::orbited(along, {40, -30}, 600));  // a little from the side: depth is seen too
 }
 
-std::string NavigateView::tunnel_to_choose() const {
-  const std::string bone(bones::to_text(choices_.bone));
-  if (bones_.must_choose(choices_.bone))
-    return "choose the tunnel of the " + bone + " that is drilled: AM (1) or PL (2)";
+std::optional<tunnels::TunnelKey> NavigateView::tunnel_to_choose() const {
+  const auto keys = model_->knee().plan.of(choices_.bone);
+  if (bones_.must_choose(choices_.bone)) return keys[choices_.offered_tunnel % keys.size()];
   const auto& plan = live_->operation->plan;
-  if (!plan || live_->operation->next_action != NextAction::Finish) return "";
-  for (const tunnels::TunnelKey& key : model_->knee().plan.of(choices_.bone))
+  if (!plan || live_->operation->next_action != NextAction::Finish) return std::nullopt;
+  for (const tunnels::TunnelKey& key : keys)
     if (const auto planned = bones_.planned(key);
         !planned || !choices_.is_drilled(*live_->operation, *planned))
-      return "then the tunnel " + tunnels::name_of(key) +
-             (key.bundle == Bundle::Anteromedial ? " (1)" : " (2)") + ", or take the world marker out";
-  return "";
+      return key;
+  return std::nullopt;
+}
+
+// Nothing is chosen before somebody does: the one that a press would choose is named, and how to get the
+// other one.
+std::string NavigateView::words_of_choosing(const tunnels::TunnelKey& offered) const {
+  const auto number = [](Bundle bundle) { return bundle == Bundle::Anteromedial ? " (1)" : " (2)"; };
+  const std::string name = tunnels::name_of(offered);
+  if (!bones_.must_choose(choices_.bone))
+    return "then the tunnel " + name + number(offered.bundle) + ", or take the world marker out";
+  return "choose the tunnel " + name + number(offered.bundle) +
+         (offered.bundle == Bundle::Anteromedial ? "; V: PL (2)" : "; V: AM (1)");
 }
 
 bool NavigateView::waits_for_take_over() const {

@@ -44,10 +44,15 @@ void Operation::Parts::apply(const TunnelDrilled&) {
 // The poses that it rested on went with the word: what is seen from now on is of the tunnel that is drilled
 // now.
 void Operation::Parts::apply(const TakeBackDrilled&) {
-  if (drilling.drilled.outcome == DrilledState::Outcome::NotSaid) return;
-  JournalEntry entry = entry_of(JournalKind::DrilledTakenBack, "");
-  entry.achieved = drilling.drilled.tunnel;
-  note(std::move(entry));
+  if (drilling.drilled.outcome == DrilledState::Outcome::NotSaid) {
+    // Said while another source ran: the record of that one is closed, and this one says that it is not so.
+    if (drilling.drilled.was_taken_back || !plan) return;
+    note(JournalKind::Note, "not drilled: what an earlier record says of this tunnel was said too early");
+  } else {
+    JournalEntry entry = entry_of(JournalKind::DrilledTakenBack, "");
+    entry.achieved = drilling.drilled.tunnel;
+    note(std::move(entry));
+  }
   drilling.drilled = {};
   drilling.drilled.was_taken_back = true;
   if (drilling.evidence) drilling.evidence->clear();

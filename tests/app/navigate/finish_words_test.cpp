@@ -7,14 +7,20 @@ namespace {
 
 using bones::BoneKind;
 
+FinishedBone bone_of(BoneKind bone, bool is_drilled, bool marker_is_out,
+                     const std::optional<operation::AchievedTunnel>& measured = {}) {
+  return {bone, {{bone, is_drilled, measured}}, marker_is_out};
+}
+
 // Femur first, then tibia, each drilled and its marker out: only then nothing is left to do.
 TEST(FinishWords, LeadThroughBothBones) {
-  std::vector<FinishedBone> bones{{BoneKind::Femur, true, false, {}}, {BoneKind::Tibia, false, false, {}}};
+  std::vector<FinishedBone> bones{bone_of(BoneKind::Femur, true, false),
+                                  bone_of(BoneKind::Tibia, false, false)};
   EXPECT_EQ(finish_action(bones, BoneKind::Femur, true), FinishAction::TakeMarkerOut);
   EXPECT_FALSE(finish_list(bones).is_done);
   bones[0].marker_is_out = true;
   EXPECT_EQ(finish_action(bones, BoneKind::Femur, true), FinishAction::OtherBone);
-  bones[1].is_drilled = true;
+  bones[1].tunnels.front().is_drilled = true;
   EXPECT_EQ(finish_action(bones, BoneKind::Tibia, true), FinishAction::TakeMarkerOut);
   EXPECT_FALSE(finish_list(bones).is_done) << "a marker is in a bone";
   bones[1].marker_is_out = true;
@@ -25,9 +31,9 @@ TEST(FinishWords, LeadThroughBothBones) {
 
 // A case with one planned bone ends with that one; one without any is never done.
 TEST(FinishWords, EndWithTheBonesThatArePlanned) {
-  EXPECT_EQ(finish_action({{BoneKind::Tibia, true, true, {}}}, BoneKind::Tibia, false),
+  EXPECT_EQ(finish_action({bone_of(BoneKind::Tibia, true, true)}, BoneKind::Tibia, false),
             FinishAction::Nothing);
-  EXPECT_TRUE(finish_list({{BoneKind::Tibia, true, true, {}}}).is_done);
+  EXPECT_TRUE(finish_list({bone_of(BoneKind::Tibia, true, true)}).is_done);
   EXPECT_FALSE(finish_list({}).is_done);
 }
 
@@ -35,13 +41,33 @@ TEST(FinishWords, EndWithTheBonesThatArePlanned) {
 TEST(FinishWords, SayWhetherATunnelWasMeasured) {
   operation::AchievedTunnel tunnel;
   const auto text = [](const FinishedBone& bone) { return finish_list({bone}).lines.front().text; };
-  EXPECT_EQ(text({BoneKind::Femur, true, false, {}}), "drilled, by the surgeon's word");
-  EXPECT_EQ(text({BoneKind::Femur, true, false, tunnel}), "drilled and recorded; depth not read");
+  EXPECT_EQ(text(bone_of(BoneKind::Femur, true, false)), "drilled, by the surgeon's word");
+  EXPECT_EQ(text(bone_of(BoneKind::Femur, true, false, tunnel)), "drilled and recorded; depth not read");
   tunnel.depth_mm = 24.5;
-  EXPECT_EQ(text({BoneKind::Femur, true, false, tunnel}), "drilled, 24.5 mm deep");
-  EXPECT_EQ(text({BoneKind::Femur, false, false, {}}), "not drilled yet");
-  EXPECT_EQ(finish_list({{BoneKind::Femur, true, false, {}}}).lines.back().severity,
+  EXPECT_EQ(text(bone_of(BoneKind::Femur, true, false, tunnel)), "drilled, 24.5 mm deep");
+  EXPECT_EQ(text(bone_of(BoneKind::Femur, false, false)), "not drilled yet");
+  EXPECT_EQ(finish_list({bone_of(BoneKind::Femur, true, false)}).lines.back().severity,
             widgets::Severity::Caution);
+}
+
+// Of two in one bone each is told of by itself: what was measured of one says nothing of the other.
+TEST(FinishWords, TellOfEachOfTwoTunnels) {
+  operation::AchievedTunnel measured;
+  measured.depth_mm = 24.5;
+  FinishedBone femur{BoneKind::Femur,
+                     {{{BoneKind::Femur, norms::Bundle::Anteromedial}, true, measured},
+                      {{BoneKind::Femur, norms::Bundle::Posterolateral}, true, {}}},
+                     true};
+  const FinishList list = finish_list({femur});
+  ASSERT_EQ(list.lines.size(), 3U);
+  EXPECT_EQ(list.lines[0].name, "Femur AM tunnel");
+  EXPECT_EQ(list.lines[0].text, "drilled, 24.5 mm deep");
+  EXPECT_EQ(list.lines[1].name, "Femur PL tunnel");
+  EXPECT_EQ(list.lines[1].text, "drilled, by the surgeon's word");
+  EXPECT_TRUE(list.is_done);
+  femur.tunnels.back().is_drilled = false;
+  EXPECT_FALSE(finish_list({femur}).is_done);
+  EXPECT_FALSE(femur.is_drilled());
 }
 
 }  // namespace

@@ -265,12 +265,13 @@ TEST(OperationRail, NothingBlocksTheWayBack) {
   Course course;
   course.verify();
   course.state.registration = std::make_shared<const operation::RegistrationState>(course.registration);
-  EXPECT_EQ(repeat_of(Step::Digitise, course.state), Repeat::Draw);
-  EXPECT_EQ(repeat_of(Step::Register, course.state), Repeat::RegisterAnew);
-  EXPECT_EQ(repeat_of(Step::Verify, course.state), Repeat::Touch);
-  EXPECT_EQ(repeat_of(Step::Plan, course.state), Repeat::ShowPlan);
-  EXPECT_EQ(repeat_of(Step::Tools, course.state), Repeat::ShowSetUp);
-  EXPECT_EQ(repeat_of(Step::WorldMarker, course.state), Repeat::NothingNow) << "there is no control point";
+  EXPECT_EQ(repeat_of(Step::Digitise, course.state, false), Repeat::Draw);
+  EXPECT_EQ(repeat_of(Step::Register, course.state, false), Repeat::RegisterAnew);
+  EXPECT_EQ(repeat_of(Step::Verify, course.state, false), Repeat::Touch);
+  EXPECT_EQ(repeat_of(Step::Plan, course.state, false), Repeat::ShowPlan);
+  EXPECT_EQ(repeat_of(Step::Tools, course.state, false), Repeat::ShowSetUp);
+  EXPECT_EQ(repeat_of(Step::WorldMarker, course.state, false), Repeat::NothingNow)
+      << "there is no control point";
 }
 
 // A press too early says that it is drilled: the way back takes that back, however it was recorded.
@@ -279,11 +280,14 @@ TEST(OperationRail, WhatWasSaidTooEarlyIsTakenBack) {
   Course course;
   course.verify();
   course.state.drilled.has_evidence = true;
-  EXPECT_EQ(repeat_of(Step::Guide, course.state), Repeat::ShowGuide) << "the step of now says it";
+  EXPECT_EQ(repeat_of(Step::Guide, course.state, false), Repeat::ShowGuide) << "the step of now says it";
   for (const Outcome outcome : {Outcome::Recorded, Outcome::NoEvidence}) {
     course.state.drilled.outcome = outcome;
-    EXPECT_EQ(repeat_of(Step::Guide, course.state), Repeat::NotDrilled);
+    EXPECT_EQ(repeat_of(Step::Guide, course.state, false), Repeat::NotDrilled);
   }
+  course.state.drilled.outcome = Outcome::NotSaid;
+  EXPECT_EQ(repeat_of(Step::Guide, course.state, true), Repeat::NotDrilled)
+      << "said while another source ran";
 }
 
 }  // namespace

@@ -20,11 +20,13 @@ struct Shape {
   int width, height;
   double diagonal_mm = 0;  // 0: as a 27-inch one
 };
-constexpr std::array<Shape, 10> kShapes{Shape{"16:9", 1920, 1080},
+constexpr std::array<Shape, 12> kShapes{Shape{"16:9", 1920, 1080},
                                         {"16:9 of 24 inches", 1920, 1080, 610},
                                         {"16:9 small", 1280, 720},
                                         {"16:10", 1920, 1200},
                                         {"4:3", 1600, 1200},
+                                        {"5:4 of 19 inches", 1280, 1024, 483},
+                                        {"4:3 of 15 inches", 1024, 768, 381},
                                         {"4K", 3840, 2160},
                                         {"4K of 55 inches", 3840, 2160, 1397},
                                         {"two of 16:9", 3840, 1080},
@@ -59,7 +61,9 @@ bool overlap(const Rect& a, const Rect& b) {
 
 // Everything that can be asked of the surgeon.
 std::vector<std::string> all_words() {
-  std::vector<std::string> words{"choose the tunnel of the femur that is drilled: AM (1) or PL (2)",
+  std::vector<std::string> words{"choose the tunnel femur AM (1); V: PL (2)",
+                                 "when the tunnel femur PL is drilled: say so",
+                                 "then the tunnel femur PL (2), or take the world marker out",
                                  "resume the operation that was left",
                                  "start the simulated operation",
                                  "take the guide (simulation)",

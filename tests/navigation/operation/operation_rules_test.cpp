@@ -199,6 +199,39 @@ TEST_F(OperationRules, DrilledThatWasSaidTooEarlyIsTakenBack) {
   EXPECT_EQ(run_.count(JournalKind::Drilled), 2);
 }
 
+// A recording shows once what was drilled in it: when its pictures have ended, that is what is left to say.
+// After a live source the next thing is the source.
+TEST_F(OperationRules, DrilledIsAskedForWhenARecordingHasEnded) {
+  for (const sources::SourceKind kind : {sources::SourceKind::Recording, sources::SourceKind::Live}) {
+    PhantomOperation run;
+    run.start(test::scripted_source(kind));
+    run.show(run.frame());
+    run.apply(test::true_registration(trial_, run.operation().now()));
+    for (int i = 0; i < 60; ++i) run.show_guide(0.2);
+    run.operation().end_source();
+    EXPECT_EQ(run.state()->next_action,
+              kind == sources::SourceKind::Recording ? NextAction::RecordDrilled : NextAction::StartSource);
+    run.apply(TunnelDrilled{});
+    EXPECT_EQ(run.state()->drilled.outcome, DrilledState::Outcome::Recorded);
+    EXPECT_EQ(run.state()->next_action, NextAction::Finish);
+  }
+}
+
+// Nobody has to start the sender of before to say that it was too early: this record says so.
+TEST_F(OperationRules, DrilledThatWasSaidUnderAnotherSourceIsTakenBack) {
+  give();
+  for (int i = 0; i < 60; ++i) run_.show_guide(0.2);
+  run_.apply(TunnelDrilled{});
+  const long notes = run_.count(JournalKind::Note);
+  run_.operation().end_source();
+  run_.start(test::scripted_source());
+  EXPECT_FALSE(run_.state()->drilled.was_taken_back);
+  for (int i = 0; i < 2; ++i) run_.apply(TakeBackDrilled{});
+  EXPECT_TRUE(run_.state()->drilled.was_taken_back);
+  EXPECT_EQ(run_.count(JournalKind::Note), notes + 1) << "once";
+  EXPECT_EQ(run_.count(JournalKind::DrilledTakenBack), 0) << "nothing of it is in this record";
+}
+
 TEST_F(OperationRules, DrilledByWordAloneIsTakenBackToo) {
   give();
   run_.apply(TunnelDrilled{});
