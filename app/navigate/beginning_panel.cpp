@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "app/widgets/wrapped_text.h"
+
 namespace arthronaut::navigate {
 
 namespace {
@@ -22,11 +24,20 @@ float width_beside(const widgets::Ui& ui, float width, const CardLine& line, flo
                                                                                                   : 0;
 }
 
+// As widgets::wrapped() breaks it, which knows the font in its own size alone.
+std::string in_lines(const ImFont* font, float size_px, const std::string& words, float width) {
+  return widgets::wrapped(font, words, width * font->FontSize / size_px);
+}
+
 // The names in small letters, what they say in letters for afar, beside or under them.
 float height_of(const widgets::Ui& ui, float width, const Card& card, float letters_px) {
   float height = card.keys.empty() ? 0 : ui.theme.px(10);
   const auto add = [&](const std::string& words) {
-    if (!words.empty()) height += ui.theme.afar->CalcTextSizeA(letters_px, 1e9F, width, words.c_str()).y;
+    if (!words.empty())
+      height += ui.theme.afar
+                    ->CalcTextSizeA(letters_px, 1e9F, width,
+                                    in_lines(ui.theme.afar, letters_px, words, width).c_str())
+                    .y;
   };
   add(card.title);
   for (const CardLine& line : card.lines) {
@@ -56,8 +67,9 @@ void draw_card(const widgets::Ui& ui, const widgets::Rect& area, const Card& car
   ui.log.note_state("card_letters", std::to_string(std::lround(100 * letters_px / ui.theme.afar->FontSize)));
   const auto put = [&](ImFont* font, float size_px, ImU32 color, const std::string& words, float indent) {
     if (words.empty()) return;
-    draw.AddText(font, size_px, {box.x + indent, box.y}, color, words.c_str(), nullptr, box.width);
-    (void)box.cut_top(font->CalcTextSizeA(size_px, 1e9F, box.width, words.c_str()).y);
+    const std::string lines = in_lines(font, size_px, words, box.width);
+    draw.AddText(font, size_px, {box.x + indent, box.y}, color, lines.c_str(), nullptr, box.width);
+    (void)box.cut_top(font->CalcTextSizeA(size_px, 1e9F, box.width, lines.c_str()).y);
   };
   put(ui.theme.afar, letters_px, widgets::kText, card.title, 0);
   for (const CardLine& line : card.lines) {

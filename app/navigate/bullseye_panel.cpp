@@ -124,11 +124,19 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   ui.log.note("navigate.bullseye", area.min(), area.max());
   const float font = ui.theme.afar->FontSize;
   const ImVec2 center = area.center();
-  // Which of two is aimed at stands beside the target, also while there is nothing to aim by.
-  draw.AddText(ui.theme.title, ui.theme.title->FontSize, {area.x + ui.theme.px(12), area.y + ui.theme.px(6)},
-               widgets::kAccent, screen.tunnel.c_str());
+  // Which of two is aimed at stands beside the target, also while there is nothing to aim by, and over its
+  // rim where that comes so near.
+  const auto put_name = [&] {
+    if (screen.tunnel.empty()) return;
+    const ImVec2 at{area.x + ui.theme.px(12), area.y + ui.theme.px(6)};
+    const ImVec2 size =
+        ui.theme.title->CalcTextSizeA(ui.theme.title->FontSize, 1e9F, 0, screen.tunnel.c_str());
+    draw.AddRectFilled(at, {at.x + size.x + ui.theme.px(4), at.y + size.y}, widgets::kPanel);
+    draw.AddText(ui.theme.title, ui.theme.title->FontSize, at, widgets::kAccent, screen.tunnel.c_str());
+  };
   if (!screen.display.guidance_is_valid || !screen.plan) {
     draw.AddCircle(center, layout_in(ui, area, nullptr).radius, widgets::kPanelEdge, 96, ui.theme.px(2));
+    put_name();
     // That there is no picture is said where it would be.
     if (screen.display.has_picture)
       widgets::text_centered(ui, area.inset(font), ui.theme.title, widgets::kCaution,
@@ -142,6 +150,7 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   const bool is_just_reached = screen.reached_for_s && *screen.reached_for_s < 1;
   draw_target(ui, draw, center, radius,
               is_just_reached ? IM_COL32(40, 120, 92, 255) : IM_COL32(15, 19, 24, 255));
+  put_name();
   if (screen.reached_for_s) {
     draw.AddCircle(center, radius - ui.theme.px(6), widgets::kGood, 96, ui.theme.px(12));
     widgets::draw_sign(draw, {area.x + font * 0.6F, area.y + area.height - font * 0.6F}, font * 0.45F,

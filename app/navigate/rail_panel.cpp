@@ -100,7 +100,8 @@ void draw_words(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
     const float sign = ui.theme.afar->FontSize;
     (void)inner.cut_bottom(ui.theme.px(6));
     // What it does not need in the letters that fit is left to what is to be done.
-    const float most = inner.height * 0.6F;
+    const float next = widgets::afar_height(ui, inner.width, sentence(screen.next_step));
+    const float most = std::max(inner.height * 0.6F, inner.height - next);
     ImFont* const font = widgets::font_that_fits(ui.theme, inner.width - sign, most, missing);
     const std::string lines = widgets::wrapped(font, missing, inner.width - sign);
     const float height = font->CalcTextSizeA(font->FontSize, 1e9F, 0, lines.c_str()).y;
@@ -129,12 +130,12 @@ void draw_reason(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
   // Before there is a picture nothing is wrong.
   const bool is_amiss = display.has_picture;
   if (is_amiss) draw.AddRect(area.min(), area.max(), widgets::kCaution, ui.theme.px(6), 0, ui.theme.px(5));
-  widgets::Rect head = inner.cut_top(widgets::afar_height(ui, inner.width * 0.85F, display.headline));
+  const float radius = ui.theme.afar->FontSize * 0.4F, sign = is_amiss ? 3 * radius : 0;
+  widgets::Rect head = inner.cut_top(widgets::afar_height(ui, inner.width - sign, display.headline));
   if (is_amiss) {
-    const float radius = ui.theme.afar->FontSize * 0.4F;
     widgets::draw_sign(draw, {head.x + radius, head.y + ui.theme.afar->FontSize / 2}, radius,
                        Severity::Caution);
-    (void)head.cut_left(radius * 3);
+    (void)head.cut_left(sign);
   }
   widgets::draw_afar(ui, head, is_amiss ? widgets::kCaution : widgets::kText, display.headline);
   (void)inner.cut_top(ui.theme.px(12));

@@ -1,8 +1,30 @@
 #include "app/widgets/wrapped_text.h"
 
 #include <algorithm>
+#include <array>
 
 namespace arthronaut::widgets {
+
+namespace {
+
+// What is drawn as one: a word, and a number with the unit that follows it: "7" at the end of a line and "s"
+// below it are read as two things.
+std::size_t end_of_part(std::string_view text) {
+  const auto end_of_word = [&](std::size_t from) {
+    return std::min(text.find_first_of(" \n", from), text.size());
+  };
+  const std::size_t end = end_of_word(0);
+  const bool is_number = end > 0 && text[end - 1] >= '0' && text[end - 1] <= '9';
+  if (!is_number || end == text.size() || text[end] == '\n') return end;
+  const std::size_t next = end_of_word(end + 1);
+  constexpr std::array<std::string_view, 7> kUnits{"mm", "s", "ms", "deg", "px", "%", "min"};
+  std::string_view unit = text.substr(end + 1, next - end - 1);
+  while (!unit.empty() && (unit.back() == ',' || unit.back() == ';' || unit.back() == '.'))
+    unit.remove_suffix(1);
+  return std::find(kUnits.begin(), kUnits.end(), unit) != kUnits.end() ? next : end;
+}
+
+}  // namespace
 
 std::string wrapped(const ImFont* font, std::string_view text, float width_px) {
   const auto wide = [&](std::string_view part) {
@@ -13,7 +35,7 @@ std::string wrapped(const ImFont* font, std::string_view text, float width_px) {
   float used = 0;
   bool begins_line = true;
   while (!text.empty()) {
-    const std::size_t end = std::min(text.find_first_of(" \n"), text.size());
+    const std::size_t end = end_of_part(text);
     const float word = wide(text.substr(0, end));
     if (!begins_line) {
       const bool fits = used + space + word <= width_px;

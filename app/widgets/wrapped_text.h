@@ -1,5 +1,5 @@
-// Lines that break at spaces alone. ImGui also breaks them after a full stop or a comma, and so within a
-// number: "75." and below it "0 deg".
+// Lines that break at spaces alone, and not between a number and its unit. ImGui also breaks them after a
+// full stop or a comma, and so within a number: "75." and below it "0 deg".
 #pragma once
 
 #include <imgui.h>

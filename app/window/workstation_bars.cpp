@@ -128,16 +128,21 @@ void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& 
   // Whose knee it is: the side, and the patient as far as known. A long name is cut short, no birth date.
   const cases::Case& knee = model()->knee();
   const std::string side_words = std::string(bones::to_text(knee.side)) + " knee";
+  // A birth date tells two of one name apart and comes before a number, which nobody knows by heart.
   std::string name = knee.name, born;
   if (const auto& identity = case_->identity()) {
     name = identity->name_in_words();
-    for (const std::string& part : {identity->patient_id, identity->birth_date_in_words()})
+    for (const std::string& part : {identity->birth_date_in_words(), identity->patient_id})
       if (!part.empty()) born += (name.empty() && born.empty() ? "" : " \u00B7 ") + part;
   }
   const auto line = [&](const char* id, ImFont* of, float y, ImU32 color, const std::string& may_be_cut,
                         const std::string& whole) {
-    const float kept = of->CalcTextSizeA(of->FontSize, 1e9F, 0, whole.c_str()).x;
-    const std::string words = widgets::fitting(of, may_be_cut, rest.width - kept) + whole;
+    const auto wide = [&](const std::string& words) {
+      return of->CalcTextSizeA(of->FontSize, 1e9F, 0, words.c_str()).x;
+    };
+    std::string words = widgets::fitting(of, may_be_cut, rest.width - wide(whole)) + whole;
+    // What stands beside it is never written over: rather the end is cut, where even that has no room.
+    if (wide(words) > rest.width) words = widgets::fitting(of, words, rest.width);
     draw.AddText(of, of->FontSize, {rest.x, y}, color, words.c_str());
     ui.log.note(id, {rest.x, y},
                 {rest.x + of->CalcTextSizeA(of->FontSize, 1e9F, 0, words.c_str()).x, y + of->FontSize});

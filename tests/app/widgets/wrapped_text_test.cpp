@@ -20,7 +20,15 @@ class WrappedText : public ::testing::Test {
 // A number that is broken at its point reads as two: 75 and 0 degrees.
 TEST_F(WrappedText, BreaksNoNumber) {
   EXPECT_EQ(in_letters("longest at 75.0 deg", 14), "longest at\n75.0 deg");
-  EXPECT_EQ(in_letters("20.5,7.3 mm", 6), "20.5,7.3\nmm") << "though one word is too wide";
+  EXPECT_EQ(in_letters("20.5,7.3 mm", 6), "20.5,7.3 mm") << "though it is too wide";
+}
+
+// "No new picture for 7" and, below it, "s".
+TEST_F(WrappedText, KeepsANumberWithItsUnit) {
+  EXPECT_EQ(in_letters("picture for 15 s", 14), "picture for\n15 s");
+  EXPECT_EQ(in_letters("7.0 mm wide, 34.4 mm, long", 17), "7.0 mm wide,\n34.4 mm, long");
+  EXPECT_EQ(in_letters("3 to go", 3), "3\nto\ngo") << "no unit";
+  EXPECT_EQ(in_letters("7\nmm", 9), "7\nmm");
 }
 
 TEST_F(WrappedText, KeepsWhatFitsAndItsLineEnds) {
