@@ -245,9 +245,13 @@ RegistrationWords words_of(const theatre::LiveState& live) {
                           missing_of(state),  assumed_of(state),
                           numbers_of(state),  touch_of(state),
                           stroke_rows(state), history_rows(state, now_of(*live.operation))};
+  // Beside what is bad nothing is green: a control point that was kept before an alarm says nothing of now.
+  if (words.state.severity == Severity::Bad && words.touch && words.touch->number.severity == Severity::Good)
+    words.touch->number.severity = Severity::Quiet;
+  const bool has_begun = state.point_count > 0 || !state.history->empty();
   if (is_of_source_before(live))
     words.state = {Severity::Quiet, "No picture yet",
-                   "What guides by its pictures is judged when they come."};
+                   has_begun ? "What guides by its pictures is judged when they come." : ""};
   else if (waits_for_time_out(*live.operation))
     words.state = {Severity::Caution, "Waits for the time-out",
                    "What was drawn counts once patient, knee and plan are confirmed."};

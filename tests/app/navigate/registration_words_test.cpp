@@ -89,6 +89,29 @@ bool is_good(const RegistrationWords& words) {
   return is_good;
 }
 
+// A control point that was set before the marker was hit says nothing of now.
+TEST(RegistrationWords, NothingIsGreenBesideAnAlarm) {
+  Known known;
+  known.registration.touches.touch_control_point({0, 0, 0}, {});
+  EXPECT_EQ(known.words().touch->number.severity, Severity::Good);
+  known.registration.alarm.kind = operation::TouchAlarm::Kind::SeenInPicture;
+  known.stand(Standing::Alarm);
+  const RegistrationWords words = known.words();
+  EXPECT_EQ(words.state.severity, Severity::Bad);
+  EXPECT_EQ(words.touch->number.severity, Severity::Quiet);
+}
+
+// Where nothing guides yet, nothing is to be judged.
+TEST(RegistrationWords, SpeakOfWhatGuidesOnlyWhereSomethingDoes) {
+  Known known;
+  known.live.phase = Phase::Failed;
+  known.live.message = "no such kind of address";
+  EXPECT_NE(known.words().state.text, "");
+  known.history.clear();
+  known.registration = operation::RegistrationState();
+  EXPECT_EQ(known.words().state.text, "");
+}
+
 // The figures are those of what guides, not of a candidate that runs along beside it.
 TEST(RegistrationWords, ShowsTheFiguresOfWhatStands) {
   const RegistrationWords words = Known().words();
