@@ -118,8 +118,9 @@ class Report {
 
   std::vector<Eigen::Vector3d> touched_points() const {
     std::vector<Eigen::Vector3d> points;
-    if (!content_.session || !content_.session->registration()) return points;
-    const auto bone_from_marker = content_.session->registration()->marker_from_bone.inverse();
+    const auto counts = content_.session ? registration_that_counts(*content_.session) : std::nullopt;
+    if (!counts) return points;
+    const auto bone_from_marker = counts->marker_from_bone.inverse();
     for (const auto& p : content_.session->curves()) points.push_back(bone_from_marker * p.position_mm);
     return points;
   }
@@ -294,7 +295,7 @@ void Report::navigate_page() {
     rows.push_back({"Guided to the tunnel", guided});
   for (auto& row : safety_rows(session)) rows.push_back(std::move(row));
   pages_.table({70, 100}, rows);
-  if (session.registration()) registration_section(*session.registration());
+  if (const auto counts = registration_that_counts(session)) registration_section(*counts);
   time_line_section(session);
   for (const operation::AchievedTunnel& achieved : content_.achieved) result_section(achieved);
   for (const Content::Earlier& earlier : content_.earlier) {

@@ -94,7 +94,7 @@ ordered_json session_of(const Content& content, const ReportOptions& options) {
   if (content.check.outcome != recording::SessionCheck::Outcome::NoChain)
     node["is_as_recorded"] = content.check.is_unbroken();
   node["registration"] = nullptr;
-  if (session.registration()) node["registration"] = json_of(*session.registration());
+  if (const auto counts = registration_that_counts(session)) node["registration"] = json_of(*counts);
   node["safety"] = ordered_json::object();
   for (const auto& row : safety_rows(session)) node["safety"][row[0]] = row[1];
   node["steps"] = ordered_json::array();

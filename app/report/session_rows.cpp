@@ -43,8 +43,23 @@ std::string guided_bundles(const recording::RecordedSession& session) {
   return names;
 }
 
+std::optional<registration::RegistrationSummary> registration_that_counts(
+    const recording::RecordedSession& session) {
+  const recording::SessionEvent *newest = nullptr, *drilled_by = nullptr;
+  for (const recording::SessionEvent& event : session.events()) {
+    if (event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent)
+      newest = &event;
+    if (event.kind == recording::kDrilledEvent) drilled_by = newest;
+    if (event.kind == recording::kDrilledTakenBackEvent) drilled_by = nullptr;
+  }
+  if (drilled_by == nullptr || drilled_by == newest || drilled_by->text.empty())
+    return session.registration();
+  return session.registration_of(*drilled_by);
+}
+
 std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session) {
   bool is_verified = false, is_lost = false, was_verified = false, was_skipped = false, is_confirmed = false;
+  std::optional<bool> was_verified_at_drilling;
   std::string alarms, guide;
   for (const recording::SessionEvent& event : session.events()) {
     const bool ends = event.kind == recording::kRegistrationEvent ||
@@ -53,12 +68,15 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
     is_lost = event.kind == recording::kVerificationLostEvent || (is_lost && !ends);
     is_verified = event.kind == recording::kVerifiedEvent || (is_verified && !ends);
     was_verified = was_verified || is_verified;
+    if (event.kind == recording::kDrilledEvent) was_verified_at_drilling = is_verified;
+    if (event.kind == recording::kDrilledTakenBackEvent) was_verified_at_drilling.reset();
     was_skipped = was_skipped || event.kind == recording::kVerificationSkippedEvent;
     is_confirmed = is_confirmed || event.kind == recording::kTimeOutConfirmedEvent;
     if (event.kind == recording::kGuideCheckedEvent) guide = event.text;
     if (event.kind == recording::kAlarmEvent || event.kind == recording::kVoidEvent)
       alarms += (alarms.empty() ? "" : "; ") + (event.text.empty() ? "over" : event.text);
   }
+  is_verified = was_verified_at_drilling.value_or(is_verified);
   const std::string verified =
       is_verified    ? "verified by touches"
       : is_lost      ? "verified by touches that did not hold"
@@ -126,16 +144,23 @@ std::vector<Step> steps_of(const recording::RecordedSession& session) {
     int more = 0;
   };
   std::vector<Run> runs;
+  // What is recorded last where the marker was taken out registers nothing.
+  const bool ends_void = session.registration() && !session.registration()->has_pose;
+  const recording::SessionEvent* newest = nullptr;
+  for (const recording::SessionEvent& event : session.events())
+    if (event.kind == recording::kRegistrationEvent) newest = &event;
   for (const recording::SessionEvent& event : session.events()) {
     const auto* const step =
         std::find_if(kSteps.begin(), kSteps.end(), [&](const auto& one) { return one.first == event.kind; });
     if (step == kSteps.end()) continue;
+    const bool is_void = ends_void && &event == newest;
+    const std::string_view words = is_void ? "nothing is registered any more" : step->second;
     const double at_s = time_s(session, event.timestamp_ns);
-    if (!runs.empty() && runs.back().words == step->second) {
+    if (!runs.empty() && runs.back().words == words) {
       runs.back().last_s = at_s;
       ++runs.back().more;
     } else {
-      runs.push_back({step->second, at_s, at_s, 0});
+      runs.push_back({words, at_s, at_s, 0});
     }
   }
   std::vector<Step> steps;

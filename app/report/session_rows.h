@@ -1,6 +1,7 @@
 // What a session says of itself in a report: where its pictures came from, and what stood against a mistake.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ namespace arthronaut::report {
 // Which tunnels of bundles the session guided to, in the order of time: "femur AM, femur PL"; empty where a
 // bone's single one was.
 [[nodiscard]] std::string guided_bundles(const recording::RecordedSession& session);
+// What a tunnel was drilled by; where none was, the newest registration: at its end the world marker is taken
+// out, and nothing is registered any more. Throws IoError or InvalidInput where its file cannot be read.
+[[nodiscard]] std::optional<registration::RegistrationSummary> registration_that_counts(
+    const recording::RecordedSession& session);
 // What was asked before the guide was followed, and what spoke against it, as the session's events say it: a
 // name and a text each.
 [[nodiscard]] std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session);

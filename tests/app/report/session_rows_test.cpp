@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "navigation/tools/tool_set.h"
+#include "tests/temporary_folder.h"
+
 namespace arthronaut::report {
 namespace {
 
@@ -21,6 +24,34 @@ TEST(SessionRows, Hazard19ARecordingsFileIsNotNamed) {
   for (const char* source :
        {"Capture card", "udp://127.0.0.1:5000", "rtsp://tower.or3/scope.sdp", "gst:videotestsrc ! appsink"})
     EXPECT_EQ(neutral("live", source), source);
+}
+
+// The marker is taken out at the end of every operation: what was drilled before rests on what stood then.
+TEST(SessionRows, ATunnelIsToldOfByTheRegistrationThatItWasDrilledBy) {
+  const test::TemporaryFolder folder;
+  {
+    pipeline::PipelineOptions options;
+    options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+    options.tools = tools::standard_tools();
+    recording::SessionRecorder recorder(folder.path(), {}, options);
+    registration::RegistrationSummary registration;
+    registration.has_pose = registration.reliable = true;
+    registration.reasons.clear();
+    recorder.set_registration(registration);
+    recorder.add_event({1, std::string(recording::kVerifiedEvent), "", -1});
+    recorder.add_event({2, std::string(recording::kDrilledEvent), "achieved.json", -1});
+    registration.has_pose = registration.reliable = false;
+    registration.reasons = {"the world marker was placed anew"};
+    recorder.set_registration(registration);
+    recorder.finish();
+  }
+  const recording::RecordedSession session(folder.path());
+  ASSERT_FALSE(session.registration()->reliable);
+  EXPECT_TRUE(registration_that_counts(session)->reliable);
+  EXPECT_EQ(safety_rows(session).at(1).at(1), "verified by touches");
+  const std::vector<Step> steps = steps_of(session);
+  EXPECT_EQ(steps.front().words, "bone registered");
+  EXPECT_EQ(steps.back().words, "nothing is registered any more");
 }
 
 }  // namespace
