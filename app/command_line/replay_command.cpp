@@ -5,6 +5,7 @@
 #include "app/command_line/tracking_report.h"
 #include "navigation/recording/cut_short.h"
 #include "navigation/recording/replay.h"
+#include "navigation/recording/session_check.h"
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/csv_cell.h"
@@ -46,16 +47,20 @@ std::string table_of(const std::vector<recording::Difference>& differences) {
 
 void replay(Context& context, const ReplayArguments& arguments) {
   refuse_before_the_work({.read = {}, .written = {arguments.output}});
-  const recording::RecordedSession session(session_folder(arguments));
+  const std::filesystem::path folder = session_folder(arguments);
+  const recording::RecordedSession session(folder);
   const recording::ReplayOptions options = recording::replay_options_of(arguments.case_folder, session);
   recording::ReplaySummary summary;
   {
     Progress progress("replaying", static_cast<long>(session.frames().size()));
     summary = recording::replay_session(session, options, [&](long done) { progress.advance_to(done); });
   }
+  // The same again from a record that was changed is no proof of what was done.
+  const recording::SessionCheck check = recording::check_session(folder);
+  const bool is_as_recorded = check.outcome != recording::SessionCheck::Outcome::Broken;
   if (!arguments.output.empty()) files::write_atomically(arguments.output, table_of(summary.differences));
   if (arguments.output == "-") {
-    if (!summary.is_same()) context.exit_code = kUnreliable;
+    if (!summary.is_same() || !is_as_recorded) context.exit_code = kUnreliable;
     return;
   }
   context.say(format("session %s: %ld of %ld frames replayed", session.header().id.c_str(),
@@ -82,11 +87,15 @@ void replay(Context& context, const ReplayArguments& arguments) {
                        *summary.registration_mm));
   }
   for (const recording::Difference& difference : summary.differences) context.say(line_of(difference));
-  if (summary.is_same()) return context.say("the same");
-  context.say_unreliable("the replay",
-                         {summary.replayed_frames + summary.frames_without_picture == 0
-                              ? "no frame could be replayed"
-                              : std::to_string(summary.differences.size()) + " differences above tolerance"});
+  if (summary.is_same()) context.say("the same");
+  std::vector<std::string> reasons;
+  if (!is_as_recorded)
+    reasons.push_back("the record is not as it was recorded: " + recording::check_words(check));
+  if (!summary.is_same())
+    reasons.push_back(summary.replayed_frames + summary.frames_without_picture == 0
+                          ? "no frame could be replayed"
+                          : std::to_string(summary.differences.size()) + " differences above tolerance");
+  if (!reasons.empty()) context.say_unreliable("the replay", reasons);
 }
 
 }  // namespace

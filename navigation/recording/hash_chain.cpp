@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -23,6 +24,7 @@ namespace {
 
 constexpr std::string_view kColumns = "record,from,to,sha256,chain,of\n";
 constexpr std::size_t kHashDigits = 64;
+constexpr std::int64_t kMostRecords = 1'000'000'000'000;
 
 std::string link_of(const std::string& before, const ChainRecord& record) {
   return files::sha256_of(before + "\n" + std::to_string(record.number) + "," + std::to_string(record.from) +
@@ -79,17 +81,18 @@ ReadChain read_chain(const std::filesystem::path& session_folder) {
     }
     const std::string line = "line " + std::to_string(number + 2) + ": ";
     std::optional<ChainRecord> record = parsed(std::string_view(text).substr(at, end - at));
-    if (!record) {
-      read.problem = line + "is not a record of the chain";
-      break;
-    }
-    if (record->number != number || record->chain != link_of(last, *record)) {
-      read.problem = line + "does not follow from the one before: it, or one before it, was changed";
-      break;
-    }
-    last = record->chain;
-    read.records.push_back(std::move(*record));
     at = end + 1;
+    if (!record) {
+      if (read.problem.empty()) read.problem = line + "is not a record of the chain";
+      last.clear();
+      continue;
+    }
+    const bool follows = record->number == number && record->chain == link_of(last, *record);
+    if (!follows && read.problem.empty())
+      read.problem = line + "does not follow from the one before: it, or one before it, was changed";
+    last = record->chain;
+    number = std::min(record->number, kMostRecords);  // where lines are missing
+    if (follows) (read.problem.empty() ? read.records : read.beyond_the_break).push_back(std::move(*record));
   }
   return read;
 }

@@ -33,6 +33,9 @@ struct ChainRecord {
 struct ReadChain {
   std::vector<ChainRecord> records;  // as far as each follows from the one before
   std::string problem;               // where it breaks and how; empty where it does not
+  // Beyond the break, each that follows from what the line before it says: with `records` they tell which
+  // stretches are as recorded, but not that nothing was left out or put in.
+  std::vector<ChainRecord> beyond_the_break;
   bool ends_in_half_a_line = false;  // the program ended while it wrote it
 };
 // Throws IoError when there is no chain, or it cannot be read.

@@ -23,9 +23,10 @@ constexpr const char* kCutOff = "cut off: the lines that were written when the s
 constexpr const char* kAdded = "not in the chain: added later, or the chain's end is gone";
 
 // What the chain says at last: a later record takes the place of an earlier one.
-std::vector<const ChainRecord*> in_force(const std::vector<ChainRecord>& records) {
+std::vector<const ChainRecord*> in_force(const ReadChain& chain) {
   std::map<std::pair<std::string, std::int64_t>, const ChainRecord*> last;
-  for (const ChainRecord& record : records) last[{record.of, record.from}] = &record;
+  for (const auto* const records : {&chain.records, &chain.beyond_the_break})
+    for (const ChainRecord& record : *records) last[{record.of, record.from}] = &record;
   std::vector<const ChainRecord*> force;
   for (const auto& [place, record] : last) force.push_back(record);
   return force;
@@ -91,7 +92,6 @@ class Checker {
     if (!has_end_ && says_it_has_a_chain_.value_or(false)) add("chain.csv", 0, 0, kCutOff);
   }
 
- private:
   void look_at_database_bytes() {
     const auto is_of_database = [](const CheckFinding& finding) {
       return finding.of.starts_with(kDatabaseFile);
@@ -100,6 +100,7 @@ class Checker {
       look_at_bytes(*database_bytes_);
   }
 
+ private:
   void look_at_rows(const ChainRecord& record) {
     if (!database_) return;
     try {
@@ -204,11 +205,10 @@ SessionCheck check_session(const fs::path& session_folder,
   const ReadChain chain = read_chain(session_folder);
   check.record_count = static_cast<std::int64_t>(chain.records.size());
   if (!chain.records.empty()) check.head = chain.records.back().chain;
-  if (!chain.problem.empty())
-    check.findings.push_back({"chain.csv", 0, 0, "broken, and says nothing from there on: " + chain.problem});
+  if (!chain.problem.empty()) check.findings.push_back({"chain.csv", 0, 0, "broken: " + chain.problem});
   if (chain.ends_in_half_a_line && check.was_finished)
     check.findings.push_back({"chain.csv", 0, 0, "cut off in the middle of a record"});
-  const std::vector<const ChainRecord*> records = in_force(chain.records);
+  const std::vector<const ChainRecord*> records = in_force(chain);
   std::int64_t done = 0;
   for (const ChainRecord* const record : records) {
     if (stops && stops()) {
@@ -218,7 +218,12 @@ SessionCheck check_session(const fs::path& session_folder,
     checker.look_at(*record);
     if (progress) progress(++done, static_cast<std::int64_t>(records.size()));
   }
-  checker.look_beyond();
+  if (chain.problem.empty()) {
+    checker.look_beyond();
+  } else {  // a line that is gone may have spoken of whatever no other speaks of
+    checker.look_at_database_bytes();
+    check.notes.push_back("what the broken place of chain.csv spoke of: not looked at");
+  }
   say_what_is_outside(session_folder, check);
   check.outcome = check.findings.empty() ? SessionCheck::Outcome::Unbroken : SessionCheck::Outcome::Broken;
   return check;

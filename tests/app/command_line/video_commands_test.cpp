@@ -118,6 +118,7 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   EXPECT_EQ(same.exit_code, 0) << same.output << same.errors;
   EXPECT_THAT(same.output, HasSubstr("24 of 24 frames replayed"));
   EXPECT_THAT(same.output, Not(HasSubstr("cut short")));
+  EXPECT_EQ(same.errors, "");
   const auto verified = run_program({"verify", knee, "--session", session.filename()});
   EXPECT_EQ(verified.exit_code, 0) << verified.errors;
   EXPECT_THAT(verified.output, HasSubstr("as recorded"));
@@ -139,6 +140,7 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   const auto changed = run_program({"replay", knee, "-o", folder_ / "differences.csv"});
   EXPECT_EQ(changed.exit_code, 4);
   EXPECT_THAT(changed.output, HasSubstr("frame 7: pose of marker 2: 0.5"));
+  EXPECT_THAT(changed.errors, HasSubstr("the record is not as it was recorded: session.sqlite: frames 0 to"));
   EXPECT_THAT(changed.output,
               HasSubstr("the recording was cut short: the program ended before the session did"));
   const auto broken = run_program({"verify", knee, "--json"});

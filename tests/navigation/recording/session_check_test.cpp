@@ -244,16 +244,32 @@ TEST_F(SessionCheckTest, FindsItsOwnChainBroken) {
     const SessionCheck check = check_session(folder_);
     EXPECT_EQ(check.outcome, Outcome::Broken) << words;
     EXPECT_THAT(check_words(check), HasSubstr(words));
+    // What the other lines speak of is as recorded, and is not called anything else.
+    if (words.find("line ") != std::string::npos) {
+      EXPECT_EQ(check.findings.size(), 1u) << words;
+    }
   };
   std::vector<std::string> changed = lines;
   changed[8][changed[8].find(',') + 1] ^= 1;
-  expect_broken(changed, "chain.csv: is broken, and says nothing from there on: line 9");
+  expect_broken(changed, "chain.csv: is broken: line 9");
   changed = lines;
   changed.erase(changed.begin() + 7);
   expect_broken(changed, "line 8: does not follow");
   changed = lines;
   std::swap(changed[6], changed[7]);
   expect_broken(changed, "line 7: does not follow");
+  // Lines after the break still tell what is not as they say.
+  flip_byte("camera.json", 5);
+  changed = lines;
+  const auto of_heading = std::find_if(
+      lines.begin(), lines.end(), [](const std::string& line) { return line.ends_with(",session.json\n"); });
+  ASSERT_NE(of_heading, lines.end());
+  changed[static_cast<std::size_t>(of_heading - lines.begin())][0] = 'x';
+  put_text(folder_ / "chain.csv", joined(changed));
+  std::vector<std::string> named;
+  for (const CheckFinding& finding : check_session(folder_).findings) named.push_back(finding.of);
+  EXPECT_THAT(named, ::testing::ElementsAre("chain.csv", "camera.json"));
+  flip_byte("camera.json", 5);
   changed.assign(lines.begin(), lines.end() - 4);
   expect_broken(changed, "are not in the chain");
   put_text(folder_ / "chain.csv", "not a chain\n");
