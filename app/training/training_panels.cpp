@@ -139,12 +139,19 @@ void TrainingView::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {
 
 void TrainingView::draw_history(const widgets::Ui& ui, const widgets::Rect& area) const {
   std::vector<const Score*> runs;
-  for (const Score& score : scores_)
-    if (score.exercise == chosen().id && score.level == level_) runs.push_back(&score);
+  std::size_t others = 0;  // of `arthronaut train --keep`: they say nothing of how well this hand does
+  for (const Score& score : scores_) {
+    if (score.exercise != chosen().id || score.level != level_) continue;
+    if (score.trainee == training::kByHand)
+      runs.push_back(&score);
+    else
+      ++others;
+  }
   ui.log.note_state("train_runs", std::to_string(runs.size()));
   widgets::begin_panel(ui, "train.history", area,
                        "Points over time, " + std::string(to_text(level_)) + ": " +
-                           std::to_string(runs.size()) + (runs.size() == 1 ? " run" : " runs"));
+                           std::to_string(runs.size()) + (runs.size() == 1 ? " run" : " runs") +
+                           (others > 0 ? ", " + std::to_string(others) + " not by hand left out" : ""));
   if (runs.empty())
     widgets::text_in(ui.theme.body, widgets::kQuietText, "Not done at this level yet.");
   else {

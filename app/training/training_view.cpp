@@ -18,8 +18,6 @@ using Phase = theatre::LiveState::Phase;
 using simulator::Held;
 using training::Level;
 
-constexpr const char* kByHand = "by hand";
-
 }  // namespace
 
 void HandInbox::set(const simulator::HandInput& input) {
@@ -306,7 +304,7 @@ void TrainingView::keep_score(const training::ExerciseFacts& facts, const std::s
   score.when_utc = files::utc_now();
   score.knee = knee;
   score.session = session;
-  score.trainee = kByHand;
+  score.trainee = training::kByHand;
   if (!failure.empty())
     notice_ = failure;
   else if (facts.frames > 0) {

@@ -139,7 +139,8 @@ fs::path training_file() {
 const Score* best_of(const std::vector<Score>& scores, std::string_view exercise, Level level) {
   const Score* best = nullptr;
   for (const Score& score : scores) {
-    if (score.exercise != exercise || score.level != level || !score.is_done) continue;
+    if (score.exercise != exercise || score.level != level || !score.is_done || score.trainee != kByHand)
+      continue;
     const bool is_better = best == nullptr || score.points > best->points ||
                            (score.points == best->points && time_of(score) < time_of(*best));
     if (is_better) best = &score;

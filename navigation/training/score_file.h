@@ -24,7 +24,12 @@ void add_to_training_file(const std::filesystem::path& file, const Score& score)
 // The user's: $XDG_DATA_HOME/arthronaut/training.json, else ~/.local/share/...
 [[nodiscard]] std::filesystem::path training_file();
 
-// The most points of an exercise at a level that was done; of equals the one that took less time. Null: none.
+// Whose score it is that the window keeps; others are of a simulated trainee, or of a hand that is played
+// again.
+inline constexpr const char* kByHand = "by hand";
+
+// The most points of an exercise at a level that was done by hand; of equals the one that took less time.
+// Null: none.
 [[nodiscard]] const Score* best_of(const std::vector<Score>& scores, std::string_view exercise, Level level);
 
 }  // namespace arthronaut::training

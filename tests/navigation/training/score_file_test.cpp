@@ -96,7 +96,7 @@ TEST(TrainingFile, ManyAddAtOnce) {
   EXPECT_EQ(read_training_file(file).size(), std::size_t{kWriters * kEach});
 }
 
-// The best is of the same exercise and level, was done, and of equals took less time.
+// The best is of the same exercise and level, was done by hand, and of equals took less time.
 TEST(TrainingFile, FindsTheBest) {
   Score unfinished = made("aim", Level::Easy, 0.1);
   unfinished.is_done = false;
@@ -107,6 +107,9 @@ TEST(TrainingFile, FindsTheBest) {
   ASSERT_NE(best, nullptr);
   EXPECT_EQ(best, &scores[2]);
   EXPECT_EQ(best_of(scores, "aim", Level::Medium), nullptr);
+  std::vector<Score> played{made("aim", Level::Easy, 3), made("aim", Level::Easy, 0.1)};
+  played[1].trainee = "simulated trainee, careful";  // of `arthronaut train --keep`
+  EXPECT_EQ(best_of(played, "aim", Level::Easy), played.data());
   std::vector<Score> equals{made("aim", Level::Easy, 1, 29), made("aim", Level::Easy, 1, 20)};
   ASSERT_EQ(equals[0].points, equals[1].points);
   EXPECT_EQ(best_of(equals, "aim", Level::Easy), &equals[1]);
