@@ -230,6 +230,8 @@ void Report::result_section(const operation::AchievedTunnel& achieved) {
   pages_.heading(achieved.planned.bundle == norms::Bundle::Whole
                      ? "Planned against achieved"
                      : "Planned against achieved: " + tunnels::name_of(achieved.planned.key()));
+  if (const std::string since = changed_since(content_, achieved.planned); !since.empty())
+    pages_.sentence(since, {.bold = true, .ink = kWarning});
   const auto planned_measured = operation::compare(achieved.planned, achieved.measured);
   std::vector<std::vector<std::string>> rows = {
       {"Comparison", "Entry to entry", "Entry to axis", "Angle"},

@@ -1,12 +1,15 @@
 #include "app/report/report_content.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
 
 #include "app/report/report_words.h"
+#include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
+#include "planning/files/format.h"
 #include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/plan_review/proposed_landmarks.h"
@@ -162,6 +165,23 @@ std::optional<postop::AchievedPlace> place_of(const Content& content,
   return postop::place_of(achieved.measured, depth_mm, achieved.planned,
                           content.review->bone(bone).surroundings,
                           plan_review::state_of_grid(content.knee, bone));
+}
+
+std::string changed_since(const Content& content, const tunnels::Tunnel& guided) {
+  const auto now = content.knee.plan.tunnels.find(guided.key());
+  if (now == content.knee.plan.tunnels.end())
+    return "The plan was changed since: this tunnel is planned no more. What follows is against the plan "
+           "that "
+           "guided.";
+  const operation::TunnelDifference by = operation::compare(guided, now->second);
+  constexpr double kSame_mm = 0.05, kSame_deg = 0.05;  // as it is printed
+  const double wider_mm = now->second.diameter_mm - guided.diameter_mm;
+  if (by.entry_mm < kSame_mm && by.angle_deg < kSame_deg && std::abs(wider_mm) < kSame_mm) return "";
+  return files::format(
+      "The plan was changed since, by %.1f mm at the entry, %.1f\u00B0%s: what follows is against "
+      "the plan that guided, not the one on the first pages.",
+      by.entry_mm, by.angle_deg,
+      std::abs(wider_mm) < kSame_mm ? "" : files::format(" and %+.1f mm in diameter", wider_mm).c_str());
 }
 
 std::string verdict_of(const Content& content, const tunnels::TunnelKey& key) {

@@ -62,6 +62,8 @@ struct Content {
 // Where navigation says that it was drilled; nullopt where the case lacks the bone.
 [[nodiscard]] std::optional<postop::AchievedPlace> place_of(const Content& content,
                                                             const operation::AchievedTunnel& achieved);
+// Where the plan is not the one any more that guided there: how it differs; else empty.
+[[nodiscard]] std::string changed_since(const Content& content, const tunnels::Tunnel& guided);
 // "reliable", "not reliable", "of an earlier plan", "no tunnel found", "bone not found in the images".
 [[nodiscard]] std::string verdict_of(const Content& content, const tunnels::TunnelKey& key);
 // Why it must not be relied on, each reason once; empty: reliable.

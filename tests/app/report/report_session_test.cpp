@@ -61,6 +61,12 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   expect_contains(text, "least wall");
   expect_contains(text, "water");
   expect_contains(text, "CUT SHORT: the video stopped: video.mkv: disk full");
+  EXPECT_EQ(text.find("The plan was changed since"), std::string::npos);
+  // The first pages show today's plan, which did not guide.
+  knee_.plan.tunnels.at(bones::BoneKind::Femur).entry_mm += 3 * side;
+  cases::save_case(knee_folder(), knee_);
+  write(pdf());
+  expect_contains(pdf_text(), "The plan was changed since, by 3.0 mm at the entry, 0.0\u00B0: what follows");
 }
 
 // Each start of a source is a session of its own: what was drilled in the one before is not left out.
