@@ -61,6 +61,7 @@ class BonePane {
   [[nodiscard]] std::optional<bones::BoneKind> only() const { return only_; }
   [[nodiscard]] bool shows(bones::BoneKind bone) const { return !only_ || *only_ == bone; }
   [[nodiscard]] const scene::SceneCamera& camera() const { return pane_.camera(); }
+  void let_go_of_picture() { pane_.let_go_of_picture(); }
   void see_through(bool on);
   [[nodiscard]] bool is_see_through() const { return is_see_through_; }
   // The images in the bones' place, cut as these are, an MR also cut open; nullptr: the bones. What is seen

@@ -46,6 +46,7 @@ class PlanView : public mode::Mode {
     history_.settle_now();
     leave_defaults("Plan was left");  // elsewhere nobody sees the plan change
     tour_.plan_mode_left();
+    bones_.let_go_of_picture();
   }
   void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;

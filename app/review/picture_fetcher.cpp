@@ -48,13 +48,11 @@ std::vector<recording::QuickPictures::Name> names_of(const std::vector<recording
   return names;
 }
 
-std::function<PictureReader()> opening(const std::filesystem::path& folder,
-                                       std::shared_ptr<const recording::SessionTimeline> timeline) {
-  return [folder, timeline = std::move(timeline)]() -> PictureReader {
-    const recording::SessionOverview session = recording::read_overview(folder);
-    const auto names = names_of(timeline->frames());
-    const auto pictures = std::make_shared<recording::RecordedPictures>(session);
-    const auto copies = std::make_shared<recording::QuickPictures>(session, names);
+std::function<PictureReader()> opening(const SessionReview& review) {
+  return [session = review.session, timeline = review.timeline, opened = review.pictures]() -> PictureReader {
+    const auto pictures =
+        opened != nullptr ? opened : std::make_shared<recording::RecordedPictures>(*session);
+    const auto copies = std::make_shared<recording::QuickPictures>(*session, names_of(timeline->frames()));
     const auto making = std::make_shared<std::unique_ptr<CopyMaker>>();
     return {[pictures, timeline](const PictureWish& wish, const sources::OnTheWay& on_the_way) {
               return pictures->picture(wish.frame, wish.timestamp_ns, [&](const auto& passed) {
@@ -63,8 +61,9 @@ std::function<PictureReader()> opening(const std::filesystem::path& folder,
             },
             [pictures](const std::function<bool()>& goes_on) { pictures->read_before_remembered(goes_on); },
             [copies](const PictureWish& wish) { return copies->picture(wish.frame); },
-            [making, session, names](const PictureWish& wish) {
-              if (*making == nullptr) *making = std::make_unique<CopyMaker>(session, names);
+            [making, session, timeline](const PictureWish& wish) {
+              if (*making == nullptr)
+                *making = std::make_unique<CopyMaker>(*session, names_of(timeline->frames()));
               (*making)->make_about(wish.frame);
             }};
   };
@@ -72,10 +71,8 @@ std::function<PictureReader()> opening(const std::filesystem::path& folder,
 
 }  // namespace
 
-PictureFetcher::PictureFetcher(const std::filesystem::path& session_folder,
-                               std::shared_ptr<const recording::SessionTimeline> timeline,
-                               std::function<void()> on_news)
-    : PictureFetcher(opening(session_folder, std::move(timeline)), std::move(on_news)) {}
+PictureFetcher::PictureFetcher(const SessionReview& review, std::function<void()> on_news)
+    : PictureFetcher(opening(review), std::move(on_news)) {}
 
 PictureFetcher::PictureFetcher(std::function<PictureReader()> open, std::function<void()> on_news)
     : worker_(worker::Backlog::NewestWins, reading(std::move(open)), std::move(on_news)) {}

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "app/review/session_review.h"
 #include "navigation/camera/frame.h"
-#include "navigation/recording/session_timeline.h"
 #include "navigation/sources/on_the_way.h"
 #include "navigation/worker/worker.h"
 
@@ -44,8 +44,7 @@ struct PictureReader {
 class PictureFetcher {
  public:
   // on_news is called from the worker when a picture has come; it must not call back.
-  PictureFetcher(const std::filesystem::path& session_folder,
-                 std::shared_ptr<const recording::SessionTimeline> timeline, std::function<void()> on_news);
+  PictureFetcher(const SessionReview& review, std::function<void()> on_news);
   // The same of anything: open is called once, and what it gives as often as there are wishes, on the worker.
   PictureFetcher(std::function<PictureReader()> open, std::function<void()> on_news);
 

@@ -58,6 +58,7 @@ void ReviewView::case_opened(const mode::OpenCase& opened) {
 }
 
 void ReviewView::enter() {
+  give_freed_memory_back();  // of what was shown before: here are two hours, and pictures
   sessions_.read();
   const auto& folders = sessions_.folders();
   if (folders.empty()) {
@@ -113,7 +114,7 @@ void ReviewView::take_opened() {
       break;
     }
   if (!open.review.session->video().empty())
-    open.pictures = std::make_unique<PictureFetcher>(open.review.folder, open.review.timeline, wake_);
+    open.pictures = std::make_unique<PictureFetcher>(open.review, wake_);
   look_at_tunnel();
 }
 

@@ -47,6 +47,7 @@ class ReviewView : public mode::Mode {
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const override { return {"review."}; }
   void case_opened(const mode::OpenCase& opened) override;
   void enter() override;  // reads the list of sessions again; chooses the newest where none is chosen
+  void leave() override { pane_.let_go_of_picture(); }
   void add_actions(widgets::Actions& actions) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] bool is_busy() const override;

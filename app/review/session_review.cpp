@@ -1,6 +1,7 @@
 #include "app/review/session_review.h"
 
 #include <algorithm>
+#include <future>
 #include <utility>
 
 #include "app/guidance_severity/guidance_severity.h"
@@ -37,6 +38,14 @@ std::shared_ptr<const registration::RegistrationSummary> registration_of(const r
         registration::read_registration_file(folder / event.text));
   } catch (const std::runtime_error& error) {
     problems.emplace_back(error.what());
+    return nullptr;
+  }
+}
+
+std::shared_ptr<recording::RecordedPictures> opened(const recording::SessionOverview& session) {
+  try {
+    return std::make_shared<recording::RecordedPictures>(session);
+  } catch (const std::runtime_error&) {
     return nullptr;
   }
 }
@@ -84,7 +93,9 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
   review.folder = session_folder;
   review.session =
       std::make_shared<const recording::SessionOverview>(recording::read_overview(session_folder));
+  auto pictures = std::async(std::launch::async, [session = review.session] { return opened(*session); });
   review.timeline = std::make_shared<const recording::SessionTimeline>(session_folder);
+  review.pictures = pictures.get();
   const recording::SessionOverview& session = *review.session;
   const recording::SessionTimeline& timeline = *review.timeline;
   review.problems = session.problems;

@@ -10,6 +10,7 @@
 
 #include "app/review/moments.h"
 #include "navigation/operation/achieved_tunnel.h"
+#include "navigation/recording/recorded_pictures.h"
 #include "navigation/recording/session_overview.h"
 #include "navigation/recording/session_timeline.h"
 
@@ -36,6 +37,9 @@ struct SessionReview {
   std::filesystem::path folder;
   std::shared_ptr<const recording::SessionOverview> session;   // never null
   std::shared_ptr<const recording::SessionTimeline> timeline;  // its frames; never null
+  // Opened while the time line was read, for the one thread that fetches (picture_fetcher.h); null where it
+  // could not be: who opens it is told why.
+  std::shared_ptr<recording::RecordedPictures> pictures;
   std::vector<Moment> moments;
   std::vector<TimeTrack> tracks;
   // Rising, and never empty. Not what the case plans by now.

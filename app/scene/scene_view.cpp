@@ -259,6 +259,12 @@ void SceneView::set_still(bool is_still) {
   if (state_->volume != nullptr) state_->dirty = true;
 }
 
+void SceneView::let_go_of_picture() {
+  if (!state_->rendered) return;
+  resize(1, 1);
+  draw(1);
+}
+
 bool SceneView::render_if_dirty() {
   State& s = *state_;
   if (!s.dirty) return false;

@@ -28,6 +28,10 @@ class SceneView {
   // quarter of a second allows. True at first. Everything else is drawn alike.
   void set_still(bool is_still);
 
+  // Gives the picture's memory back, as of a view that is not on the screen now: on software OpenGL a large
+  // one holds some 100 MB. The next resize() to another size than 1 x 1 has it drawn again.
+  void let_go_of_picture();
+
   // Draws when something changed since the last time; returns whether it did. Leaves the OpenGL state to be
   // reset by the caller: bind framebuffer 0, set the viewport, disable the scissor test.
   bool render_if_dirty();

@@ -33,6 +33,11 @@ class ScenePane {
   void smooth_at_rest(bool smooths) { smooths_ = smooths; }
   void look(const scene::SceneCamera& camera) { camera_ = camera; }
   [[nodiscard]] const scene::SceneCamera& camera() const { return camera_; }
+  // For a pane that is not drawn for a while: its picture goes until it is.
+  void let_go_of_picture() {
+    if (view_ != nullptr) view_->let_go_of_picture();
+    changed_ = true;  // first at the quick size
+  }
 
   // Left drag turns, right or middle drag shifts, the wheel zooms; a press where is_handle(pixel) holds drags
   // the handle instead. While nothing moves the picture is drawn once more at twice the size, for smooth

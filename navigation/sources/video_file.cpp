@@ -55,6 +55,7 @@ class VideoFile : public FrameSource, public SeekableVideo {
     is_tolerant_ = true;
     add_missing_index();
     if (decode()) first_time_s_ = picture_s();
+    (void)seek(0);      // libavformat reads an index with the first seek: of two hours, a tenth of a second
     is_at_end_ = true;  // the first wish seeks
     most_remembered_ = has_key_frames_alone() ? 1 : kRememberedPictures;
   }

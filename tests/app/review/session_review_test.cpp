@@ -71,6 +71,31 @@ TEST(SessionReview, SaysWhichRegistrationIsBroken) {
   EXPECT_TRUE(review.problems.front().starts_with("registration_1.json: ")) << review.problems.front();
 }
 
+// Its pictures are opened while the time line is read; who asks for them where there are none is told why.
+TEST(SessionReview, BringsItsPicturesAlong) {
+  const test::TemporaryFolder folder;
+  {
+    recording::SessionRecorder recorder(folder.path(), test::session_header(), test::scripted_options());
+    for (const int i : {0, 1, 2}) {
+      auto picture = std::make_shared<camera::Frame>();
+      picture->index = i;
+      picture->width = 64;
+      picture->height = 48;
+      picture->bgr.assign(std::size_t{3} * 64 * 48, static_cast<std::uint8_t>(50 * i));
+      recorder.append_picture(picture);
+      recorder.append(test::frame_result(i));
+    }
+    recorder.finish();
+  }
+  const SessionReview review = read_review(folder.path());
+  ASSERT_NE(review.pictures, nullptr);
+  const auto picture = review.pictures->picture(1, review.timeline->frames()[1].timestamp_ns);
+  ASSERT_NE(picture, nullptr);
+  EXPECT_NEAR(picture->bgr[0], 50, 2);
+  std::filesystem::remove(review.session->video());
+  EXPECT_EQ(read_review(folder.path()).pictures, nullptr);
+}
+
 // What a session was made of is told with the word that it is a recording: a simulated one is nobody's knee.
 TEST(SessionReview, Hazard2SaysWhatTheRecordingIsOf) {
   recording::SessionHeader header = test::session_header();

@@ -1,6 +1,7 @@
 #include "app/scene/scene_view.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <Eigen/Geometry>
 #include <cstdlib>
@@ -138,6 +139,24 @@ std::vector<Axes> axes() {
           {"sagittal", sagittal, {0.7, 0.7, 1.5}},
           {"mirrored", turned * Vector3d(1, 1, -1).asDiagonal(), {0.8, 0.9, 1.2}},
           {"sheared", tilted, {0.8, 0.8, 1.2}}};
+}
+
+// A view that is not on the screen holds next to nothing; back on it, it shows what it showed.
+TEST_F(DrawnScene, LetsGoOfItsPictureUntilItIsShownAgain) {
+  const auto held_mb = [] {
+    const struct mallinfo2 info = ::mallinfo2();
+    return static_cast<double>(info.uordblks + info.hblkhd) * 1e-6;
+  };
+  SceneContent content;
+  content.bones = meshes();
+  view_->resize(2 * kSize_px, 2 * kSize_px);
+  const Image shown = picture(content, {0, 1, 0});
+  const double before_mb = held_mb();
+  view_->let_go_of_picture();
+  EXPECT_LT(held_mb(), before_mb - 10);
+  view_->resize(2 * kSize_px, 2 * kSize_px);
+  EXPECT_TRUE(view_->render_if_dirty());
+  EXPECT_EQ(view_->read_image().rgb, shown.rgb);
 }
 
 // The volume lies exactly where the bones lie, from every side, whatever the scanner's axes were.
