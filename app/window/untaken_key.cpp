@@ -8,7 +8,7 @@ namespace arthronaut::window {
 
 namespace {
 
-constexpr double kUntakenSaid_s = 5;
+constexpr double kUntakenSaid_s = 5, kPastSaid_s = 1.5;
 
 }  // namespace
 
@@ -17,6 +17,8 @@ void UntakenKey::note(const widgets::KeyPress& press, const widgets::Actions& ac
   const std::string name = widgets::key_name(press.key, press.mods);
   if (press.is_repeat || name.empty()) return;
   noted_at_s_ = now_s;
+  holds_ = true;
+  action_.clear();
   if (is_opening) {
     words_ = name + " did nothing: the case is still being opened. Press it again then";
     return;
@@ -27,11 +29,19 @@ void UntakenKey::note(const widgets::KeyPress& press, const widgets::Actions& ac
            std::ranges::any_of(prefixes,
                                [&](std::string_view prefix) { return action.id.starts_with(prefix); });
   });
-  if (its != actions.all().end()) words_ = name + " did nothing: " + its->label + " is not possible now";
+  if (its == actions.all().end()) return;
+  words_ = name + " did nothing: " + its->label + " is not possible now";
+  action_ = its->id;
+}
+
+void UntakenKey::look_again(const widgets::Actions& actions, bool is_opening) {
+  if (words_.empty()) return;
+  const widgets::Action* action = action_.empty() ? nullptr : actions.find(action_);
+  holds_ = holds_ && (action_.empty() ? is_opening : action == nullptr || !action->can_run());
 }
 
 std::string UntakenKey::words(double now_s) const {
-  return now_s - noted_at_s_ < kUntakenSaid_s ? words_ : std::string();
+  return now_s - noted_at_s_ < (holds_ ? kUntakenSaid_s : kPastSaid_s) ? words_ : std::string();
 }
 
 }  // namespace arthronaut::window

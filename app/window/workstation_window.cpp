@@ -258,6 +258,7 @@ void WorkstationWindow::dispatch_keys() {
                                              : shown().awaits_text();
     if (awaits_text) window_.await_text_field();
   }
+  untaken_.look_again(actions_, opening_ != nullptr);
   if (ImGui::GetIO().WantTextInput) actions_.let_go();
 }
 

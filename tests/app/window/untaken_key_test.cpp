@@ -32,6 +32,26 @@ TEST_F(UntakenKeys, NeedNoWordsWhereTheyAreForNothing) {
   EXPECT_EQ(after(GLFW_KEY_LEFT_SHIFT, true), "");
 }
 
+// Words that do not hold any more stay as long as they take to read, and no longer.
+TEST_F(UntakenKeys, GoOnceTheyDoNotHold) {
+  bool can_run = false;
+  widgets::Actions actions;
+  actions.add({"plan.default", "Default plan", "", GLFW_KEY_N, 0, false, [&] { return can_run; }, {}, {}});
+  UntakenKey untaken;
+  untaken.note({GLFW_KEY_N, 0, false}, actions, {"plan."}, false, 10);
+  untaken.look_again(actions, false);
+  EXPECT_NE(untaken.words(13), "");
+  can_run = true;
+  untaken.look_again(actions, false);
+  EXPECT_NE(untaken.words(11), "");
+  EXPECT_EQ(untaken.words(12), "");
+  untaken.note({GLFW_KEY_N, 0, false}, actions, {"plan."}, true, 20);
+  untaken.look_again(actions, true);
+  EXPECT_NE(untaken.words(23), "");
+  untaken.look_again(actions, false);
+  EXPECT_EQ(untaken.words(23), "");
+}
+
 TEST_F(UntakenKeys, AreForgottenWithTheNextThatIsTaken) {
   UntakenKey untaken;
   untaken.note({GLFW_KEY_N, 0, false}, actions_, {"plan."}, false, 10);
