@@ -231,11 +231,12 @@ void CaseList::draw_trends(const widgets::Ui& ui, const widgets::Rect& area) {
     const auto trend = static_cast<Trend>(view_.chart);
     charted = charted_trend(listed, trend, view_.with_simulated);
     left_out = library::trend_of(listed, trend, {.with_simulated = true}).size() - charted.points.size();
-    words = std::to_string(charted.points.size()) +
-            (charted.points.size() == 1 ? " session of " : " sessions of ") + std::to_string(found_.size()) +
-            (found_.size() == 1 ? " listed case" : " listed cases");
+    const std::string one = is_of_comparisons(trend) ? "tunnel in a CT" : "session";
+    const std::string many = is_of_comparisons(trend) ? "tunnels in CTs" : "sessions";
+    words = std::to_string(charted.points.size()) + " " + (charted.points.size() == 1 ? one : many) + " of " +
+            std::to_string(found_.size()) + (found_.size() == 1 ? " listed case" : " listed cases");
     if (left_out > 0) words += "; " + std::to_string(left_out) + " simulated left out";
-    words += limits_in_words(charted, std::to_string(library::kLeastForLimits) + " sessions");
+    words += limits_in_words(charted, std::to_string(library::kLeastForLimits) + " " + many);
   }
   ui.log.note_state("trend_points", std::to_string(charted.points.size()));
   ui.log.note_state("trend", chart_name(view_.chart));
@@ -252,7 +253,9 @@ void CaseList::draw_trends(const widgets::Ui& ui, const widgets::Rect& area) {
   if (charted.points.empty())
     widgets::text_in(ui.theme.strong, widgets::kQuietText,
                      left_out > 0 ? "Only simulated sessions say this number: Space counts them."
-                                  : "No session of the listed cases says this number.");
+                     : !is_accuracy && is_of_comparisons(static_cast<Trend>(view_.chart))
+                         ? "None of the listed cases was compared with a CT after the operation: P in Review."
+                         : "No session of the listed cases says this number.");
   else
     draw_chart(ui, rest, charted);
   widgets::end_panel();

@@ -16,6 +16,9 @@ std::optional<double> value_of(const SessionFacts& session, Trend trend) {
       return session.entry_offset_mm;
     case Trend::Angle:
       return session.angle_deg;
+    case Trend::AchievedOffset:
+    case Trend::AchievedAngle:
+      return std::nullopt;
     case Trend::PredictedError:
       // Of registrations that were found there: one that was brought along is the session's before.
       return session.registering_min ? session.predicted_error_mm : std::nullopt;
@@ -29,6 +32,26 @@ std::optional<double> value_of(const SessionFacts& session, Trend trend) {
   return std::nullopt;
 }
 
+const SessionFacts* newest_session_of(const CaseRecord& record, const std::string& bone) {
+  const auto found = std::find_if(record.sessions.rbegin(), record.sessions.rend(), [&](const auto& session) {
+    return session.bone == bone && !session.started_utc.empty();
+  });
+  return found != record.sessions.rend() ? &*found : nullptr;
+}
+
+void add_comparisons(const CaseRecord& record, Trend trend, const TrendOptions& options,
+                     std::vector<TrendPoint>& points) {
+  for (const PostoperativeFacts& facts : record.postoperative) {
+    const auto value = trend == Trend::AchievedOffset ? facts.entry_offset_mm : facts.angle_deg;
+    if (!value || !facts.is_reliable || (!options.bone.empty() && facts.bone != options.bone)) continue;
+    const SessionFacts* session = newest_session_of(record, facts.bone);
+    if (session == nullptr)
+      points.push_back({record.created_utc, *value, record.name, "", record.folder});
+    else if (!session->is_simulated() || options.with_simulated)
+      points.push_back({session->started_utc, *value, record.name, session->id, record.folder});
+  }
+}
+
 }  // namespace
 
 std::string_view to_text(Trend trend) {
@@ -37,6 +60,10 @@ std::string_view to_text(Trend trend) {
       return "Entry from the planned one";
     case Trend::Angle:
       return "Angle to the planned axis";
+    case Trend::AchievedOffset:
+      return "Entry from the planned one, by CT";
+    case Trend::AchievedAngle:
+      return "Angle to the planned axis, by CT";
     case Trend::PredictedError:
       return "Predicted error of the registration";
     case Trend::Registering:
@@ -52,9 +79,11 @@ std::string_view to_text(Trend trend) {
 std::string_view unit_of(Trend trend) {
   switch (trend) {
     case Trend::EntryOffset:
+    case Trend::AchievedOffset:
     case Trend::PredictedError:
       return "mm";
     case Trend::Angle:
+    case Trend::AchievedAngle:
       return "deg";
     case Trend::Registering:
     case Trend::Verifying:
@@ -68,6 +97,10 @@ std::vector<TrendPoint> trend_of(std::span<const CaseRecord> records, Trend tren
                                  const TrendOptions& options) {
   std::vector<TrendPoint> points;
   for (const CaseRecord& record : records) {
+    if (is_of_comparisons(trend)) {
+      add_comparisons(record, trend, options, points);
+      continue;
+    }
     for (const SessionFacts& session : record.sessions) {
       // Without a header nobody knows when it was, or whether of a simulation.
       if (session.started_utc.empty() || (session.is_simulated() && !options.with_simulated)) continue;

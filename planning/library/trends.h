@@ -15,12 +15,14 @@ namespace arthronaut::library {
 enum class Trend {
   EntryOffset,     // mm, of the drilled tunnel from the planned one
   Angle,           // degrees, likewise
+  AchievedOffset,  // mm, of the tunnel that a CT after the operation shows
+  AchievedAngle,   // degrees, likewise
   PredictedError,  // mm, of a registration that was found in the session: its confidence
   Registering,     // minutes a step, see SessionFacts
   Verifying,
   Drilling,
 };
-inline constexpr int kTrendCount = 6;
+inline constexpr int kTrendCount = 8;
 [[nodiscard]] std::string_view to_text(Trend trend);  // "Entry offset", ...
 [[nodiscard]] std::string_view unit_of(Trend trend);  // "mm", "deg", "min"
 
@@ -35,8 +37,13 @@ struct TrendOptions {
   bool with_simulated = false;  // a simulation is no operation: it would make the spread look small
   std::string bone = {};        // "femur", "tibia"; empty: either
 };
+// What was measured after the operation, in a CT; the others are of sessions.
+[[nodiscard]] constexpr bool is_of_comparisons(Trend trend) {
+  return trend == Trend::AchievedOffset || trend == Trend::AchievedAngle;
+}
 // In the order of time. Sessions that do not say the number, or whose header cannot be read, are left
-// out.
+// out, as are comparisons that are not reliable. A comparison is of its bone's newest session, which says
+// when it was and whether of a simulation; of none, of the day on which the case was made.
 [[nodiscard]] std::vector<TrendPoint> trend_of(std::span<const CaseRecord> records, Trend trend,
                                                const TrendOptions& options = {});
 

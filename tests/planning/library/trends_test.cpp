@@ -15,6 +15,16 @@ SessionFacts session(const std::string& when, double offset_mm, const std::strin
   return facts;
 }
 
+PostoperativeFacts found(const std::string& bone, double offset_mm, std::optional<double> angle_deg,
+                         bool is_reliable) {
+  PostoperativeFacts facts;
+  facts.bone = bone;
+  facts.entry_offset_mm = offset_mm;
+  facts.angle_deg = angle_deg;
+  facts.is_reliable = is_reliable;
+  return facts;
+}
+
 // Across cases, in the order of time; simulated sessions and the other bone only when they are asked for.
 TEST(TrendTest, GoesThroughTheSessionsInTime) {
   std::vector<CaseRecord> records(2);
@@ -42,6 +52,30 @@ TEST(TrendTest, LeavesOutWhatMayBeASimulation) {
   records[0].sessions[1].problem = "session.json: version: is 99";
   EXPECT_EQ(trend_of(records, Trend::EntryOffset).size(), 1U);
   EXPECT_EQ(trend_of(records, Trend::EntryOffset, {.with_simulated = true}).size(), 1U);
+}
+
+// What a CT shows is of the bone's newest session: it says when it was, and that it was no operation.
+TEST(TrendTest, GoesThroughTheComparisonsWithACt) {
+  std::vector<CaseRecord> records(3);
+  records[0].name = "A";
+  records[0].sessions = {session("2026-01-03", 1), session("2026-01-05", 1)};
+  records[0].postoperative = {found("femur", 2.5, 4, true), found("tibia", 9, 9, false)};
+  records[1].name = "B";
+  records[1].created_utc = "2026-01-04";
+  records[1].postoperative = {found("tibia", 1.5, std::nullopt, true)};
+  records[2].name = "C";
+  records[2].sessions = {session("2026-01-01", 1, "simulation")};
+  records[2].postoperative = {found("femur", 0.5, 1, true)};
+  const auto points = trend_of(records, Trend::AchievedOffset);
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[0].case_name, "B");
+  EXPECT_EQ(points[0].when_utc, "2026-01-04");
+  EXPECT_EQ(points[1].value, 2.5);
+  EXPECT_EQ(points[1].when_utc, "2026-01-05");
+  EXPECT_EQ(trend_of(records, Trend::AchievedOffset, {.with_simulated = true}).size(), 3U);
+  EXPECT_EQ(trend_of(records, Trend::AchievedOffset, {.bone = "femur"}).size(), 1U);
+  ASSERT_EQ(trend_of(records, Trend::AchievedAngle).size(), 1U);
+  EXPECT_EQ(trend_of(records, Trend::AchievedAngle)[0].value, 4);
 }
 
 // By hand: moving ranges 1, 2, 1, 0, 2, 1, 0 have the mean 1, so the limits are 3 / 1.128 = 2.6596 about 4.5.
