@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "planning/cases/identity.h"
+
 namespace arthronaut::command_line {
 
 namespace {
@@ -52,12 +54,6 @@ std::string with_count(int count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-// "20260131" as 2026-01-31; anything else as it is.
-std::string date_words(const std::string& date) {
-  if (date.size() != 8) return date.empty() ? "undated" : date;
-  return date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6, 2);
-}
-
 std::string quoted(const std::string& text) { return text.empty() ? "" : " \"" + text + "\""; }
 
 }  // namespace
@@ -82,15 +78,17 @@ Json json_of(const std::string& where, const pacs::FindSummary& found) {
 std::vector<std::string> lines_of(const pacs::FindSummary& found) {
   std::vector<std::string> lines;
   for (const auto& patient : found.patients) {
+    const std::string born =
+        cases::Identity{patient.name, patient.id, patient.birth_date}.birth_date_in_words();
     lines.push_back((patient.name.empty() ? "no name" : patient.name) +
                     (patient.id.empty() ? ", no ID" : ", ID " + patient.id) +
-                    (patient.birth_date.empty() ? "" : ", born " + date_words(patient.birth_date)) +
-                    (patient.sex.empty() ? "" : ", " + patient.sex) + ": " +
-                    with_count(patient.study_count, "study", "studies"));
+                    (born.empty() ? "" : ", born " + born) + (patient.sex.empty() ? "" : ", " + patient.sex) +
+                    ": " + with_count(patient.study_count, "study", "studies"));
     for (const auto& study : patient.studies) {
       std::string modalities;
       for (const auto& modality : study.modalities) modalities += " " + modality;
-      lines.push_back("  " + date_words(study.date) + modalities + quoted(study.description) + ": " +
+      lines.push_back("  " + (study.date.empty() ? "undated" : cases::date_in_words(study.date)) +
+                      modalities + quoted(study.description) + ": " +
                       with_count(study.series_count, "series", "series") + ", " +
                       with_count(study.image_count, "image", "images"));
       lines.push_back("    study UID " + study.uid);

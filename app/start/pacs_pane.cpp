@@ -32,6 +32,7 @@ void PacsPane::enter(const SendableCase& sendable) {
     view_.failure = error.what();
   }
   view_.peer = std::min(view_.peer, peers_.empty() ? 0 : peers_.size() - 1);
+  view_.scrolls_to_peer = true;
   if (peers_.size() == 1 && !lights_.contains(peers_.front().name)) echo();
 }
 
@@ -63,6 +64,10 @@ void PacsPane::take(const PacsNews& news, bool is_shown) {
       (news.kind == Kind::Echo || is_good))
     lights_[asked->name] = {.severity = is_good ? Severity::Good : Severity::Bad,
                             .words = news.kind == Kind::Echo ? news.words : "answers"};
+  // Nobody knows whether it still answers: what failed may be on this side.
+  if (asked != nullptr && news.state == State::Failed && news.kind != Kind::Echo &&
+      news.kind != Kind::WriteResults)
+    lights_.erase(asked->name);
   if (news.kind == Kind::Find && is_good) {
     found_ = news.found;
     list_found();
@@ -122,7 +127,12 @@ bool PacsPane::go_back() {
   return std::exchange(view_.page, Page::Search) != Page::Search;
 }
 
-// What was found is of one PACS.
+void PacsPane::choose_peer(std::size_t number) {
+  view_.peer = number;
+  view_.scrolls_to_peer = true;
+  forget_found();
+}
+
 void PacsPane::forget_found() {
   found_ = {};
   rows_.clear();
@@ -181,8 +191,7 @@ void PacsPane::keep_peer() {
     lights_.erase(view_.edited);
     lights_.erase(at->name);
     peers_ = std::move(peers);
-    view_.peer = row;
-    forget_found();  // of another, or of another address
+    choose_peer(row);  // another, or of another address
     view_.page = Page::Search;
     view_.failure.clear();
     echo();
@@ -197,8 +206,7 @@ void PacsPane::remove_peer() {
   try {  // as in keep_peer()
     save_pacs_peers(pacs_peers_file(), peers);
     peers_ = std::move(peers);
-    view_.peer = 0;
-    forget_found();
+    choose_peer(0);
     view_.failure.clear();
   } catch (const std::exception& error) {
     view_.failure = error.what();
@@ -282,8 +290,7 @@ void PacsPane::add_peer_actions(widgets::Actions& actions, const std::function<b
                [this, searches] { return searches() && peers_.size() > 1; },
                {},
                [this] {
-                 view_.peer = (view_.peer + 1) % peers_.size();
-                 forget_found();
+                 choose_peer((view_.peer + 1) % peers_.size());
                  if (!lights_.contains(peer()->name)) echo();
                }});
   const auto edit = [this](bool is_new) {

@@ -20,6 +20,8 @@ struct SendableCase {
   std::string name;
 };
 
+[[nodiscard]] widgets::Severity severity_of(PacsNews::State state);
+
 class PacsPane {
  public:
   // look_into: hands a fetched folder to the import.
@@ -59,7 +61,7 @@ class PacsPane {
   struct View {
     Page page = Page::Search;
     std::size_t peer = 0, row = 0;
-    bool scrolls_to_row = false, takes_focus = false;
+    bool scrolls_to_row = false, scrolls_to_peer = false, takes_focus = false;
     std::string patient_id, patient_name, date, modality;
     PacsPeerForm form;
     std::string edited;  // the name of the peer that is changed; empty: a new one
@@ -73,6 +75,7 @@ class PacsPane {
   void add_peer_actions(widgets::Actions& actions, const std::function<bool()>& searches);
   void add_send_actions(widgets::Actions& actions, const std::function<bool()>& sends);
   [[nodiscard]] const PacsPeer* peer() const;
+  void choose_peer(std::size_t number);  // what was found is of one PACS
   void echo();
   void find();
   void fetch();
@@ -86,6 +89,7 @@ class PacsPane {
 
   void draw_search(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_peers(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_peer_row(const widgets::Ui& ui, std::size_t number) const;
   void draw_fields(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_found(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_row_of(const widgets::Ui& ui, const Row& row, std::size_t number);

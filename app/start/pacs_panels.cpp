@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
 
 #include "app/start/pacs_pane.h"
 #include "app/widgets/list_rows.h"
+#include "planning/cases/identity.h"
 #include "planning/files/format.h"
 
 namespace arthronaut::start {
@@ -20,20 +20,6 @@ using widgets::draw_text;
 using widgets::fitting;
 using widgets::Severity;
 
-// "20260131" as 2026-01-31.
-std::string date_words(const std::string& date) {
-  if (date.size() != 8) return date.empty() ? "undated" : date;
-  return date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6, 2);
-}
-
-// "Muster^Anna" as Muster, Anna.
-std::string name_words(std::string name) {
-  while (!name.empty() && name.back() == '^') name.pop_back();
-  if (const auto at = name.find('^'); at != std::string::npos) name.replace(at, 1, ", ");
-  std::replace(name.begin(), name.end(), '^', ' ');
-  return name.empty() ? "no name" : name;
-}
-
 std::string counted(int count, const char* one, const char* many) {
   return count < 0 ? "? " + std::string(many) : std::to_string(count) + " " + (count == 1 ? one : many);
 }
@@ -44,13 +30,19 @@ const char* word_of(Kind kind) {
   return kWords[static_cast<std::size_t>(kind)];
 }
 
+// What an Esc leaves behind.
+const char* word_of_stopping(Kind kind) {
+  if (kind == Kind::Fetch) return "; what came whole is kept";
+  return kind == Kind::Send ? "; what is stored there stays there" : "";
+}
+
+}  // namespace
+
 Severity severity_of(State state) {
   if (state == State::Done) return Severity::Good;
   if (state == State::Failed) return Severity::Bad;
   return state == State::Unreliable || state == State::Stopped ? Severity::Caution : Severity::Quiet;
 }
-
-}  // namespace
 
 void PacsPane::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   note_states(ui);
@@ -97,7 +89,7 @@ void PacsPane::draw_search(const widgets::Ui& ui, const widgets::Rect& area) {
                         {"start.pacs.fetch", "start.pacs.find", "start.pacs.fields", "start.pacs.echo",
                          "start.pacs.results", "start.pacs.add", "start.back"});
   widgets::Rect left = rest.cut_left(ui.theme.px(520), ui.theme.px(12));
-  const widgets::Rect fields = left.cut_bottom(ui.theme.px(330), ui.theme.px(12));
+  const widgets::Rect fields = left.cut_bottom(ui.theme.px(280), ui.theme.px(12));
   draw_peers(ui, left);
   draw_fields(ui, fields);
   const bool has_news = work_.news().state != State::Idle && work_.news().kind != Kind::Echo;
@@ -106,52 +98,66 @@ void PacsPane::draw_search(const widgets::Ui& ui, const widgets::Rect& area) {
 }
 
 void PacsPane::draw_peers(const widgets::Ui& ui, const widgets::Rect& area) {
-  widgets::begin_panel(ui, "start.pacs.peers", area, "Which PACS");
+  widgets::Rect rest = area;
+  // What is done with the selected one, and why it fails, stay in sight however long the list is.
+  if (!peers_.empty())
+    widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(48), ui.theme.px(8)),
+                          {"start.pacs.next", "start.pacs.change", "start.pacs.remove"});
+  const auto asked = peer() != nullptr ? lights_.find(peer()->name) : lights_.end();
+  if (asked != lights_.end() && asked->second.severity == Severity::Bad) {
+    widgets::begin_panel(ui, "start.pacs.peer_says", rest.cut_bottom(ui.theme.px(152), ui.theme.px(8)));
+    widgets::status_row(ui, Severity::Bad, "No connection", asked->second.words);
+    widgets::end_panel();
+  }
+  widgets::begin_panel(ui, "start.pacs.peers", rest, "Which PACS");
   if (peers_.empty())
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      "None is known yet. Press A, and write what the hospital's IT tells you: its AE title, "
                      "host and port, and the title that it knows you by.");
-  const float height = ui.theme.px(76);
   for (std::size_t i = 0; i < peers_.size(); ++i) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetContentRegionAvail().x - ui.theme.px(50);
     if (widgets::draw_row(ui, {.name = "start.pacs.peer." + std::to_string(i),
                                .number = i,
-                               .height = height,
-                               .is_selected = i == view_.peer}) != widgets::RowPress::None &&
-        !work_.is_busy() && i != view_.peer) {
-      view_.peer = i;
-      found_ = {};
-      rows_.clear();
-    }
-    const auto known = lights_.find(peers_[i].name);
-    const bool is_asked = work_.is_busy() && work_.news().kind == Kind::Echo && i == view_.peer;
-    const Light light = is_asked                 ? Light{Severity::Quiet, "asking\u2026"}
-                        : known == lights_.end() ? Light{}
-                                                 : known->second;
-    ImDrawList& draw = *ImGui::GetWindowDrawList();
-    widgets::draw_sign(draw, {at.x + ui.theme.px(20), at.y + ui.theme.px(22)}, ui.theme.px(9),
-                       light.severity);
-    const float x = at.x + ui.theme.px(42);
-    draw_text(
-        draw, ui.theme.strong, x, at.y + ui.theme.px(8), widgets::kText,
-        fitting(ui.theme.strong, peers_[i].name + (peers_[i].connection.tls ? "  \u2013  TLS" : ""), width));
-    const bool is_bad = light.severity == Severity::Bad;
-    draw_text(draw, ui.theme.body, x, at.y + ui.theme.px(40), is_bad ? widgets::kBad : widgets::kQuietText,
-              fitting(ui.theme.body, is_bad ? light.words : peers_[i].address() + "  \u2013  " + light.words,
-                      width));
+                               .height = ui.theme.px(76),
+                               .is_selected = i == view_.peer,
+                               .scrolls_here = view_.scrolls_to_peer}) != widgets::RowPress::None &&
+        !work_.is_busy() && i != view_.peer)
+      choose_peer(i);
+    const ImVec2 after = ImGui::GetCursorScreenPos();
+    ImGui::SetCursorScreenPos(at);
+    draw_peer_row(ui, i);
+    ImGui::SetCursorScreenPos(after);
   }
-  const auto known = peer() != nullptr ? lights_.find(peer()->name) : lights_.end();
-  if (known != lights_.end() && known->second.severity == Severity::Bad)
-    widgets::status_row(ui, Severity::Bad, "No answer", known->second.words);
-  if (!peers_.empty()) {
-    for (const char* id : {"start.pacs.next", "start.pacs.change", "start.pacs.remove"}) {
-      widgets::action_button(ui, id, 0, ui.theme.px(44));
-      ImGui::SameLine();
-    }
-    ImGui::NewLine();
-  }
+  view_.scrolls_to_peer = false;
   widgets::end_panel();
+}
+
+// At ImGui's cursor: its name and whether it answers, and below it where it is, or what is wrong.
+void PacsPane::draw_peer_row(const widgets::Ui& ui, std::size_t number) const {
+  const PacsPeer& shown = peers_[number];
+  const auto known = lights_.find(shown.name);
+  const bool is_asked = work_.is_busy() && work_.news().kind == Kind::Echo && number == view_.peer;
+  const Light light = is_asked                 ? Light{Severity::Quiet, "asking\u2026"}
+                      : known == lights_.end() ? Light{}
+                                               : known->second;
+  const bool is_bad = light.severity == Severity::Bad;
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float x = at.x + ui.theme.px(42), right = ui.theme.px(130);
+  const float width = ImGui::GetContentRegionAvail().x - ui.theme.px(50);
+  widgets::draw_sign(draw, {at.x + ui.theme.px(20), at.y + ui.theme.px(22)}, ui.theme.px(9), light.severity);
+  draw_text(
+      draw, ui.theme.strong, x, at.y + ui.theme.px(8), widgets::kText,
+      fitting(ui.theme.strong, shown.name + (shown.connection.tls ? "  \u2013  TLS" : ""), width - right));
+  if (!is_bad)
+    draw_text(draw, ui.theme.body, x + width - right, at.y + ui.theme.px(8), widgets::kQuietText,
+              light.severity == Severity::Good ? "answers" : light.words);
+  // The address in front of the reason stands below the list.
+  const std::string address = shown.address() + ": ";
+  const std::string reason =
+      light.words.starts_with(address) ? light.words.substr(address.size()) : light.words;
+  draw_text(draw, ui.theme.body, x, at.y + ui.theme.px(40), is_bad ? widgets::kBad : widgets::kQuietText,
+            fitting(ui.theme.body, is_bad ? reason : shown.address(), width));
 }
 
 bool PacsPane::field(const widgets::Ui& ui, const char* id, const std::string& name, std::string& text,
@@ -191,8 +197,9 @@ void PacsPane::draw_work(const widgets::Ui& ui, const widgets::Rect& area) {
       words += files::format(": %d of %d, %.1f MB", progress.done, progress.total,
                              static_cast<double>(progress.bytes) / 1e6);
     if (!news.words.empty()) widgets::text_in(ui.theme.body, widgets::kCaution, news.words);
-    widgets::text_in(ui.theme.strong, widgets::kText,
-                     words + (has_running_work() ? ".  Esc stops; what came whole is kept" : "\u2026"));
+    widgets::text_in(
+        ui.theme.strong, widgets::kText,
+        words + (has_running_work() ? std::string(".  Esc stops") + word_of_stopping(news.kind) : "\u2026"));
     const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(20);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -265,13 +272,15 @@ void PacsPane::draw_row_of(const widgets::Ui& ui, const Row& row, std::size_t /*
   const bool is_patient = row.study == nullptr;
   std::string words, counts;
   if (is_patient) {
-    words = name_words(row.patient->name) +
-            (row.patient->id.empty() ? "  \u2013  no ID" : "  \u2013  ID " + row.patient->id);
-    if (!row.patient->birth_date.empty()) words += "  \u2013  born " + date_words(row.patient->birth_date);
+    const cases::Identity whose{row.patient->name, row.patient->id, row.patient->birth_date};
+    const std::string name = whose.name_in_words(), born = whose.birth_date_in_words();
+    words = (name.empty() ? "no name" : name) +
+            (whose.patient_id.empty() ? "  \u2013  no ID" : "  \u2013  ID " + whose.patient_id);
+    if (!born.empty()) words += "  \u2013  born " + born;
     if (!row.patient->sex.empty()) words += "  \u2013  " + row.patient->sex;
     counts = counted(row.patient->study_count, "study", "studies");
   } else {
-    words = date_words(row.study->date);
+    words = row.study->date.empty() ? "undated" : cases::date_in_words(row.study->date);
     for (const std::string& modality : row.study->modalities) words += " " + modality;
     if (!row.study->description.empty()) words += "  \u2013  " + row.study->description;
     counts = counted(row.study->series_count, "series", "series");
@@ -316,87 +325,6 @@ void PacsPane::draw_form(const widgets::Ui& ui, const widgets::Rect& area) {
       form.user);
   widgets::end_panel();
   if (keeps) keep_peer();
-}
-
-void PacsPane::draw_send(const widgets::Ui& ui, const widgets::Rect& area) {
-  widgets::Rect rest = area;
-  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-                        {view_.outgoing.empty() ? "start.pacs.write" : "start.pacs.send",
-                         "start.pacs.deidentified", "start.back"});
-  const PacsNews& news = work_.news();
-  const bool is_of_sending = news.kind == Kind::WriteResults || news.kind == Kind::Send;
-  if (is_of_sending && news.state == State::Running)
-    draw_work(ui, rest.cut_bottom(ui.theme.px(110), ui.theme.px(12)));
-  widgets::begin_panel(ui, "start.pacs.outgoing", rest);
-  widgets::status_row(ui, Severity::Quiet, "Case", view_.sendable.name);
-  if (peer() != nullptr)
-    widgets::status_row(ui, Severity::Quiet, "To",
-                        peer()->name + ", " + peer()->address() +
-                            (peer()->is_encrypted() ? ", by TLS" : ", not encrypted on the way"));
-  if (news.kind == Kind::WriteResults && news.state == State::Failed)
-    widgets::status_row(ui, Severity::Bad, "Not written", news.words);
-  if (news.kind == Kind::Send && news.state != State::Running) {
-    widgets::status_row(ui, severity_of(news.state), news.state == State::Failed ? "Not sent" : "Sent",
-                        news.words);
-    const pacs::Commitment commitment = news.sent.commitment;
-    if (commitment != pacs::Commitment::NotAsked)
-      widgets::status_row(ui,
-                          commitment == pacs::Commitment::Confirmed ? Severity::Good
-                          : commitment == pacs::Commitment::Failed  ? Severity::Bad
-                                                                    : Severity::Caution,
-                          std::string("Storage commitment ") + pacs::to_text(commitment),
-                          news.sent.commitment_note);
-  }
-  draw_outgoing(ui);
-  widgets::end_panel();
-}
-
-void PacsPane::draw_outgoing(const widgets::Ui& ui) {
-  if (view_.outgoing.empty()) {
-    widgets::status_row(ui, view_.is_deidentified ? Severity::Good : Severity::Caution, "Identity",
-                        view_.is_deidentified ? "De-identified: it will name nobody"
-                                              : "It will name the patient and be filed in his study");
-    widgets::text_in(ui.theme.body, widgets::kQuietText,
-                     "Nothing is sent yet. Enter writes what would go out and lists it here; D leaves the "
-                     "patient out.");
-    return;
-  }
-  // By what the objects themselves say.
-  std::set<std::string> named;
-  for (const pacs::SentFile& file : view_.outgoing)
-    if (!file.patient_name.empty() || !file.patient_id.empty())
-      named.insert(name_words(file.patient_name) + ", ID " + file.patient_id);
-  std::string names;
-  for (const std::string& name : named) names += (names.empty() ? "" : "; ") + name;
-  if (view_.is_deidentified)
-    widgets::status_row(ui, Severity::Good, "Identity",
-                        "De-identified: filed as \"" + view_.outgoing.front().patient_name + "\", ID \"" +
-                            view_.outgoing.front().patient_id + "\"");
-  else if (named.empty())
-    widgets::status_row(ui, Severity::Caution, "Identity",
-                        "Names nobody: the case knows no patient, and a PACS may refuse it");
-  else
-    widgets::status_row(ui, named.size() == 1 ? Severity::Caution : Severity::Bad, "Identity",
-                        "Names the patient: " + names);
-  if (!view_.outgoing_doubts.empty())
-    widgets::status_row(ui, Severity::Caution, "Look", view_.outgoing_doubts);
-  const PacsNews& news = work_.news();
-  for (const pacs::SentFile& written : view_.outgoing) {
-    const pacs::SentFile* sent = nullptr;
-    for (const pacs::SentFile& file : news.sent.files)
-      if (file.sop_instance_uid == written.sop_instance_uid) sent = &file;
-    std::error_code error;
-    const auto size = std::filesystem::file_size(written.file, error);
-    std::string words = written.file.filename().string();
-    if (!error) words += files::format(", %.1f MB", static_cast<double>(size) / 1e6);
-    if (sent != nullptr && sent->is_stored) words += sent->is_committed ? ": stored, kept" : ": stored";
-    if (sent != nullptr && !sent->note.empty()) words += ": " + sent->note;
-    const Severity severity = sent == nullptr      ? Severity::Quiet
-                              : !sent->is_stored   ? Severity::Bad
-                              : sent->is_committed ? Severity::Good
-                                                   : Severity::Caution;
-    widgets::status_row(ui, severity, written.title, words);
-  }
 }
 
 }  // namespace arthronaut::start

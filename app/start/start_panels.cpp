@@ -232,6 +232,11 @@ void StartView::draw_result(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note("start.name", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   ImGui::Dummy({0, ui.theme.px(6)});
   if (!work_.failure().empty()) widgets::status_row(ui, Severity::Bad, "Not written", work_.failure());
+  // Of what was fetched from a PACS, or lies on a disc, nothing else on this page says whose it is.
+  if (const std::string whose = work_.result().identity.in_words(); !whose.empty()) {
+    widgets::status_row(ui, Severity::Quiet, "Patient", whose);
+    ui.log.note_state("import_patient", whose);
+  }
   const SideLine side = side_line(work_.result(), state_.side, state_.side_was_said);
   widgets::status_row(ui, side.severity, "Side", side.text);
   ui.log.note_state("import_side",

@@ -26,6 +26,9 @@ struct Identity {
   bool operator==(const Identity&) const = default;
 };
 
+// DICOM's "20260131" as "2026-01-31"; anything else as it is.
+[[nodiscard]] std::string date_in_words(const std::string& date);
+
 [[nodiscard]] std::filesystem::path identity_file(const std::filesystem::path& case_folder);
 
 // Nothing when the case has no identity.json. Throws IoError or InvalidInput (file, place, reason).

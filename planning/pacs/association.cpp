@@ -23,6 +23,7 @@ namespace {
 constexpr long kLargestPdu_bytes = ASC_MAXIMUMPDUSIZE;
 
 constexpr double kLongestPause_s = 15;
+constexpr const char* kBroke = "the connection broke";
 constexpr std::chrono::milliseconds kLongestFarewell{500};
 // For a host of several addresses, TLS and the negotiation together.
 constexpr double kConnectTimeouts = 3;
@@ -91,7 +92,7 @@ std::string reason_of(const OFCondition& condition) {
   // ..."
   if (const auto at = text.find("I/O Error ("); at != std::string::npos) {
     const std::size_t from = at + 11;
-    return "the connection broke: " + text.substr(from, text.find(')', from) - from);
+    return std::string(kBroke) + ": " + text.substr(from, text.find(')', from) - from);
   }
   // "TCP Initialization Error: Connection refused" and the like.
   if (const auto at = text.rfind("Error: "); at != std::string::npos) text = text.substr(at + 7);
@@ -117,7 +118,7 @@ std::string status_text(unsigned status, const std::string& comment) {
   if (status == 0x0112) meaning = " (no such object)";
   if (status == 0x0211) meaning = " (unrecognised operation)";
   if (status == 0xA801) meaning = " (it does not know where to send)";
-  if ((status & 0xFF00U) == 0xA700) meaning = " (it is out of resources)";
+  if ((status & 0xFF00U) == 0xA700) meaning = " (it is out of resources, as with a full disk)";
   if ((status & 0xFF00U) == 0xA900) meaning = " (the data are not of the class that they name)";
   if ((status & 0xF000U) == 0xC000) meaning = " (it cannot understand or process that)";
   return files::format("status 0x%04X", status) + meaning + (comment.empty() ? "" : ": " + comment);
@@ -152,6 +153,9 @@ std::unique_ptr<Association> Association::connect(const Peer& peer, const Connec
       refusal.reason =
           options.tls ? "ended the connection while it began; it may not speak TLS there, or not trust us"
                       : "ended the connection while it began; it may speak TLS alone there";
+    // Who refuses our certificate may close with our word unread, so that his reason is lost.
+    if (options.tls && refusal.reason.find(kBroke) != std::string::npos)
+      refusal.reason += "; it may not trust our certificate, or not speak TLS there";
     if (outcome.module() == OFM_dcmtls)
       refusal.reason =
           "did not begin TLS: it may not speak TLS there (then leave TLS out), or not trust our "

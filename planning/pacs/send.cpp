@@ -28,15 +28,35 @@ struct Loaded {
   std::string transfer_syntax;
 };
 
-// The head, or all of it. Throws InvalidInput.
+// The head, up to what says in words what it is; or all of it. Throws InvalidInput.
 void load(const fs::path& file, bool is_whole, Loaded& loaded) {
   const OFFilename name(file.c_str());
   const OFCondition outcome =
       is_whole ? loaded.format.loadFile(name, EXS_Unknown, EGL_noChange, DCM_MaxReadLength, ERM_fileOnly)
                : loaded.format.loadFileUntilTag(name, EXS_Unknown, EGL_noChange, DCM_MaxReadLength,
-                                                ERM_fileOnly, DCM_PatientBirthDate);
+                                                ERM_fileOnly, DCM_PresentationCreationDate);
   if (outcome.bad()) throw InvalidInput(file, "", std::string("broken or cut off: ") + outcome.text());
   loaded.transfer_syntax = DcmXfer(loaded.format.getDataset()->getOriginalXfer()).getXferID();
+}
+
+// What kind of thing it is, for people: DICOM's own name for what we do not write.
+std::string kind_of(const std::string& sop_class) {
+  if (sop_class == UID_EncapsulatedSTLStorage) return "Model";
+  if (sop_class == UID_EncapsulatedPDFStorage) return "Document";
+  if (sop_class == UID_SecondaryCaptureImageStorage) return "Picture";
+  if (sop_class == UID_SpatialFiducialsStorage) return "Points";
+  std::string name = dcmFindNameOfUID(sop_class.c_str(), "object");
+  if (const auto at = name.rfind("Storage"); at != std::string::npos && at > 0) name.erase(at);
+  return name;
+}
+
+std::string title_of(DcmDataset& dataset, const std::string& sop_class) {
+  // The words for this one object, else those of all its series.
+  for (const DcmTagKey& key :
+       {DCM_DocumentTitle, DCM_ContentDescription, DCM_ImageComments, DCM_SeriesDescription})
+    if (const auto words = images::utf8_text_of(dataset, key); !words.empty())
+      return kind_of(sop_class) + ": " + words;
+  return kind_of(sop_class);
 }
 
 SentFile described(const fs::path& file) {
@@ -50,11 +70,8 @@ SentFile described(const fs::path& file) {
   DcmDataset& dataset = *loaded.format.getDataset();
   described.patient_name = images::utf8_text_of(dataset, DCM_PatientName);
   described.patient_id = images::utf8_text_of(dataset, DCM_PatientID);
-  described.title = dcmFindNameOfUID(described.sop_class_uid.c_str(), "object");
-  if (const auto at = described.title.rfind("Storage"); at != std::string::npos && at > 0)
-    described.title.erase(at);
-  if (const auto words = images::utf8_text_of(dataset, DCM_SeriesDescription); !words.empty())
-    described.title += ": " + words;
+  described.birth_date = images::text_of(dataset, DCM_PatientBirthDate);
+  described.title = title_of(dataset, described.sop_class_uid);
   if (!is_uid(described.sop_class_uid) || !is_uid(described.sop_instance_uid))
     throw InvalidInput(file, "", "does not say which object of which class it is; a DICOMDIR is not sent");
   return described;

@@ -29,8 +29,8 @@ struct SendOptions {
 struct SentFile {
   std::filesystem::path file;
   std::string sop_class_uid, sop_instance_uid;
-  // What it says of itself, UTF-8: whom it names, as DICOM has it; "Encapsulated STL: Femur".
-  std::string patient_name = {}, patient_id = {}, title = {};
+  // What it says of itself, UTF-8: whom it names, as DICOM has it; "Model: Femur of a left knee".
+  std::string patient_name = {}, patient_id = {}, birth_date = {}, title = {};
   bool is_stored = false, is_committed = false;
   std::string note;  // why not; or what the peer remarked on
 };

@@ -145,10 +145,15 @@ TEST_F(PacsWorkTest, WritesListsAndSendsResults) {
   const PacsNews written = do_pacs_job(write, ARTHRONAUT_PROGRAM);
   ASSERT_TRUE(written.state == State::Done || written.state == State::Unreliable) << written.words;
   ASSERT_FALSE(written.files.empty());
+  std::set<std::string> titles;
   for (const pacs::SentFile& file : written.files) {
-    EXPECT_FALSE(file.title.empty()) << file.file;
+    titles.insert(file.title);
     EXPECT_EQ(file.patient_id, written.files.front().patient_id);
   }
+  // In words that tell one from the other.
+  EXPECT_TRUE(titles.contains("Model: Femur of a right knee")) << *titles.begin();
+  EXPECT_TRUE(titles.contains("Document: ACL reconstruction: plan and report"));
+  EXPECT_EQ(titles.size(), written.files.size());
   // The same again takes the place of the first.
   const PacsNews again = do_pacs_job(write, ARTHRONAUT_PROGRAM);
   EXPECT_EQ(again.files.size(), written.files.size()) << again.words;

@@ -92,6 +92,15 @@ TEST_F(PacsWindow, SaysThatThePacsIsAway) {
   orthanc->start();
   app.press("e");
   ASSERT_TRUE(app.wait_for_state("pacs_light", "good"));
+  // A light stays green no longer than it was answered.
+  orthanc->kill();
+  app.press("f");
+  ASSERT_TRUE(app.wait_for_state("pacs_typing", "yes"));
+  app.type("4711");
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("pacs_work", "find-failed"));
+  EXPECT_EQ(app.state("pacs_light"), "quiet");
+  ASSERT_TRUE(app.wait_for_state("pacs_typing", "no"));
   app.press("Escape");
   ASSERT_TRUE(app.wait_for_state("start", "cases"));
 }

@@ -119,6 +119,8 @@ TEST_F(Privacy, NobodyWasBornInTheYearOne) {
   EXPECT_EQ((Identity{"", "4711", "19900131"}.birth_date_in_words()), "1990-01-31");
   EXPECT_EQ((Identity{"", "4711", "00010101"}.birth_date_in_words()), "");
   EXPECT_EQ((Identity{"", "4711", "00010101"}.in_words()), "4711");
+  EXPECT_EQ(date_in_words("20260131"), "2026-01-31");
+  EXPECT_EQ(date_in_words("2026-013"), "2026-013");
 }
 
 TEST_F(Privacy, Hazard19IdentityIsPrivateEvenInAnOpenFolder) {

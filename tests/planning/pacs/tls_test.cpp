@@ -81,6 +81,17 @@ TEST_F(PacsTls, RefusesWhomTheAuthorityDoesNotSign) {
               AllOf(HasSubstr("its certificate"), HasSubstr("not trusted"), Not(HasSubstr("tried"))));
 }
 
+// A peer that refuses ours often closes without a word of why.
+TEST_F(PacsTls, SaysThatOursMayNotBeTrusted) {
+  const test::Orthanc orthanc(form("IP:127.0.0.1"));
+  test::Authority stranger("Somebody else");
+  const std::string path = stranger.sign("stranger", "DNS:theatre").string();
+  ConnectionOptions connection = secure();
+  connection.tls->certificate = path + ".pem";
+  connection.tls->key = path + ".key";
+  EXPECT_THAT(refusal_of(orthanc.peer(), connection), HasSubstr("trust"));
+}
+
 TEST_F(PacsTls, RefusesAnExpiredCertificate) {
   const test::Orthanc orthanc(form("IP:127.0.0.1", -1));
   EXPECT_THAT(refusal_of(orthanc.peer(), secure()), HasSubstr("certificate has expired"));

@@ -1,0 +1,110 @@
+// How the results that go to the PACS look.
+#include <imgui.h>
+
+#include <algorithm>
+#include <set>
+
+#include "app/start/pacs_pane.h"
+#include "app/widgets/list_rows.h"
+#include "planning/cases/identity.h"
+#include "planning/files/format.h"
+
+namespace arthronaut::start {
+
+using Kind = PacsJob::Kind;
+using State = PacsNews::State;
+using widgets::Severity;
+
+void PacsPane::draw_send(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::Rect rest = area;
+  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+                        {view_.outgoing.empty() ? "start.pacs.write" : "start.pacs.send",
+                         "start.pacs.deidentified", "start.back"});
+  const PacsNews& news = work_.news();
+  const auto stored = std::count_if(news.sent.files.begin(), news.sent.files.end(),
+                                    [](const pacs::SentFile& file) { return file.is_stored; });
+  const bool are_all_stored = news.state == State::Done || news.state == State::Unreliable;
+  const bool is_of_sending = news.kind == Kind::WriteResults || news.kind == Kind::Send;
+  if (is_of_sending && news.state == State::Running)
+    draw_work(ui, rest.cut_bottom(ui.theme.px(110), ui.theme.px(12)));
+  widgets::begin_panel(ui, "start.pacs.outgoing", rest);
+  widgets::status_row(ui, Severity::Quiet, "Case", view_.sendable.name);
+  if (peer() != nullptr)
+    widgets::status_row(ui, Severity::Quiet, "To",
+                        peer()->name + ", " + peer()->address() +
+                            (peer()->is_encrypted() ? ", by TLS" : ", not encrypted on the way"));
+  if (news.kind == Kind::WriteResults && news.state == State::Failed)
+    widgets::status_row(ui, Severity::Bad, "Not written", news.words);
+  if (news.kind == Kind::Send && news.state != State::Running) {
+    // Whether it commits itself to keep them is the next line's.
+    widgets::status_row(ui, are_all_stored ? Severity::Good : severity_of(news.state),
+                        are_all_stored ? "Sent"
+                        : stored == 0  ? "Not sent"
+                                       : "Not all sent",
+                        news.words);
+    const pacs::Commitment commitment = news.sent.commitment;
+    if (commitment != pacs::Commitment::NotAsked)
+      widgets::status_row(ui,
+                          commitment == pacs::Commitment::Confirmed ? Severity::Good
+                          : commitment == pacs::Commitment::Failed  ? Severity::Bad
+                                                                    : Severity::Caution,
+                          std::string("Storage commitment ") + pacs::to_text(commitment),
+                          news.sent.commitment_note);
+  }
+  draw_outgoing(ui);
+  widgets::end_panel();
+}
+
+void PacsPane::draw_outgoing(const widgets::Ui& ui) {
+  if (view_.outgoing.empty()) {
+    widgets::status_row(ui, view_.is_deidentified ? Severity::Good : Severity::Caution, "Identity",
+                        view_.is_deidentified ? "De-identified: it will name nobody"
+                                              : "It will name the patient and be filed in his study");
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     "Nothing is sent yet. Enter writes what would go out and lists it here; D leaves the "
+                     "patient out.");
+    return;
+  }
+  // By what the objects themselves say.
+  std::set<std::string> named;
+  for (const pacs::SentFile& file : view_.outgoing)
+    if (!file.patient_name.empty() || !file.patient_id.empty())
+      named.insert(cases::Identity{file.patient_name, file.patient_id, file.birth_date}.in_words());
+  std::string names;
+  for (const std::string& name : named) names += (names.empty() ? "" : "; ") + name;
+  if (view_.is_deidentified)
+    widgets::status_row(ui, Severity::Good, "Identity",
+                        "De-identified: filed as \"" + view_.outgoing.front().patient_name + "\", ID \"" +
+                            view_.outgoing.front().patient_id + "\"");
+  else if (named.empty())
+    widgets::status_row(ui, Severity::Caution, "Identity",
+                        "Names nobody: the case knows no patient, and a PACS may refuse it");
+  else
+    widgets::status_row(ui, named.size() == 1 ? Severity::Caution : Severity::Bad, "Identity",
+                        "Names the patient: " + names);
+  if (!view_.outgoing_doubts.empty())
+    widgets::status_row(ui, Severity::Caution, "Look", view_.outgoing_doubts);
+  const PacsNews& news = work_.news();
+  for (const pacs::SentFile& written : view_.outgoing) {
+    const pacs::SentFile* sent = nullptr;
+    for (const pacs::SentFile& file : news.sent.files)
+      if (file.sop_instance_uid == written.sop_instance_uid) sent = &file;
+    std::error_code error;
+    const auto size = std::filesystem::file_size(written.file, error);
+    std::string words = written.file.filename().string();
+    if (!error)
+      words += size < 100000 ? files::format(", %.1f kB", static_cast<double>(size) / 1e3)
+                             : files::format(", %.1f MB", static_cast<double>(size) / 1e6);
+    if (sent != nullptr && sent->is_stored) words += sent->is_committed ? ": stored, kept" : ": stored";
+    if (sent != nullptr && !sent->note.empty()) words += ": " + sent->note;
+    const bool is_given_up = news.sent.commitment == pacs::Commitment::Failed;
+    const Severity severity = sent == nullptr                            ? Severity::Quiet
+                              : !sent->is_stored                         ? Severity::Bad
+                              : is_given_up && !sent->is_committed       ? Severity::Bad
+                              : sent->is_committed || sent->note.empty() ? Severity::Good
+                                                                         : Severity::Caution;
+    widgets::status_row(ui, severity, written.title, words);
+  }
+}
+
+}  // namespace arthronaut::start
