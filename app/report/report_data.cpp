@@ -145,6 +145,7 @@ ordered_json postoperative_of(const Content& content) {
     node["angle_deg"] = number(geometry::deg_from_rad(found.angle_rad));
     node["length_mm"] = number(found.length_mm);
     node["comes_out"] = found.is_found ? ordered_json(found.comes_out) : ordered_json();
+    node["end_is_seen"] = found.is_found ? ordered_json(found.end_is_seen) : ordered_json();
     node["beyond_mm"] = number(found.beyond_mm);
     node["entry_sigma_mm"] = number(found.entry_sigma_mm);
     node["direction_sigma_deg"] = number(geometry::deg_from_rad(found.direction_sigma_rad));

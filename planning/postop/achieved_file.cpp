@@ -28,6 +28,7 @@ ordered_json tunnel_json(const tunnels::TunnelKey& key, const AchievedTunnel& ac
   json["reliable"] = achieved.reliable;
   json["reasons"] = achieved.reasons;
   json["comes_out"] = found ? ordered_json(achieved.comes_out) : ordered_json();
+  json["end_is_seen"] = found ? ordered_json(achieved.end_is_seen) : ordered_json();
   json["beyond_mm"] = found ? ordered_json(achieved.beyond_mm) : ordered_json();
   json["entry_sigma_mm"] = number(found, achieved.entry_sigma_mm);
   json["direction_sigma_deg"] = number(found, geometry::deg_from_rad(achieved.direction_sigma_rad));
@@ -80,6 +81,7 @@ AchievedTunnel tunnel_of(const files::JsonObject& node, const tunnels::TunnelKey
   achieved.offset_mm = node.number("offset_mm");
   achieved.angle_rad = geometry::rad_from_deg(node.number("angle_deg"));
   if (node.has("comes_out")) achieved.comes_out = node.boolean("comes_out");
+  if (node.has("end_is_seen")) achieved.end_is_seen = node.boolean("end_is_seen");
   if (node.has("beyond_mm")) achieved.beyond_mm = node.number("beyond_mm");
   if (node.has("entry_sigma_mm")) achieved.entry_sigma_mm = node.number("entry_sigma_mm");
   if (node.has("direction_sigma_deg"))

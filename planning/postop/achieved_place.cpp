@@ -112,6 +112,7 @@ std::string wall_in_words(const AchievedPlace& place) {
 
 std::string length_in_words(const AchievedTunnel& achieved) {
   std::string words = files::format("%.1f mm", achieved.length_mm);
+  if (!achieved.end_is_seen) return words + ", its end not seen";
   if (achieved.comes_out) return words;
   words += ", a socket";
   if (achieved.beyond_mm > 0) words += files::format("; beyond it a bore of %.1f mm", achieved.beyond_mm);

@@ -48,7 +48,8 @@ struct AchievedPlace {
 [[nodiscard]] std::string grid_in_words(const AchievedPlace& place);
 // "1.8 mm; planned 2.6 mm"; empty where the drilled one's is not known.
 [[nodiscard]] std::string wall_in_words(const AchievedPlace& place);
-// "27.3 mm"; "22.0 mm, a socket; beyond it a bore of 4.5 mm". Precondition: the tunnel was found.
+// "27.3 mm"; "22.0 mm, a socket; beyond it a bore of 4.5 mm"; "30.5 mm, its end not seen". Precondition: the
+// tunnel was found.
 [[nodiscard]] std::string length_in_words(const AchievedTunnel& achieved);
 // How wide it is along the wall: "8.9 to 11.6 mm, widest 2 mm from the entry"; without a place where it is no
 // wider there than the errors of its widths let expect of an even bore; "9.1 mm" where all of it rounds to

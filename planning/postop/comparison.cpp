@@ -40,6 +40,7 @@ AchievedTunnel told(const DrilledTunnel& drilled, const FoundBone& bone, const t
     achieved.tunnel = drilled.tunnel;
     achieved.length_mm = drilled.length_mm;
     achieved.comes_out = drilled.comes_out;
+    achieved.end_is_seen = drilled.end_is_seen;
     achieved.beyond_mm = drilled.beyond_mm;
     achieved.offset_mm = (drilled.tunnel.entry_mm - plan.entry_mm).norm();
     achieved.angle_rad = geometry::angle_between_rad(drilled.tunnel.direction, plan.direction);

@@ -45,6 +45,7 @@ struct AchievedTunnel {
   tunnels::Tunnel tunnel;     // the entry on the plan's bone, the direction in the plan's sense
   double length_mm = 0;       // within the bone, to where it comes out, ends or goes on as a thinner bore
   bool comes_out = false;     // else it is a socket
+  bool end_is_seen = true;    // false: how long it is is not known; the length is to where images or bone end
   double beyond_mm = 0;       // diameter of the thinner bore that goes on beyond a socket; 0: none is seen
   double offset_mm = 0;       // of the entry from the planned one
   double angle_rad = 0;       // between the axes

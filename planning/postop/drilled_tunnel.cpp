@@ -142,7 +142,8 @@ class Finder {
                                    -candidate.fit.direction, candidate.fit.radius_mm)
                               .is_open();
     candidate.has_end = candidate.comes_out;
-    candidate.leaves_images = !std::isfinite(sampler_.at(postop_from_plan_ * candidate.passage.exit_mm));
+    const double in_images_mm = length_in_images_mm(candidate.passage);
+    candidate.leaves_images = in_images_mm < whole_mm;
     std::vector<double> contrasts;
     for (const Stretch& stretch : candidate.fit.stretches)
       if (stretch.seen_share > kLeastSeen) contrasts.push_back(stretch.outside_hu - stretch.inside_hu);
@@ -158,7 +159,19 @@ class Finder {
       return;
     candidate.comes_out = false;
     candidate.has_end = thinner_from.has_value();
-    if (thinner_from) candidate.length_mm = *thinner_from;
+    candidate.length_mm = std::min(in_images_mm, thinner_from.value_or(whole_mm));
+  }
+
+  // From the entry to where the images end, or the bone.
+  [[nodiscard]] double length_in_images_mm(const Passage& passage) const {
+    constexpr double kStation_mm = 0.5;
+    const double whole_mm = passage.length_mm();
+    const Vector3d step = (passage.exit_mm - passage.entry_mm) / whole_mm;
+    for (double t = kStation_mm; t < whole_mm; t += kStation_mm)
+      if (!std::isfinite(sampler_.at(postop_from_plan_ * (passage.entry_mm + t * step))))
+        return t - kStation_mm;
+    return std::isfinite(sampler_.at(postop_from_plan_ * passage.exit_mm)) ? whole_mm
+                                                                           : whole_mm - kStation_mm;
   }
 
   // The diameter of the thinner bore that is seen beyond a place; 0: none is.
@@ -298,6 +311,7 @@ DrilledTunnel told(const Candidate& candidate, const tunnels::Tunnel& plan) {
                     .bundle = plan.bundle};
   drilled.length_mm = candidate.length_mm;
   drilled.comes_out = candidate.comes_out;
+  drilled.end_is_seen = candidate.has_end;
   drilled.beyond_mm = candidate.beyond_mm;
   drilled.entry_sigma_mm = candidate.fit.entry_sigma_mm;
   drilled.direction_sigma_rad = candidate.fit.direction_sigma_rad;

@@ -15,7 +15,8 @@ struct DrilledTunnel {
   tunnels::Tunnel tunnel;  // in the plan's frame; the entry where the axis enters the plan's bone
   double length_mm = 0;    // within the bone, to where it comes out, ends or goes on as a thinner bore
   bool comes_out = false;
-  double beyond_mm = 0;  // diameter of the thinner bore beyond; 0: none is seen
+  bool end_is_seen = true;  // false: the length is as far as the images or the bone reach
+  double beyond_mm = 0;     // diameter of the thinner bore beyond; 0: none is seen
   double entry_sigma_mm = 0, direction_sigma_rad = 0;
   double seen_share = 0;           // of its wall
   double metal_share = 0;          // of what is inside it

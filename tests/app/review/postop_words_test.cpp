@@ -109,7 +109,8 @@ TEST(PostopWords, LaySlicesAlongTheTunnel) {
 // What a comparison kept in the case is shown again with every number and every reason.
 TEST(AchievedFile, IsReadBack) {
   const test::TemporaryFolder folder;
-  const Comparisons written = some();
+  Comparisons written = some();
+  written.at(bones::BoneKind::Femur).tunnel.end_is_seen = false;
   postop::write_achieved_file(folder / "achieved.json", written);
   const Comparisons read = postop::read_achieved_file(folder / "achieved.json");
   ASSERT_EQ(read.size(), 2U);
@@ -122,6 +123,7 @@ TEST(AchievedFile, IsReadBack) {
   EXPECT_NEAR(b.tunnel.entry_sigma_mm, a.tunnel.entry_sigma_mm, 1e-12);
   EXPECT_NEAR(b.tunnel.direction_sigma_rad, a.tunnel.direction_sigma_rad, 1e-12);
   EXPECT_EQ(b.tunnel.comes_out, a.tunnel.comes_out);
+  EXPECT_EQ(b.tunnel.end_is_seen, a.tunnel.end_is_seen);
   EXPECT_EQ(b.tunnel.beyond_mm, a.tunnel.beyond_mm);
   ASSERT_EQ(b.tunnel.widths.size(), a.tunnel.widths.size());
   EXPECT_NEAR(b.tunnel.widths[1].diameter_mm, 9.9, 1e-12);

@@ -115,6 +115,8 @@ TEST(AchievedLength, SaysWhatGoesOnBeyondASocket) {
   EXPECT_EQ(length_in_words(achieved), "22.0 mm, a socket");
   achieved.beyond_mm = 4.5;
   EXPECT_EQ(length_in_words(achieved), "22.0 mm, a socket; beyond it a bore of 4.5 mm");
+  achieved.end_is_seen = false;
+  EXPECT_EQ(length_in_words(achieved), "22.0 mm, its end not seen");
 }
 
 // A bore that is equally wide all along was said to be "9.1 to 9.1 mm".

@@ -114,6 +114,31 @@ TEST_F(Achieved, ASocketEndsWhereItWasDrilledTo) {
   EXPECT_NEAR(found.length_mm, 22, 0.5);
 }
 
+// Where the images end before the tunnel does it was said to be a socket that reaches the far cortex.
+TEST_F(Achieved, ATunnelThatLeavesTheImagesIsNoLongerThanIsSeen) {
+  constexpr double kCut_mm = 6;
+  const Tunnel tunnel = moved(BoneKind::Femur, {2, 2}, {4, -3});
+  const images::Volume whole = ct(BoneKind::Femur, {{.tunnel = tunnel}});
+  const double length_mm = tunnels::measure(tunnel, surface(BoneKind::Femur)).length_mm;
+  const Eigen::Affine3d index_from_plan =
+      whole.lps_from_index.inverse() * (Eigen::Translation3d(truth_.translation_mm) * truth_.rotation);
+  const int first =
+      static_cast<int>((index_from_plan * (tunnel.entry_mm + (length_mm - kCut_mm) * tunnel.direction)).x());
+  ASSERT_LT(first, (index_from_plan * tunnel.entry_mm).x());
+  images::Volume cut = whole;
+  cut.size.x() -= first;
+  cut.lps_from_index.translate(Eigen::Vector3d(first, 0, 0));
+  cut.values.clear();
+  for (std::size_t v = 0; v < whole.values.size(); ++v)
+    if (static_cast<int>(v) % whole.size.x() >= first) cut.values.push_back(whole.values[v]);
+  const AchievedTunnel found = compared(BoneKind::Femur, cut).tunnel;
+  expect_near(found, tunnel);
+  EXPECT_FALSE(found.reliable);
+  EXPECT_THAT(found.reasons, Contains(HasSubstr("the images end before it does")));
+  EXPECT_FALSE(found.end_is_seen);
+  EXPECT_NEAR(found.length_mm, length_mm - kCut_mm, 1);
+}
+
 // Beyond the socket a thinner bore leaves the bone, for the loop of a button: what was said to be as wide as
 // the socket was 15 mm too long.
 TEST_F(Achieved, ASocketEndsWhereTheBoreGetsThinner) {
