@@ -43,7 +43,8 @@ void measure_sides(const Tunnel& tunnel, const geometry::Surface& bone, TunnelGe
                                                  .diameter_mm = tunnel.diameter_mm,
                                                  .direction = tunnel.direction,
                                                  .entry = result.entry,
-                                                 .exit = result.exit});
+                                                 .exit = result.exit,
+                                                 .entry_steps_mm = entry_steps_mm(tunnel.bone)});
     result.wall_mm = whole_mm;
     result.thinnest_mm = result.exit_mm;
     result.thinnest_station_mm = result.length_mm;
