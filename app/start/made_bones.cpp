@@ -92,10 +92,14 @@ std::string side_of_picture(const scene::SceneCamera& camera, bool is_left_edge)
 }  // namespace
 
 MadeBones::MadeBones(std::function<void()> make_current, std::function<void()> wake)
-    : wake_(std::move(wake)), pane_(std::move(make_current)) {}
+    : wake_(std::move(wake)), pane_(std::move(make_current)), slices_(wake_) {}
 
 void MadeBones::show(const importing::BoneImport& import) {
   is_there_ = false;
+  if (import.bones.empty() && import.image)
+    slices_.show(import.image->volume);
+  else
+    slices_.clear();
   std::vector<geometry::TriangleMesh> meshes;
   for (const importing::ImportedBone& bone : import.bones) meshes.push_back(bone.bone.mesh);
   thinning_.start(
@@ -131,6 +135,7 @@ std::optional<Side> MadeBones::draw(const widgets::Ui& ui, const widgets::Rect& 
     }
   }
   ui.log.note_state("made_bones", is_there_ ? "shown" : "none");
+  if (!is_there_) (void)slices_.draw(ui, rest);
   if (is_there_) {
     (void)pane_.draw(ui, "start.bones", rest);
     ImDrawList& draw = *ImGui::GetWindowDrawList();

@@ -1,5 +1,5 @@
 // What an import has made, to be looked at before it becomes a case: the bones from in front of the patient,
-// and what a right and a left knee look like from there.
+// or slices of images without bones, and what a right and a left knee look like from there.
 #pragma once
 
 #include <functional>
@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "app/start/side_slices.h"
 #include "app/widgets/scene_pane.h"
 #include "navigation/worker/awaited.h"
 #include "planning/bones/bone.h"
@@ -29,6 +30,7 @@ class MadeBones {
 
   std::function<void()> wake_;
   widgets::ScenePane pane_;
+  SideSlices slices_;
   worker::Awaited<Meshes> thinning_;
   bool is_there_ = false;
 };
