@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "planning/files/local_time.h"
 #include "planning/files/utc_clock.h"
 #include "planning/library/folder_search.h"
 
@@ -93,7 +94,8 @@ void StartView::tick() {
     state_.side = work_.result().side;
     made_.show(work_.result());
     // One that no case of the day has: two of one name would be told apart by their folders alone.
-    state_.name = new_case_folder(cases_folder(), "Knee " + files::utc_now_as("%Y-%m-%d")).stem().string();
+    state_.name =
+        new_case_folder(cases_folder(), "Knee " + files::local_day(files::utc_now())).stem().string();
   }
   if (before == State::Running && asks_for_labels())
     state_.labels = importing::likely_labels(work_.refusal().labels);

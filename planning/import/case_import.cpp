@@ -6,6 +6,7 @@
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/same_patient.h"
 #include "planning/cases/study.h"
+#include "planning/files/local_time.h"
 #include "planning/files/remove_file.h"
 #include "planning/files/utc_clock.h"
 #include "planning/files/whole_folder.h"
@@ -44,7 +45,7 @@ cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, con
   if (!import.side) refuse_unknown_side(source);
   cases::Case created;
   // Not by the source's or the folder's name: it often is the patient's.
-  created.name = name.empty() ? files::utc_now_as("Knee %Y-%m-%d") : name;
+  created.name = name.empty() ? "Knee " + files::local_day(files::utc_now()) : name;
   created.side = *import.side;
   created.created_utc = files::utc_now();
   return created;
