@@ -1,6 +1,9 @@
 #include "app/plan/default_words.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "planning/files/unit_signs.h"
 
 namespace arthronaut::plan {
 
@@ -26,7 +29,7 @@ std::string default_in_words(const std::vector<MadeTunnel>& made, bool took_the_
     words += "It follows from landmarks that nobody has confirmed: look at them (L) before you rely on it.\n";
   if (took_the_place) words += "Ctrl+Z brings back the plan that was there.\n";
   if (!words.empty()) words.pop_back();
-  return words;
+  return files::with_signs(std::move(words));
 }
 
 }  // namespace arthronaut::plan

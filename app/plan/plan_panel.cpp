@@ -8,6 +8,7 @@
 #include "app/widgets/tooltip.h"
 #include "app/widgets/wrapped_text.h"
 #include "planning/files/local_time.h"
+#include "planning/files/unit_signs.h"
 #include "planning/files/utc_clock.h"
 
 namespace arthronaut::plan {
@@ -131,9 +132,10 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
   draw_bone_doubts(ui, panel);
   for (const tunnels::PlanCheck& check : panel.model.checks(panel.key)) {
     ImGui::BeginGroup();
-    widgets::status_row(ui, severity_of(check.verdict), check.name, check.text);
+    widgets::status_row(ui, severity_of(check.verdict), check.name, files::with_signs(check.text));
     ImGui::EndGroup();
-    if (ImGui::IsItemHovered() && !check.source.empty()) widgets::tooltip(ui, check.source);
+    if (ImGui::IsItemHovered() && !check.source.empty())
+      widgets::tooltip(ui, files::with_signs(check.source));
   }
   widgets::text_in(ui.theme.body, widgets::kQuietText,
                    "Customary values, not limits of safety. The surgeon decides.");

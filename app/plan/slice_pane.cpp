@@ -222,8 +222,11 @@ void SlicePane::draw_overlay(const widgets::Ui& ui, const widgets::Rect& rect, c
     std::vector<ImVec2> points;
     for (const Eigen::Vector3d& point : line.points_mm) points.push_back(at(point));
     const ImVec2 size = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, line.word.c_str());
-    shadowed(draw, ui.theme.strong, beside_measured(points, size, ui.theme.px(6), rect), kMeasured,
-             line.word);
+    // Clear of the edge: there the patient's sides stand, two letters wide at most.
+    shadowed(draw, ui.theme.strong,
+             beside_measured(points, size, ui.theme.px(6),
+                             rect.inset(ui.theme.px(10) + 1.5F * ui.theme.strong->FontSize)),
+             kMeasured, line.word);
   }
 }
 
@@ -239,11 +242,17 @@ void SlicePane::draw_frame(const widgets::Ui& ui, const widgets::Rect& rect,
   const std::string left = scene::orientation_letters(-right_), right = scene::orientation_letters(right_),
                     top = scene::orientation_letters(-down_), bottom = scene::orientation_letters(down_);
   const float middle_y = rect.y + (rect.height - high) / 2, middle_x = rect.x + rect.width / 2;
-  shadowed(draw, font, {rect.x + edge, middle_y}, widgets::kCaution, left);
-  shadowed(draw, font, {rect.x + rect.width - edge - wide(right), middle_y}, widgets::kCaution, right);
-  shadowed(draw, font, {middle_x - wide(top) / 2, rect.y + edge}, widgets::kCaution, top);
-  shadowed(draw, font, {middle_x - wide(bottom) / 2, rect.y + rect.height - edge - high}, widgets::kCaution,
-           bottom);
+  // Over the lines of the cross, which end in the same places.
+  const auto side = [&](const ImVec2& at, const std::string& letters) {
+    const float pad = ui.theme.px(3);
+    draw.AddRectFilled({at.x - pad, at.y}, {at.x + wide(letters) + pad, at.y + high},
+                       IM_COL32(12, 16, 20, 200), pad);
+    shadowed(draw, font, at, widgets::kCaution, letters);
+  };
+  side({rect.x + edge, middle_y}, left);
+  side({rect.x + rect.width - edge - wide(right), middle_y}, right);
+  side({middle_x - wide(top) / 2, rect.y + edge}, top);
+  side({middle_x - wide(bottom) / 2, rect.y + rect.height - edge - high}, bottom);
   // The scale, with its ends.
   const double length = scale_mm(rect.width * mm_per_px_);
   const auto bar = static_cast<float>(length / mm_per_px_);

@@ -16,6 +16,7 @@
 #include "app/scene/reslice.h"
 #include "planning/cases/case_image.h"
 #include "planning/files/format.h"
+#include "planning/files/unit_signs.h"
 
 namespace arthronaut::report {
 
@@ -272,7 +273,7 @@ double Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm, d
     const bool is_amiss =
         check.verdict == PlanCheck::Verdict::Look || check.verdict == PlanCheck::Verdict::Wrong;
     const std::string source = is_amiss && !check.source.empty() ? " [" + check.source + "]" : "";
-    row(to_text(check.verdict), is_amiss, check.name + ": " + check.text + source);
+    row(to_text(check.verdict), is_amiss, files::with_signs(check.name + ": " + check.text + source));
   }
   return y_mm;
 }
