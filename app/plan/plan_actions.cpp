@@ -60,15 +60,18 @@ void PlanView::widen(double by_mm) {
 
 // Each key makes a new tunnel of the one that is there.
 void PlanView::add_tunnel_actions(widgets::Actions& actions) {
-  const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.key).has_value(); };
+  const auto can_change = [this] {
+    return model_ != nullptr && model_->tunnel(state_.key).has_value() &&
+           history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+  };
   const auto add = [&](const std::string& id, const std::string& label, const char* tooltip, int key,
                        int mods, const char* what, auto moved) {
-    actions.add({id, label, tooltip, key, mods, true, has_tunnel, {}, [this, what, moved] {
+    actions.add({id, label, tooltip, key, mods, true, can_change, {}, [this, what, moved] {
                    change(what, true, moved(*model_->tunnel(state_.key)));
                  }});
   };
   actions.add(
-      {"plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0, true, has_tunnel, {}, [this] {
+      {"plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0, true, can_change, {}, [this] {
          widen(0.5);
        }});
   actions.add({"plan.narrower",
@@ -77,7 +80,7 @@ void PlanView::add_tunnel_actions(widgets::Actions& actions) {
                GLFW_KEY_MINUS,
                0,
                true,
-               has_tunnel,
+               can_change,
                {},
                [this] { widen(-0.5); }});
   struct Arrow {
@@ -104,7 +107,7 @@ void PlanView::add_tunnel_actions(widgets::Actions& actions) {
                GLFW_KEY_DELETE,
                0,
                false,
-               has_tunnel,
+               can_change,
                {},
                [this] {
                  history_.apply(
@@ -191,7 +194,10 @@ void PlanView::add_placing_actions(widgets::Actions& actions) {
   actions.add({"plan.place", "Place entry", "Then click where the tunnel is to begin on the bone", GLFW_KEY_P,
                0, false,
                // On the page of the landmarks P places these.
-               [this] { return model_ != nullptr && state_.page != PanelPage::Landmarks; },
+               [this] {
+                 return model_ != nullptr && state_.page != PanelPage::Landmarks &&
+                        history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+               },
                [this] { return state_.placing == Placing::Entry; },
                [this] {
                  state_.placing = state_.placing == Placing::Entry ? Placing::Nothing : Placing::Entry;

@@ -146,6 +146,10 @@ TEST_F(StartWindow, Hazard15SetUpDoesNotStandOnAReadOnlyCase) {
   app.press("Return");
   ASSERT_TRUE(app.wait_for_state("access", "read-only", 120));
   EXPECT_TRUE(app.wait_for_state("mode", "plan"));
+  // Nor does it lead to a click that could change nothing.
+  app.press("p");
+  EXPECT_TRUE(app.wait_for_state("untaken_key", "P did nothing: Place is not possible now"));
+  EXPECT_EQ(app.state("placing"), "nothing");
 }
 
 // An import that waits for an answer is found again from any mode.
