@@ -22,6 +22,7 @@
 #include "planning/landmarks/propose.h"
 #include "planning/plan_export/markups_file.h"
 #include "planning/plan_export/plan_export.h"
+#include "planning/plan_review/proposed_landmarks.h"
 #include "planning/tunnels/diameter_range.h"
 #include "planning/tunnels/tunnel.h"
 
@@ -374,7 +375,10 @@ void add_plan_command(CLI::App& app, Context& context) {
       if (arguments->by_default) cases::save_case(arguments->case_folder, knee);  // with its landmarks
     }
     if (arguments->lists_versions) return list_versions(*arguments, context, knee);
-    const plan_review::CaseReview review(knee);
+    // What the case lacks is proposed, as the window and the report have it, and not kept.
+    cases::Case shown = knee;
+    plan_review::propose_landmarks(shown, plan_review::Proposing::WithoutGrid);
+    const plan_review::CaseReview review(shown);
     if (arguments->by_default) {
       for (std::string& wrong : tunnels::wrong_in_words(review.checks(key_of(*arguments))))
         verdict.reasons.push_back(std::move(wrong));
@@ -382,7 +386,7 @@ void add_plan_command(CLI::App& app, Context& context) {
         verdict.reasons.push_back("the " + arguments->bone + ": " + doubt);
       verdict.is_reliable = verdict.reasons.empty();
     }
-    show(*arguments, context, knee, review, std::move(doubts), verdict);
+    show(*arguments, context, shown, review, std::move(doubts), verdict);
     if (arguments->keeps) {
       const auto kept = cases::keep_plan_version(arguments->case_folder, knee.plan);
       if (!arguments->as_json) context.say("Kept as version " + std::to_string(kept.number) + ".");

@@ -1,9 +1,11 @@
 #include "app/command_line/plan_report.h"
 
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
+#include "planning/plan_review/proposed_landmarks.h"
 #include "planning/tunnels/breach.h"
 
 namespace arthronaut::command_line {
@@ -27,6 +29,15 @@ const char* sign_of(PlanCheck::Verdict verdict) {
   return "    ";
 }
 
+// Of the landmarks that say where on its bone a tunnel begins: "missing", "proposed" or "confirmed".
+const char* state_of_grid(const cases::Case& knee, const plan_review::CaseReview& review,
+                          bones::BoneKind bone) {
+  const tunnels::PlanSurroundings& surroundings = review.bone(bone).surroundings;
+  if (!surroundings.quadrant && !surroundings.plateau) return "missing";
+  return plan_review::state_of_grid(knee, bone) == landmarks::LandmarkState::Confirmed ? "confirmed"
+                                                                                       : "proposed";
+}
+
 }  // namespace
 
 void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,
@@ -46,6 +57,8 @@ void describe_tunnel(const Context& context, const cases::Case& knee, const plan
   }
   if (const auto fit = cases::plan_fit(knee, key); !fit.is_valid())
     context.say("  ! not valid: " + fit.reason);
+  if (verdict.source.empty() && state_of_grid(knee, review, key.bone) == std::string_view("proposed"))
+    context.say("  ! Landmarks: proposed from the bone's shape, confirmed by nobody");
   for (const auto& check : review.checks(key)) {
     const bool is_amiss =
         check.verdict == PlanCheck::Verdict::Look || check.verdict == PlanCheck::Verdict::Wrong;
@@ -79,6 +92,7 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review
                       {"source", check.source}});
   }
   node["checks"] = std::move(checks);
+  node["landmarks"] = state_of_grid(knee, review, key.bone);
   auto reasons = verdict.reasons;
   const auto fit = cases::plan_fit(knee, key);
   if (!fit.is_valid()) reasons.push_back(fit.reason);
