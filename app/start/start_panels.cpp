@@ -188,9 +188,11 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
                           : is_ticked                ? Severity::Good
                                                      : Severity::Quiet;
     widgets::draw_sign(list, {x + ui.theme.px(10), at.y + ui.theme.px(24)}, ui.theme.px(9), sign);
-    widgets::draw_text(
-        list, ui.theme.strong, x + ui.theme.px(30), at.y + ui.theme.px(10), widgets::kText,
-        widgets::fitting(ui.theme.strong, source.title + (is_ticked ? "  \u2013  taken" : ""), wrap));
+    std::string title = source.title;
+    if (source.bone) title += "  \u2013  the " + std::string(bones::to_text(*source.bone));
+    if (is_ticked) title += "  \u2013  taken";
+    widgets::draw_text(list, ui.theme.strong, x + ui.theme.px(30), at.y + ui.theme.px(10), widgets::kText,
+                       widgets::fitting(ui.theme.strong, title, wrap));
     widgets::draw_text(list, ui.theme.body, x + ui.theme.px(30), at.y + ui.theme.px(38), widgets::kQuietText,
                        source.detail);
     const std::string wrong = !source.can_be_imported() ? "Cannot be imported: " + source.refusal
