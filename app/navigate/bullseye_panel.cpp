@@ -5,10 +5,13 @@
 #include "app/navigate/bullseye_rings.h"
 #include "app/navigate/navigate_panels.h"
 #include "app/widgets/afar_text.h"
+#include "navigation/guidance/bullseye.h"
 
 namespace arthronaut::navigate {
 
 namespace {
+
+using guidance::BullseyePoint;
 
 void draw_target(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, float radius,
                  ImU32 background) {
@@ -143,7 +146,9 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
                              screen.display.headline);
     return;
   }
-  const BullseyePoint point = bullseye_point(screen.display.guidance, *screen.plan);
+  const guidance::GuidanceNumbers& numbers = screen.display.guidance;
+  const BullseyePoint point = guidance::bullseye_point(numbers.guide_point_mm, numbers.guide_direction,
+                                                       numbers.across_plan, *screen.plan);
   const Layout layout = layout_in(ui, area, &point);
   const float radius = layout.radius;
   // The guide stands on the plan: seen at a glance, by a ring and a tick, in the first second the whole disc.

@@ -297,24 +297,4 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   return display;
 }
 
-BullseyePoint bullseye_point(const guidance::GuidanceNumbers& guidance, const tunnels::Tunnel& plan) {
-  const Eigen::Vector3d ahead = plan.direction.normalized();
-  const landmarks::PlaneAxes& axes = guidance.across_plan;
-  BullseyePoint point;
-  point.up_is = axes.up_is;
-  point.side_is = axes.side_is;
-  // Looking along the plan, with `up` up.
-  point.side_is_right = ahead.cross(axes.up).dot(axes.side) > 0;
-  const double to_the_right = point.side_is_right ? 1 : -1;
-  point.right_mm = to_the_right * guidance.offset_in_mm(axes.side_is);
-  point.up_mm = guidance.offset_in_mm(axes.up_is);
-  const double advance = guidance.guide_direction.dot(ahead);
-  const auto lean = [&](const Eigen::Vector3d& towards) {
-    return geometry::deg_from_rad(std::atan2(guidance.guide_direction.dot(towards), advance));
-  };
-  point.lean_right_deg = to_the_right * lean(axes.side);
-  point.lean_up_deg = lean(axes.up);
-  return point;
-}
-
 }  // namespace arthronaut::navigate

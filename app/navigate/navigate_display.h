@@ -48,16 +48,4 @@ enum class NavigateLayout { Register, Guide };
 // now_s on the clock of theatre::LiveOperation::now_s(). live may be null: no bone was looked at yet.
 [[nodiscard]] NavigateDisplay display_of(const theatre::LiveState* live, double now_s);
 
-// The bullseye's point: the offset of the guidance's numbers, seen along the plan with their `up` direction
-// up; mm, x to the right. And how the guide leans there, in degrees the same way. Needs valid guidance.
-struct BullseyePoint {
-  double right_mm = 0, up_mm = 0;
-  double lean_right_deg = 0, lean_up_deg = 0;
-  landmarks::AnatomicalDirection up_is = landmarks::AnatomicalDirection::Proximal;
-  landmarks::AnatomicalDirection side_is = landmarks::AnatomicalDirection::Anterior;
-  bool side_is_right = true;  // the positive sense of side_is points to the right
-};
-[[nodiscard]] BullseyePoint bullseye_point(const guidance::GuidanceNumbers& guidance,
-                                           const tunnels::Tunnel& plan);
-
 }  // namespace arthronaut::navigate

@@ -4,6 +4,7 @@
 
 #include "app/guidance_severity/guidance_severity.h"
 #include "app/review/review_panels.h"
+#include "navigation/guidance/bullseye.h"
 
 namespace arthronaut::review {
 
@@ -11,19 +12,6 @@ namespace {
 
 constexpr double kShown_mm = 6;  // radius of the whole bullseye, as in Navigate
 constexpr std::array<double, 3> kRings_mm{1, 2, 5};
-
-// Where the guide's axis crosses the plane through the entry across the plan, looking along the plan.
-struct Crossing {
-  double right_mm = 0, up_mm = 0;
-};
-
-Crossing seen_along(const tunnels::Tunnel& plan, const guidance::GuidanceNumbers& numbers,
-                    const landmarks::PlaneAxes& across) {
-  const Eigen::Vector3d off =
-      guidance::crossing_of(numbers.guide_point_mm, numbers.guide_direction, plan) - plan.entry_mm;
-  const double to_the_right = plan.direction.cross(across.up).dot(across.side) > 0 ? 1 : -1;
-  return {to_the_right * off.dot(across.side), off.dot(across.up)};
-}
 
 }  // namespace
 
@@ -53,12 +41,12 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Revie
                {center.x - font->CalcTextSizeA(font->FontSize, 1e9F, 0, up.c_str()).x / 2,
                 center.y - radius - font->FontSize * 1.15F},
                widgets::kQuietText, up.c_str());
-  const bool side_is_right = plan->direction.cross(across.up).dot(across.side) > 0;
-  const std::string right(landmarks::to_text(across.side_is, side_is_right));
+  guidance::BullseyePoint at =
+      guidance::bullseye_point(numbers.guide_point_mm, numbers.guide_direction, across, *plan);
+  const std::string right(landmarks::to_text(at.side_is, at.side_is_right));
   draw.AddText(font, font->FontSize, {center.x + radius + ui.theme.px(6), center.y - font->FontSize / 2},
                widgets::kQuietText, right.c_str());
 
-  Crossing at = seen_along(*plan, numbers, across);
   const double far = std::hypot(at.right_mm, at.up_mm);
   const widgets::Severity severity = guidance_severity::severity_of_offset(numbers);
   if (far > kShown_mm) {  // on the rim: farther that way

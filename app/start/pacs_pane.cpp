@@ -20,10 +20,13 @@ PacsPane::PacsPane(std::function<void(const fs::path&)> look_into, std::function
       look_into_(std::move(look_into)),
       work_(std::move(wake)) {}
 
-void PacsPane::enter(const SendableCase& sendable) {
+void PacsPane::enter(const SendableCase& sendable, const fs::path& open_case) {
   if (work_.is_busy()) return;
   forget_outgoing();
   view_.sendable = sendable;
+  std::error_code gone;  // the same by whatever way it was opened
+  view_.is_another =
+      !open_case.empty() && !sendable.folder.empty() && !fs::equivalent(open_case, sendable.folder, gone);
   view_.page = Page::Search;
   view_.failure.clear();
   try {  // said on the screen, and the file left as it is

@@ -33,7 +33,8 @@ class PacsPane {
 
   // All start with "start.pacs."; is_shown: whether this page is in front.
   void add_actions(widgets::Actions& actions, const std::function<bool()>& is_shown);
-  void enter(const SendableCase& sendable);  // comes to the front; what runs goes on
+  // Comes to the front; what runs goes on. open_case: empty where none is.
+  void enter(const SendableCase& sendable, const std::filesystem::path& open_case);
   void leave();  // something else does; what was written to be sent goes, unless it is being sent
   void tick(bool is_shown);
   void draw(const widgets::Ui& ui, const widgets::Rect& area);
@@ -67,6 +68,7 @@ class PacsPane {
     std::string edited;  // the name of the peer that is changed; empty: a new one
     std::string failure;
     SendableCase sendable;
+    bool is_another = false;  // than the case that is open
     bool is_deidentified = false;
     std::vector<pacs::SentFile> outgoing;  // written, and of the choice above
     std::string outgoing_doubts;

@@ -28,7 +28,12 @@ void PacsPane::draw_send(const widgets::Ui& ui, const widgets::Rect& area) {
   if (is_of_sending && news.state == State::Running)
     draw_work(ui, rest.cut_bottom(ui.theme.px(110), ui.theme.px(12)));
   widgets::begin_panel(ui, "start.pacs.outgoing", rest);
-  widgets::status_row(ui, Severity::Quiet, "Case", view_.sendable.name);
+  ui.log.note_state("pacs_sends", view_.is_another ? "another case" : "the open case");
+  if (view_.is_another)
+    widgets::status_row(ui, Severity::Bad, "NOT the case that is open",
+                        view_.sendable.name + ", which is selected in the list of cases");
+  else
+    widgets::status_row(ui, Severity::Quiet, "Case", view_.sendable.name);
   if (peer() != nullptr)
     widgets::status_row(ui, Severity::Quiet, "To",
                         peer()->name + ", " + peer()->address() +

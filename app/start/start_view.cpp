@@ -26,9 +26,9 @@ StartView::StartView(std::function<void(const fs::path&)> open, std::function<vo
       cases_(open_, wake),
       pacs_([this](const fs::path& folder) { take(folder); }, wake) {}
 
-void StartView::enter(bool can_close) {
+void StartView::enter(const fs::path& open_case) {
   wants_to_close_ = false;
-  state_.can_close = can_close;
+  state_.open_case = open_case;
   cases_.enter();
   if (!work_.is_busy() && work_.state() != State::Asking) {
     state_.page = Page::Cases;
@@ -139,7 +139,7 @@ void StartView::browse() {
 void StartView::go_back() {
   switch (state_.page) {
     case Page::Cases:
-      if (!cases_.go_back()) wants_to_close_ = state_.can_close;
+      if (!cases_.go_back()) wants_to_close_ = !state_.open_case.empty();
       return;
     case Page::Browse:
       state_.page = Page::Cases;
@@ -217,7 +217,7 @@ void StartView::add_page_actions(widgets::Actions& actions) {
                {},
                [this] {
                  state_.page = Page::Pacs;
-                 pacs_.enter(cases_.sendable());
+                 pacs_.enter(cases_.sendable(), state_.open_case);
                }});
   actions.add({"start.up",
                "Folder above",
@@ -280,7 +280,7 @@ void StartView::add_page_actions(widgets::Actions& actions) {
                0,
                false,
                [this] {
-                 return (state_.page != Page::Cases || state_.can_close || cases_.shows_trends()) &&
+                 return (state_.page != Page::Cases || !state_.open_case.empty() || cases_.shows_trends()) &&
                         work_.state() != State::Saving;
                },
                {},

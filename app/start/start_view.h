@@ -27,8 +27,9 @@ class StartView {
             std::function<void()> make_current);
 
   void add_actions(widgets::Actions& actions);  // all start with "start."
-  // Comes to the front, on the list of cases. can_close: a case is open that one can go back to.
-  void enter(bool can_close);
+  // Comes to the front, on the list of cases. open_case: the folder of the one that one can go back to;
+  // empty: none is open.
+  void enter(const std::filesystem::path& open_case);
   void leave();  // something else comes to the front
   // A folder or file from outside: a case is opened, anything else is looked into for the import.
   void take(const std::filesystem::path& path);
@@ -86,7 +87,7 @@ class StartView {
     Page page = Page::Cases;
     std::size_t selected = 0;
     bool scrolls_to_selected = false;
-    bool can_close = false;
+    std::filesystem::path open_case;
     std::vector<std::size_t> ticked;  // of the sources
     std::optional<bones::Side> side;
     bool side_was_said = false;             // by a person

@@ -128,7 +128,7 @@ void WorkstationWindow::take_dropped() {
     return review_->take_dropped(dropped.front());
   leave_shown();
   shows_start_ = true;
-  start_.enter(case_ != nullptr);
+  start_.enter(case_ != nullptr ? case_->folder() : std::filesystem::path());
   start_.take(dropped.front());
 }
 

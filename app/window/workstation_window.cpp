@@ -42,7 +42,7 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
   make_modes();
   add_actions();
   room_.listen([] { GraphicsWindow::wake_by_hand(); });
-  start_.enter(false);
+  start_.enter({});
   if (options.built_in)
     open({});
   else if (!options.case_folder.empty())
@@ -72,7 +72,7 @@ void WorkstationWindow::add_actions() {
                   if (shows_start_) return close_start();
                   leave_shown();
                   shows_start_ = true;
-                  start_.enter(true);
+                  start_.enter(case_->folder());
                 }});
   actions_.add({"app.stop_opening",
                 "Stop opening",
@@ -232,7 +232,7 @@ void WorkstationWindow::close_paint() {
   shows_paint_ = false;
   if (model() != nullptr) return shown().enter();
   shows_start_ = true;  // nothing else can be done with a case without bones
-  start_.enter(true);
+  start_.enter(case_->folder());
 }
 
 void WorkstationWindow::dispatch_keys() {

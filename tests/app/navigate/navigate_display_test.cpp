@@ -233,39 +233,6 @@ TEST(NavigateDisplay, Hazard8DoubtHidesGuidance) {
   EXPECT_EQ(display.headline, "Registration in doubt");
 }
 
-guidance::GuidanceNumbers numbers_of(const Eigen::Vector3d& offset, const Eigen::Vector3d& lean,
-                                     const tunnels::Tunnel& plan) {
-  guidance::GuidanceNumbers numbers;
-  numbers.state = GuidanceState::Valid;
-  numbers.guide_direction = (plan.direction + lean).normalized();
-  numbers.guide_point_mm = plan.entry_mm + offset - 12 * numbers.guide_direction;
-  numbers.across_plan = landmarks::axes_across(landmarks::scanner_axes(bones::Side::Right), plan.direction);
-  numbers.offset_anterior_mm = -offset.y();
-  numbers.offset_proximal_mm = offset.z();
-  numbers.offset_mm = std::hypot(offset.y(), offset.z());
-  return numbers;
-}
-
-// The bullseye looks along the plan with proximal up; anterior is on the side that it names; the dot is as
-// far out as the axis misses the entry, and a lean alone does not move it.
-TEST(Bullseye, PointIsWhereTheAxisMissesTheEntry) {
-  tunnels::Tunnel plan;
-  plan.entry_mm = {3, 4, 5};
-  plan.direction = -Eigen::Vector3d::UnitX();
-  const BullseyePoint proximal = bullseye_point(numbers_of({0, 0, 2}, {0, 0, 0}, plan), plan);
-  EXPECT_NEAR(proximal.up_mm, 2, 1e-9);
-  EXPECT_NEAR(proximal.right_mm, 0, 1e-9);
-  const BullseyePoint anterior = bullseye_point(numbers_of({0, -1.5, 0}, {0, 0, 0}, plan), plan);
-  EXPECT_EQ(anterior.side_is, landmarks::AnatomicalDirection::Anterior);
-  EXPECT_NEAR(anterior.right_mm, anterior.side_is_right ? 1.5 : -1.5, 1e-9);
-  // Whoever looks into a right knee's lateral wall, proximal up, faces the patient's right: anterior, LPS -y,
-  // is to the left, since right is (-x) x z = +y.
-  EXPECT_FALSE(anterior.side_is_right);
-  const BullseyePoint leaning = bullseye_point(numbers_of({0, 0, 0}, {0, 0, 0.1}, plan), plan);
-  EXPECT_NEAR(leaning.lean_up_deg, geometry::deg_from_rad(std::atan(0.1)), 1e-9);
-  EXPECT_NEAR(leaning.up_mm, 0, 1e-9);
-}
-
 // What was not confirmed guides nothing, whatever else stands: no number and no line of the plan.
 TEST(NavigateDisplay, Hazard20NothingIsShownBeforeTheTimeOut) {
   Shown shown;

@@ -112,7 +112,9 @@ TEST_F(PacsWindow, SendsTheResultsOfTheOpenCase) {
   cases::save_case(folder_ / "Knee.arthro",
                    phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3}), "Knee of a test"));
   const VirtualDisplay display(1280, 720);
-  RunningWorkstation app(display, folder_.path(), {(folder_ / "Knee.arthro").string()});
+  // By another way: it is the open one all the same.
+  std::filesystem::create_directory_symlink(folder_ / "Knee.arthro", folder_ / "Way.arthro");
+  RunningWorkstation app(display, folder_.path(), {(folder_ / "Way.arthro").string()});
   ASSERT_TRUE(app.wait_for_state("case", "open", 120));
   app.press("F5");
   ASSERT_TRUE(app.wait_for_state("case_selected", "Knee of a test"));
@@ -120,6 +122,7 @@ TEST_F(PacsWindow, SendsTheResultsOfTheOpenCase) {
   ASSERT_TRUE(app.wait_for_state("pacs_light", "good"));
   app.press("r");
   ASSERT_TRUE(app.wait_for_state("pacs", "send"));
+  ASSERT_TRUE(app.wait_for_state("pacs_sends", "the open case"));
   app.press("d");
   app.press("Return");
   ASSERT_TRUE(app.wait_for_state("pacs_work", "write-done", 120) ||
@@ -137,6 +140,27 @@ TEST_F(PacsWindow, SendsTheResultsOfTheOpenCase) {
   app.press("Escape");
   ASSERT_TRUE(app.wait_for_state("pacs", "search"));
   EXPECT_FALSE(fs::exists(folder_ / "arthronaut/outgoing"));
+}
+
+// The case that is selected in the list is what is sent: where it is not the open one, that is said.
+TEST_F(PacsWindow, SaysThatWhatWouldBeSentIsOfAnotherCase) {
+  const Orthanc orthanc({.our_port = our_port_});
+  write_peers(orthanc);
+  const auto knee = phantom::make_phantom_knee({.edge_length_mm = 3});
+  for (const char* name : {"First", "Second"})
+    cases::save_case(folder_ / (std::string(name) + ".arthro"), phantom::case_of(knee, name));
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {(folder_ / "First.arthro").string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F5");
+  ASSERT_TRUE(app.wait_for_state("case_selected", "First"));
+  ASSERT_TRUE(app.wait_for_widget("start.case.1"));
+  app.click("start.case.1");
+  ASSERT_TRUE(app.wait_for_state("case_selected", "Second"));
+  app.press("p");
+  ASSERT_TRUE(app.wait_for_state("pacs_light", "good"));
+  app.press("r");
+  ASSERT_TRUE(app.wait_for_state("pacs_sends", "another case"));
 }
 
 }  // namespace
