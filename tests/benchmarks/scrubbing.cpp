@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "app/review/picture_fetcher.h"
+#include "app/review/session_review.h"
 #include "navigation/recording/session.h"
 #include "tests/navigation/recording/recorded_frames.h"
 #include "tests/navigation/recording/streams.h"
@@ -63,14 +64,13 @@ void record(const std::string& clip, double seconds, const std::filesystem::path
 class Screen {
  public:
   explicit Screen(const std::filesystem::path& folder)
-      : timeline_(std::make_shared<const recording::SessionTimeline>(folder)),
-        fetcher_(folder, timeline_, [] {}) {}
+      : review_(read_review(folder)), fetcher_(review_, [] {}) {}
 
-  [[nodiscard]] std::size_t size() const { return timeline_->frames().size(); }
+  [[nodiscard]] std::size_t size() const { return review_.timeline->frames().size(); }
 
   // As the window asks, until it is the right one or the time is over.
   void look(std::size_t at, double at_most_ms = 1e5) {
-    const recording::FrameGlance& frame = timeline_->frames()[at];
+    const recording::FrameGlance& frame = review_.timeline->frames()[at];
     const PictureWish wish{frame.index, frame.timestamp_ns};
     const auto begin = Clock::now();
     bool has_come = false;
@@ -105,7 +105,7 @@ class Screen {
 
  private:
   static constexpr double kGroup_ms = 250 / 60.0 * 1000;
-  std::shared_ptr<const recording::SessionTimeline> timeline_;
+  SessionReview review_;
   PictureFetcher fetcher_;
 };
 

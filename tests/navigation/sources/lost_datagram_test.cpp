@@ -14,6 +14,7 @@
 
 #include "navigation/sources/capture_time.h"
 #include "navigation/sources/frame_source.h"
+#include "planning/geometry/error.h"
 #include "tests/child_process.h"
 #include "tests/navigation/recording/streams.h"
 
@@ -76,11 +77,16 @@ double longest_gap_s(const std::vector<std::string>& key_frames) {
   const test::ChildProcess sender(test::run_ffmpeg(arguments));
   const auto source = open_source("udp://127.0.0.1:" + out);
   double longest_s = 0;
-  camera::FramePtr last = source->next();
+  const auto picture = [&] {
+    camera::FramePtr given = source->next();
+    if (given == nullptr) throw DeviceError("the stream has ended");
+    return given;
+  };
+  camera::FramePtr last = picture();
   constexpr int kLostAfter = 20, kPictures = 60;
   for (int i = 0; i < kPictures; ++i) {
     if (i == kLostAfter) relay.lose_next();
-    camera::FramePtr next = source->next();
+    camera::FramePtr next = picture();
     longest_s = std::max(longest_s, static_cast<double>(next->timestamp_ns - last->timestamp_ns) * 1e-9);
     last = std::move(next);
   }
