@@ -50,8 +50,8 @@ AchievedTunnel told(const DrilledTunnel& drilled, const FoundBone& bone, const t
     achieved.metal_share = drilled.metal_share;
     for (const Stretch& stretch : drilled.stretches) {
       if (stretch.seen_share >= kSeenOfStretch && stretch.metal_share <= kMetalOfStretch &&
-          stretch.sigma_mm <= kMostWidthSigma_mm)
-        achieved.widths.push_back({stretch.from_entry_mm, stretch.diameter_mm, stretch.sigma_mm});
+          stretch.noise_sigma_mm <= kMostWidthSigma_mm)
+        achieved.widths.push_back({stretch.from_entry_mm, stretch.diameter_mm, stretch.diameter_sigma_mm});
     }
   }
   if (!bone.reliable)

@@ -14,7 +14,7 @@ constexpr double kSeen = 0.5, kMostSigma_mm = 0.3;
 constexpr std::size_t kLeastBefore = 2;
 
 bool is_known(const Stretch& stretch) {
-  return stretch.seen_share > kSeen && stretch.sigma_mm < kMostSigma_mm;
+  return stretch.seen_share > kSeen && stretch.noise_sigma_mm < kMostSigma_mm;
 }
 
 std::vector<double> known_widths(std::span<const Stretch> stretches) {

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "planning/geometry/quantile.h"
@@ -157,7 +158,7 @@ class Fit {
     return change.cwiseAbs().maxCoeff();
   }
 
-  [[nodiscard]] std::vector<Stretch> described(const Eigen::MatrixXd& covariance) const {
+  [[nodiscard]] std::vector<Stretch> described(const FitSpread& known) const {
     std::vector<Stretch> result(bore_.stretches());
     const std::vector<SeenWall> seen =
         seen_walls(picture_.levels(), bore_.stretches(), bore_.profile.has_rim());
@@ -168,7 +169,10 @@ class Fit {
           (static_cast<double>(s) + 0.5) * 2 * bore_.frame.half_mm() / static_cast<double>(bore_.stretches());
       stretch.diameter_mm = 2 * bore_.radius_mm[s];
       const auto r = static_cast<Eigen::Index>(4 + s);
-      stretch.sigma_mm = 2 * std::sqrt(std::max(0.0, covariance(r, r)));
+      stretch.noise_sigma_mm = 2 * std::sqrt(std::max(0.0, known.by_noise(r, r)));
+      stretch.diameter_sigma_mm =
+          2 * std::hypot(bore_.profile.wall_sigma_mm,
+                         std::sqrt(std::max({0.0, known.by_noise(r, r), known.by_disagreement(r, r)})));
       stretch.seen_share = seen[s].share;
       stretch.metal_share = picture_.metal_share(s);
       stretch.inside_hu = seen[s].inside_hu;
@@ -205,12 +209,12 @@ class Fit {
     fit.direction_sigma_rad = the_larger([&](const Eigen::MatrixXd& covariance) {
       return std::sqrt(covariance(2, 2) + covariance(3, 3)) / bore_.frame.half_mm();
     });
-    fit.stretches = described(known.by_noise);
+    fit.stretches = described(known);
     std::vector<double> radii;
     Eigen::VectorXd share = Eigen::VectorXd::Zero(known.by_noise.rows());
     for (std::size_t s = 0; s < bore_.stretches(); ++s) {
       const Stretch& stretch = fit.stretches[s];
-      if (stretch.sigma_mm >= 0.5 || stretch.seen_share <= 0.3) continue;
+      if (stretch.noise_sigma_mm >= 0.5 || stretch.seen_share <= 0.3) continue;
       radii.push_back(0.5 * stretch.diameter_mm);
       share[static_cast<Eigen::Index>(4 + s)] = 1;
     }

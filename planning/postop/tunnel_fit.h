@@ -17,7 +17,11 @@ enum class Wall { Clear, Screw };
 // A stretch of the bore, 4 mm long.
 struct Stretch {
   double from_entry_mm = 0;  // of its middle, along the axis
-  double diameter_mm = 0, sigma_mm = std::numeric_limits<double>::infinity();
+  double diameter_mm = 0;
+  // One sigma of it: by the noise of the grey alone, which tells whether it is seen at all, and with how far
+  // eighths of the wall agree and what the wall's own shape leaves open.
+  double noise_sigma_mm = std::numeric_limits<double>::infinity();
+  double diameter_sigma_mm = std::numeric_limits<double>::infinity();
   // Of its wall within the bone: grey differs across it, the same way all around. What differs the other way
   // is taken off.
   double seen_share = 0;

@@ -16,7 +16,7 @@ std::vector<Stretch> stretches(const std::vector<double>& widths_mm) {
     Stretch stretch;
     stretch.from_entry_mm = kLength_mm * (static_cast<double>(all.size()) + 0.5);
     stretch.diameter_mm = width_mm;
-    stretch.sigma_mm = 0.05;
+    stretch.noise_sigma_mm = 0.05;
     stretch.seen_share = width_mm > 0 ? 1 : 0;
     all.push_back(stretch);
   }

@@ -135,6 +135,22 @@ TEST(TunnelFit, HowWideABoreIsDoesNotHangOnTheBlur) {
   }
 }
 
+// How wide each stretch is is said as well as it is known, the blur and the rim counted. Limit: four sigma,
+// which none of some 40 widths exceeds by chance.
+TEST(TunnelFit, AStretchIsOffByNoMoreThanIsSaid) {
+  for (const double blur_mm : {0.3, 0.5, 0.8}) {
+    for (const double over_bore_hu : {130.0, 400.0}) {
+      const TunnelFit fit = fitted({.blur_mm = blur_mm, .marrow_hu = kBore_hu + over_bore_hu});
+      ASSERT_TRUE(fit.is_fitted);
+      for (const Stretch& stretch : fit.stretches) {
+        if (stretch.seen_share < 0.5) continue;
+        EXPECT_LT(std::abs(stretch.diameter_mm - 2 * kRadius_mm), 4 * stretch.diameter_sigma_mm)
+            << blur_mm << " mm, " << over_bore_hu << " HU, " << stretch.from_entry_mm << " mm";
+      }
+    }
+  }
+}
+
 // A rim thinner than the blur looks as a wall further in does: whichever is taken, that the other may be is
 // said.
 TEST(TunnelFit, ARimThatTheBlurHidesMakesTheDiameterUncertain) {
