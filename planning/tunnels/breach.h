@@ -20,9 +20,4 @@ struct DepthRange {
 [[nodiscard]] std::vector<DepthRange> breaches_of(const Tunnel& tunnel, const TunnelGeometry& measured,
                                                   const geometry::Surface& bone);
 
-// How deep it is open to one side of a mouth whose face steps down, as between a tibia's condyles
-// (tunnel_wall.h); 0 where there is no step. Some milliseconds.
-[[nodiscard]] double stepped_mouth_to_mm(const Tunnel& tunnel, const TunnelGeometry& measured,
-                                         const geometry::Surface& bone);
-
 }  // namespace arthronaut::tunnels

@@ -8,8 +8,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRoughness_mm = 1.0;
-constexpr double kDrawsBack_mm = 0.5;  // towards the axis: more is no step but hollow beneath its edge
-constexpr double kHair_mm = 1e-6;      // stations nearer to each other are one
+constexpr double kHair_mm = 1e-6;  // stations nearer to each other are one
 
 }  // namespace
 
@@ -21,7 +20,7 @@ void HalfPlane::find_stations() {
     stations_.push_back(std::clamp(cut.to_mm, low_mm_, high_mm_));
     for (const std::array<double, 2>& ends :
          {std::array{cut.from_radius_mm - radius_mm_, cut.to_radius_mm - radius_mm_}, cut.entry_lip.same,
-          cut.entry_lip.facing, cut.entry_lip.square, cut.exit_lip.same, cut.exit_lip.facing}) {
+          cut.entry_lip.facing, cut.exit_lip.same, cut.exit_lip.facing}) {
       if (ends[0] * ends[1] >= 0) continue;
       const double root = cut.from_mm + ends[0] / (ends[0] - ends[1]) * (cut.to_mm - cut.from_mm);
       stations_.push_back(std::clamp(root, low_mm_, high_mm_));
@@ -65,50 +64,35 @@ void HalfPlane::find_stretches() {
 }
 
 // The side enters the bone before the axis does on one side of a slanting mouth. Where it is still outside
-// when the axis enters it is looked at from there on. What nothing ends lies in front of a square mouth.
+// when the axis enters it is looked at from there on.
 void HalfPlane::keep_from_mouth_to_mouth() {
   auto first = std::find_if(stretches_.begin(), stretches_.end(),
                             [](const Stretch& s) { return s.from_mm > -2 * kHair_mm; });
   if (first->in_bone)
-    while (first != stretches_.begin() && (first - 1)->in_bone && (first - 1)->end) --first;
+    while (first != stretches_.begin() && (first - 1)->in_bone) --first;
   auto last = std::find_if(first, stretches_.end(),
                            [&](const Stretch& s) { return s.to_mm > length_mm_ - 2 * kHair_mm; });
   if (last->in_bone)
-    while (last + 1 != stretches_.end() && (last + 1)->in_bone && (last + 1)->end) ++last;
+    while (last + 1 != stretches_.end() && (last + 1)->in_bone) ++last;
   stretches_.erase(last + 1, stretches_.end());
   stretches_.erase(stretches_.begin(), first);
 }
 
-// Where the lip is over; `to` where it never is. What is no lip for less than kRoughness_mm does not end it,
-// nor does a step down: steep for no longer than the rule allows in all, and not hollow beneath its edge.
-template <typename Iterator>
-Iterator HalfPlane::beyond_lip(Iterator from, Iterator to, const LipRule& rule) {
-  stepped_mm_ = 0;
-  double run_mm = 0, edge_mm = 0;
+// Where the lip is over; `to` where it never is. What is no lip for less than kRoughness_mm does not end it.
+template <typename Iterator, typename LipOf>
+Iterator HalfPlane::beyond_lip(Iterator from, Iterator to, LipOf lip_of) {
+  double run_mm = 0;
   Iterator began = from;
   for (Iterator at = from; at != to; ++at) {
-    if (at->end && at->is_lip(at->end->*rule.of)) {
-      if (run_mm >= kRoughness_mm) stepped_mm_ += run_mm;
+    if (at->end && at->is_lip(lip_of(*at->end))) {
       run_mm = 0;
       continue;
     }
-    if (run_mm == 0) {
-      began = at;
-      edge_mm = at->end ? at->end->radius_at(at->from_mm) : kInfinity;
-    }
+    if (run_mm == 0) began = at;
     run_mm += at->length_mm();
-    const bool is_hollow =
-        !at->end || at->end->radius_at(0.5 * (at->from_mm + at->to_mm)) < edge_mm - kDrawsBack_mm;
-    if (run_mm >= kRoughness_mm && (is_hollow || stepped_mm_ + run_mm > rule.steps_mm)) return began;
+    if (run_mm >= kRoughness_mm) return began;
   }
   return to;
-}
-
-void HalfPlane::note_stepped_mouth(std::vector<Stretch>::const_iterator beyond) {
-  stepped_mouth_to_mm_ = 0;
-  if (stepped_mm_ <= 0) return;
-  for (auto at = stretches_.cbegin(); at != beyond; ++at)
-    if (!at->in_bone) stepped_mouth_to_mm_ = std::max(stepped_mouth_to_mm_, at->to_mm);
 }
 
 void HalfPlane::add_outside(const Stretch& stretch) {
@@ -123,9 +107,11 @@ Thinnest HalfPlane::thinnest() {
   find_stations();
   find_stretches();
   keep_from_mouth_to_mouth();
-  const auto from = beyond_lip(stretches_.begin(), stretches_.end(), {&Cut::entry_lip, entry_steps_mm_});
-  note_stepped_mouth(from);
-  const auto to = beyond_lip(stretches_.rbegin(), stretches_.rend(), {&Cut::exit_lip, 0}).base();
+  const auto from = beyond_lip(stretches_.begin(), stretches_.end(),
+                               [](const Cut& cut) -> const LipEnds& { return cut.entry_lip; });
+  const auto to = beyond_lip(stretches_.rbegin(), stretches_.rend(), [](const Cut& cut) -> const LipEnds& {
+                    return cut.exit_lip;
+                  }).base();
   Thinnest found;
   if (from < to) {
     for (auto at = from; at != to; ++at) {

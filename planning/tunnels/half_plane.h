@@ -12,9 +12,9 @@
 namespace arthronaut::tunnels {
 
 // By how much a surface is of a mouth's own face, at either end of a cut and linear in between: of the same
-// face and facing the drill, where both are positive; a mouth of its own, where `square` is.
+// face and facing the drill, where both are positive.
 struct LipEnds {
-  std::array<double, 2> same{}, facing{}, square{};
+  std::array<double, 2> same{}, facing{};
 };
 
 // A face's cut with a half plane: stations and distances from the axis, from low station to high.
@@ -49,37 +49,21 @@ struct Stretch {
   [[nodiscard]] bool is_lip(const LipEnds& lip) const {
     const double run = end->to_mm - end->from_mm;
     const double t = run > 0 ? (0.5 * (from_mm + to_mm) - end->from_mm) / run : 0.5;
-    const auto is_positive = [t](const std::array<double, 2>& ends) {
-      return ends[0] + t * (ends[1] - ends[0]) > 0;
-    };
-    return is_positive(lip.square) || (is_positive(lip.same) && is_positive(lip.facing));
+    return lip.same[0] + t * (lip.same[1] - lip.same[0]) > 0 &&
+           lip.facing[0] + t * (lip.facing[1] - lip.facing[0]) > 0;
   }
-};
-
-// Which cuts may be lip of a mouth, and how deep its face may step down in all.
-struct LipRule {
-  LipEnds Cut::*of = nullptr;
-  double steps_mm = 0;
 };
 
 class HalfPlane {
  public:
-  // entry_steps_mm: of WallQuery.
-  HalfPlane(double length_mm, double radius_mm, double low_mm, double high_mm, double entry_steps_mm = 0)
-      : length_mm_(length_mm),
-        radius_mm_(radius_mm),
-        low_mm_(low_mm),
-        high_mm_(high_mm),
-        entry_steps_mm_(entry_steps_mm) {}
+  HalfPlane(double length_mm, double radius_mm, double low_mm, double high_mm)
+      : length_mm_(length_mm), radius_mm_(radius_mm), low_mm_(low_mm), high_mm_(high_mm) {}
 
   void clear() { cuts_.clear(); }
   void add(const Cut& cut) { cuts_.push_back(cut); }
   [[nodiscard]] Thinnest thinnest();
   // Of what thinnest() looked at last: where the tunnel's side lies outside the bone, lips left out.
   [[nodiscard]] const std::vector<DepthRange>& outside() const { return outside_; }
-  // Of the same: how deep the side still shows in the entry's face where that steps down; 0 where it does
-  // not.
-  [[nodiscard]] double stepped_mouth_to_mm() const { return stepped_mouth_to_mm_; }
 
  private:
   void find_stations();
@@ -87,12 +71,10 @@ class HalfPlane {
   [[nodiscard]] Stretch stretch_at(double from, double to) const;
   void keep_from_mouth_to_mouth();
   void add_outside(const Stretch& stretch);
-  template <typename Iterator>
-  [[nodiscard]] Iterator beyond_lip(Iterator from, Iterator to, const LipRule& rule);
-  void note_stepped_mouth(std::vector<Stretch>::const_iterator beyond);
+  template <typename Iterator, typename LipOf>
+  [[nodiscard]] static Iterator beyond_lip(Iterator from, Iterator to, LipOf lip_of);
 
-  double length_mm_, radius_mm_, low_mm_, high_mm_, entry_steps_mm_, stepped_mm_ = 0,
-                                                                     stepped_mouth_to_mm_ = 0;
+  double length_mm_, radius_mm_, low_mm_, high_mm_;
   std::vector<Cut> cuts_;
   std::vector<const Cut*> open_;
   std::vector<double> stations_;

@@ -94,8 +94,6 @@ std::string breach_text(const Tunnel& tunnel, const TunnelGeometry& geometry,
   return "breaks out of the bone" + text;
 }
 
-constexpr double kRoundMouth_mm = 1;  // a mouth that is open to one side for less has nothing to be said of
-
 // The limits of the back wall are the femur's; of the tibia nobody has published one.
 PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const geometry::Surface* surface,
                      const PlanNorms& norms) {
@@ -116,10 +114,6 @@ PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const
       check.text += ": " + (geometry.wall_mm <= 0 ? breach_text(tunnel, geometry, surface)
                                                   : "less than " + limit_text(norms.breaking_wall_mm, "mm"));
     }
-    const double stepped_mm = surface != nullptr ? stepped_mouth_to_mm(tunnel, geometry, *surface) : 0;
-    if (stepped_mm > kRoundMouth_mm)
-      check.text +=
-          "; its mouth has a step, bone all round from " + number_text(stepped_mm, "mm") + " of depth";
     return check;
   }
   check.source = "a rim of 2.5 mm (Piefer 2012, PubMed 22301358); 1 to 2 mm as a limit is customary";

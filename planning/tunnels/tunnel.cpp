@@ -43,8 +43,7 @@ void measure_sides(const Tunnel& tunnel, const geometry::Surface& bone, TunnelGe
                                                  .diameter_mm = tunnel.diameter_mm,
                                                  .direction = tunnel.direction,
                                                  .entry = result.entry,
-                                                 .exit = result.exit,
-                                                 .entry_steps_mm = entry_steps_mm(tunnel.bone)});
+                                                 .exit = result.exit});
     result.wall_mm = whole_mm;
     result.thinnest_mm = result.exit_mm;
     result.thinnest_station_mm = result.length_mm;

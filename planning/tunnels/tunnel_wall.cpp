@@ -18,11 +18,6 @@ using Eigen::Vector3d;
 
 constexpr double kLeastTurnCosine = 0.70710678118654752;  // 45 deg: of the mouth's own face
 constexpr double kLeastFacing = 0.25881904510252074;      // sin 15 deg: of a face that a drill goes through
-// sin 30 deg: of a face that could be a mouth of its own (PlanNorms::grazing_mouth_deg). Of a mouth without
-// steps none: its lip ends where its own face does.
-constexpr double kLeastSquare = 0.5, kNone = 2;
-// Half of what the eminences stand above the condyles, about 1 cm: a choice.
-constexpr double kReliefOfPlateau_mm = 5;
 constexpr int kHalfPlanes = 120, kHalvings = 5, kHalvingsOfThick = 2, kMostHalfPlanes = 600;
 constexpr double kThick_mm = 8;
 constexpr double kOneBreach_mm = 1;  // pieces nearer to each other are one
@@ -33,8 +28,7 @@ class WallSearch {
       : view_(view),
         query_(query),
         half_plane_(query.length_mm, 0.5 * query.diameter_mm, -rim_reach_mm(query.diameter_mm),
-                    query.length_mm + rim_reach_mm(query.diameter_mm), query.entry_steps_mm),
-        least_square_(query.entry_steps_mm > 0 ? kLeastSquare : kNone) {
+                    query.length_mm + rim_reach_mm(query.diameter_mm)) {
     sort_by_angle();
   }
   [[nodiscard]] TunnelWall run();
@@ -49,7 +43,6 @@ class WallSearch {
     double angle_rad;
     Thinnest thinnest;
     std::vector<DepthRange> outside;
-    double stepped_mouth_to_mm = 0;
   };
   void sort_by_angle();
   [[nodiscard]] Trial try_at(double angle_rad);
@@ -58,7 +51,6 @@ class WallSearch {
   const AxisView& view_;
   const WallQuery& query_;
   HalfPlane half_plane_;
-  double least_square_;
   std::vector<Facet> facets_;
   std::vector<Trial> trials_;
   std::vector<std::vector<std::int32_t>> by_angle_{static_cast<std::size_t>(kHalfPlanes)};
@@ -137,7 +129,6 @@ void WallSearch::cut(const Facet& facet, const Vector2d& along, const Vector2d& 
     cut.entry_lip.same[k] = ends[k][2];
     cut.exit_lip.same[k] = ends[k][3];
     cut.entry_lip.facing[k] = -ends[k][4] - kLeastFacing;
-    cut.entry_lip.square[k] = -ends[k][4] - least_square_;
     cut.exit_lip.facing[k] = ends[k][4] - kLeastFacing;
   }
   cut.of = facet.triangle;
@@ -167,7 +158,7 @@ WallSearch::Trial WallSearch::try_at(double angle_rad) {
        by_angle_[static_cast<std::size_t>((bucket % kHalfPlanes + kHalfPlanes) % kHalfPlanes)])
     cut(facets_[static_cast<std::size_t>(index)], along, across);
   const Thinnest thinnest = half_plane_.thinnest();
-  return {angle_rad, thinnest, half_plane_.outside(), half_plane_.stepped_mouth_to_mm()};
+  return {angle_rad, thinnest, half_plane_.outside()};
 }
 
 std::vector<DepthRange> WallSearch::breaches() {
@@ -251,8 +242,6 @@ TunnelWall WallSearch::run() {
     if (less(at, best)) best = at;
   }
   TunnelWall wall;
-  for (const Trial& trial : trials)
-    wall.stepped_mouth_to_mm = std::max(wall.stepped_mouth_to_mm, trial.stepped_mouth_to_mm);
   if (!std::isfinite(best.thinnest.radius_mm)) return wall;
   wall.is_known = true;
   wall.thickness_mm = best.thinnest.radius_mm - 0.5 * query_.diameter_mm;
@@ -268,10 +257,6 @@ std::vector<DepthRange> breaches(const AxisView& view, const WallQuery& query) {
   WallSearch search(view, query);
   (void)search.run();
   return search.breaches();
-}
-
-double entry_steps_mm(bones::BoneKind bone) {
-  return bone == bones::BoneKind::Tibia ? kReliefOfPlateau_mm : 0;
 }
 
 double rim_reach_mm(double diameter_mm) {

@@ -8,13 +8,9 @@
 // there, since the hole is cut at a slant and not since it breaks out. Lip and breach are told apart by the
 // face that such a line comes out of, followed from the mouth's rim on in every half plane through the axis:
 //   lip     the mouth's own face: it turns less than 45 deg from the mouth's normal, and it faces the drill
-//           by more than 15 deg (at the exit: faces away from it)
+//   by
+//           more than 15 deg (at the exit: faces away from it)
 //   wall    all that comes after it. A face that turns away for less than 1 mm is roughness of the lip.
-// The tibia's plateau is no such face: between the condyles it has ridges with flanks some mm high, and where
-// a ligament is attached a mouth can hardly miss one. There (WallQuery::entry_steps_mm) a flank is a step of
-// the mouth, as long as bone lies beneath all of it: steps go no deeper than that in all, and a face that
-// the drill would meet at 30 deg or more is lip however it is turned. How deep the tunnel is open to one
-// side then is said (stepped_mouth_to_mm). A hollow beneath a step's edge is a breach as before.
 // Which way a face looks is taken without the roughness of its triangles (geometry/smooth_normals.h), so that
 // the number does not jump while a tunnel is dragged over a surface out of a CT. So an edge beside the mouth,
 // a second face through which the side shows, a groove along a cortex and a tunnel that grazes the bone are
@@ -27,7 +23,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "planning/bones/bone.h"
 #include "planning/tunnels/axis_view.h"
 #include "planning/tunnels/breach.h"
 #include "planning/tunnels/tunnel_mouth.h"
@@ -41,19 +36,13 @@ struct TunnelWall {
   Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();  // on the bone's surface, where it is thinnest
   double station_mm = 0;                            // along the axis from the entry; may lie a little before
                                                     // the entry or beyond the exit, in a slanting rim
-  // How deep the side still shows in a mouth whose face steps down; 0 where it has no step. Known even where
-  // the wall is not.
-  double stepped_mouth_to_mm = 0;
 };
 
 struct WallQuery {
   double length_mm = 0, diameter_mm = 0;
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
   TunnelMouth entry, exit;
-  double entry_steps_mm = 0;  // how deep the entry's face may step down in all, beyond its roughness
 };
-// Of a plateau 5 mm, else none.
-[[nodiscard]] double entry_steps_mm(bones::BoneKind bone);
 // The view must reach from rim_reach_mm(diameter) before the entry to as far beyond the exit.
 [[nodiscard]] TunnelWall thinnest_wall(const AxisView& view, const WallQuery& query);
 

@@ -4,7 +4,6 @@
 
 #include <random>
 
-#include "planning/tunnels/breach.h"
 #include "planning/tunnels/tunnel.h"
 #include "tests/planning/geometry/shapes.h"
 #include "tests/planning/tunnels/dense_wall.h"
@@ -41,38 +40,6 @@ TEST(TunnelWall, BeginsAtTheMouth) {
   EXPECT_NEAR(measured.wall_mm, -1.75, 1e-3);
   EXPECT_NEAR(measured.thinnest_station_mm, 3, 0.01);
   EXPECT_LT((measured.thinnest_mm - Vector3d(0, 2.75, 3)).norm(), 0.02);
-}
-
-// Between a tibia's condyles: the mouth's face ends 4.4 mm beside the axis at a flank `high_mm` deep, below
-// which the plateau goes on.
-geometry::TriangleMesh ridge(double high_mm) {
-  return test::prism({{4.4, 0}, {4.7, high_mm}, {30, high_mm + 8}, {30, 60}, {-40, 60}, {-40, 0}}, 40,
-                     {-10, 40});
-}
-struct Mouth {
-  double wall_mm, stepped_to_mm;
-};
-Mouth mouth_of(bones::BoneKind bone, const geometry::TriangleMesh& mesh) {
-  const geometry::Surface surface(mesh);
-  const Tunnel tunnel{.bone = bone, .entry_mm = {0, 0, 0}, .direction = {0, 0, 1}, .diameter_mm = 9};
-  const auto measured = measure(tunnel, surface);
-  return {measured.wall_mm, stepped_mouth_to_mm(tunnel, measured, surface)};
-}
-
-// A default plan of three tibiae of four was said to break out of the bone, for a flank beside its mouth.
-TEST(TunnelWall, TakesAFlankBesideATibialMouthForAStepOfIt) {
-  const Mouth of_tibia = mouth_of(bones::BoneKind::Tibia, ridge(3));
-  EXPECT_GT(of_tibia.wall_mm, 5);
-  EXPECT_NEAR(of_tibia.stepped_to_mm, 1, 0.1);  // where the flank is 4.5 mm off the axis
-  const Mouth of_femur = mouth_of(bones::BoneKind::Femur, ridge(3));
-  EXPECT_NEAR(of_femur.wall_mm, -0.1, kExact_mm) << "the back wall of a condyle is no step";
-  EXPECT_EQ(of_femur.stepped_to_mm, 0);
-}
-
-// What goes deeper than the plateau's relief is the bone's side, and a hollow beneath an edge is a window.
-TEST(TunnelWall, StillTellsABreachBesideATibialMouth) {
-  EXPECT_NEAR(mouth_of(bones::BoneKind::Tibia, ridge(8)).wall_mm, -0.1, kExact_mm);
-  EXPECT_NEAR(mouth_of(bones::BoneKind::Tibia, undercut()).wall_mm, -1.75, 1e-3);
 }
 
 // A wider drill leaves less bone, by the half of what it is wider: it never takes the warning away.
