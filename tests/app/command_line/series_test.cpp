@@ -48,8 +48,10 @@ TEST_F(SeriesCommand, WritesTheListAsJson) {
     EXPECT_EQ(written.at("images"), series.image_count);
     EXPECT_EQ(written.at("readable"), series.is_readable());
     EXPECT_EQ(written.at("files").size(), series.files.size());
+    EXPECT_EQ(written.at("spacing_mm").is_null(), !series.is_readable()) << "where nobody knows it";
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_EQ(written.at("size").at(static_cast<std::size_t>(axis)), series.size[axis]);
+      if (!series.is_readable()) continue;
       EXPECT_EQ(written.at("spacing_mm").at(static_cast<std::size_t>(axis)), series.spacing_mm[axis]);
     }
     const std::string& wrong = series.is_readable() ? series.warnings.at(0) : series.refusal;

@@ -150,6 +150,10 @@ TEST_F(PacsWindow, SaysThatWhatWouldBeSentIsOfAnotherCase) {
   for (const char* name : {"First", "Second"})
     cases::save_case(folder_ / (std::string(name) + ".arthro"), phantom::case_of(knee, name));
   const VirtualDisplay display(1280, 720);
+  {  // What was open once is in the list.
+    RunningWorkstation before(display, folder_.path(), {(folder_ / "Second.arthro").string()});
+    ASSERT_TRUE(before.wait_for_state("case", "open", 120));
+  }
   RunningWorkstation app(display, folder_.path(), {(folder_ / "First.arthro").string()});
   ASSERT_TRUE(app.wait_for_state("case", "open", 120));
   app.press("F5");

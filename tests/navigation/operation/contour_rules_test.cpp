@@ -197,7 +197,7 @@ TEST_F(BoneMoved, Hazard25ABoneThatLooksOtherwiseAsksForTheControlPoint) {
 TEST_F(BoneMoved, AControlPointThatIsOffKeepsTheDoubtAndTheSecondOneIsTheAlarm) {
   tell_looks(true);
   run_.touch(test::on_bone(trial(), 2) + Eigen::Vector3d(3, 0, 0), TouchControlPoint{});
-  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckLooks);
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckShift) << "that comes first";
   run_.touch(test::on_bone(trial(), 2) + Eigen::Vector3d(3, 0, 0), TouchControlPoint{});
   EXPECT_EQ(run_.in_force().standing, Standing::Alarm);
 }

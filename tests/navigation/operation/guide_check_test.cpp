@@ -167,7 +167,7 @@ TEST(GuideCheck, AGuideThatIsOffLeavesNoEvidence) {
   PhantomOperation run;
   bring_to_the_guide(run, nominal_source());
   run.apply(TrustGuide{});
-  for (int i = 0; i < 200; ++i) run.show_guide(0.1 * i);
+  for (int i = 0; i < 200; ++i) run.show_guide(0.02 * i);
   ASSERT_TRUE(run.state()->drilled.has_evidence);
   hold_guide(run, test::on_bone(trial(), 2) + Eigen::Vector3d(5, 0, 0));
   run.apply(CheckGuide{});
