@@ -81,7 +81,7 @@ TEST_F(OperationRunTest, Hazard3NoTouchAndNoStrokeIsTakenOfAnOldPicture) {
   EXPECT_EQ(run.state()->touch_asked_ns, before);
   EXPECT_FALSE(run.state()->draws);
   EXPECT_EQ(run.refusal().count, 5) << "the tip that was not known, and these four";
-  EXPECT_EQ(run.refusal().words, "not drawing: picture 2.0 s old");
+  EXPECT_EQ(run.refusal().words.find("not drawing: picture 2."), 0U) << run.refusal().words;
   step_to(6);
   run.apply(operation::ForgetTouches{});
   EXPECT_FALSE(run.refusal().words.empty()) << "that is of no moment";
