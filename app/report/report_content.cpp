@@ -170,9 +170,8 @@ std::optional<postop::AchievedPlace> place_of(const Content& content,
 std::string changed_since(const Content& content, const tunnels::Tunnel& guided) {
   const auto now = content.knee.plan.tunnels.find(guided.key());
   if (now == content.knee.plan.tunnels.end())
-    return "The plan was changed since: this tunnel is planned no more. What follows is against the plan "
-           "that "
-           "guided.";
+    return "The plan was changed since: this tunnel is planned no more. What follows is against the one "
+           "that guided.";
   const operation::TunnelDifference by = operation::compare(guided, now->second);
   constexpr double kSame_mm = 0.05, kSame_deg = 0.05;  // as it is printed
   const double wider_mm = now->second.diameter_mm - guided.diameter_mm;

@@ -35,10 +35,9 @@ struct DrillDepth {
   double sigma_offset_mm = geometry::kNotKnown, sigma_angle_deg = geometry::kNotKnown;
   Breakout breakout = Breakout::Far;
   // Farther from the plan's axis than that, the plan's length and exit are not those of what is drilled.
+  // Where it is not known, neither holds.
   static constexpr double kMostLateral_mm = 5;
-  [[nodiscard]] bool is_at_plan() const {
-    return lateral_mm <= kMostLateral_mm;
-  }  // not where it is not known
+  [[nodiscard]] bool is_at_plan() const { return lateral_mm <= kMostLateral_mm; }
   [[nodiscard]] bool is_beside_plan() const { return lateral_mm > kMostLateral_mm; }
 };
 

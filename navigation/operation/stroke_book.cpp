@@ -91,14 +91,16 @@ void StrokeBook::trace_point(const strokes::CurvePoint& point) {
   if (!traced_cells_.insert(cell_of(point.position_mm)).second) return;
   traced_.push_back(point);
   if (traced_.size() < trace_->size() + kPointsBetweenTraces && traced_.size() > trace_->size()) return;
-  if (traced_.size() > kMostTraced) {
-    // The oldest half steps off the screen, until it is drawn again; the registration keeps it.
-    const auto oldest_end = traced_.begin() + static_cast<std::ptrdiff_t>(kMostTraced / 2);
-    for (auto gone = traced_.begin(); gone != oldest_end; ++gone)
-      traced_cells_.erase(cell_of(gone->position_mm));
-    traced_.erase(traced_.begin(), oldest_end);
-  }
+  if (traced_.size() > kMostTraced) step_off_screen(kMostTraced / 2);
   trace_ = std::make_shared<const strokes::Curves>(traced_);
+}
+
+// The oldest are seen again once they are drawn again; the registration keeps them.
+void StrokeBook::step_off_screen(std::size_t count) {
+  const auto oldest_end = traced_.begin() + static_cast<std::ptrdiff_t>(count);
+  for (auto gone = traced_.begin(); gone != oldest_end; ++gone)
+    traced_cells_.erase(cell_of(gone->position_mm));
+  traced_.erase(traced_.begin(), oldest_end);
 }
 
 void StrokeBook::trace_anew() {
@@ -106,12 +108,7 @@ void StrokeBook::trace_anew() {
   traced_cells_.clear();
   for (const strokes::CurvePoint& point : points_)
     if (traced_cells_.insert(cell_of(point.position_mm)).second) traced_.push_back(point);
-  if (traced_.size() > kMostTraced) {
-    const auto oldest_end = traced_.end() - static_cast<std::ptrdiff_t>(kMostTraced);
-    for (auto gone = traced_.begin(); gone != oldest_end; ++gone)
-      traced_cells_.erase(cell_of(gone->position_mm));
-    traced_.erase(traced_.begin(), oldest_end);
-  }
+  if (traced_.size() > kMostTraced) step_off_screen(traced_.size() - kMostTraced);
   trace_ = std::make_shared<const strokes::Curves>(traced_);
 }
 

@@ -45,6 +45,7 @@ class StrokeBook {
  private:
   void trace_point(const strokes::CurvePoint& point);
   void trace_anew();
+  void step_off_screen(std::size_t count);
 
   strokes::Curves points_;
   std::set<int> excluded_;

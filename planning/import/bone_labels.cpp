@@ -1,7 +1,6 @@
 #include "planning/import/bone_labels.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "planning/geometry/error.h"
 #include "planning/images/bone_surface.h"

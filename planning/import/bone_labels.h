@@ -20,8 +20,8 @@ namespace arthronaut::importing {
                                                             std::vector<std::string>& lines);
 
 // By shape (anatomy_check.h): the only label with a femur's and the only one with a tibia's, below it. Empty
-// where either is missing or there are several, as of both knees: then only a person knows. Takes about a
-// second a label of at least 15 cm3, of which there may be twelve.
+// where either is missing or there are several, as of both knees: then only a person knows. Makes a surface
+// of each label of at least 15 cm3, of which there may be twelve.
 [[nodiscard]] std::map<bones::BoneKind, int> labels_by_shape(const images::Volume& volume,
                                                              std::vector<std::string>& lines);
 
