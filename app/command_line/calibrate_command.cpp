@@ -94,7 +94,7 @@ void add_calibrate_command(CLI::App& app, Context& context) {
   const auto arguments = std::make_shared<CalibrateArguments>();
   command->add_option("--square-mm", arguments->options.square_mm, "Side of one square of the board, mm")
       ->required()
-      ->check(above_zero());
+      ->check(between(0.01, 1000));
   command
       ->add_option("--distance-mm", arguments->options.distance_mm,
                    "How far the boards stood from the lens, about, if measured: tells a wrong square size")

@@ -47,6 +47,14 @@ int open_window(const WorkstationRequest& request,
   return open(request);
 }
 
+// As every other error begins; and where more is said of the command that was meant.
+std::string usage_error(const CLI::App* app, const CLI::Error& error) {
+  std::string command = app->get_name();
+  for (auto chosen = app->get_subcommands(); !chosen.empty(); chosen = chosen.front()->get_subcommands())
+    command += " " + chosen.front()->get_name();
+  return std::string("arthronaut: ") + error.what() + "; see " + command + " --help\n";
+}
+
 int report_error(const std::exception& error, int exit_code) {
   std::cerr << "arthronaut: " << error.what() << '\n';
   log::error(error.what());
@@ -108,6 +116,7 @@ int run_command_line(int argc, char** argv,
   app.name("arthronaut");
   app.set_version_flag("--version", std::string("arthronaut ") + kProgramVersion);
   app.require_subcommand(0, 1);
+  app.failure_message(usage_error);
   app.footer(
       "Exit codes: 0 done and reliable; 1 internal error; 2 wrong usage; 3 unreadable or invalid input;\n"
       "4 done, but the result is not reliable (it is written, with its reasons).");

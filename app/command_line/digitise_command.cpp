@@ -30,6 +30,7 @@ void digitise(Context& context, const DigitiseArguments& arguments) {
   refuse_before_the_work({.read = {arguments.poses, arguments.tools}, .written = {arguments.output}});
   const auto poses = strokes::read_poses_file(arguments.poses);
   const auto tools = tools::read_tools_file(arguments.tools);
+  strokes::require_sizes(poses, tools, arguments.poses);
   const auto curves = digitised(arguments, poses, tools);
   strokes::write_curves_file(
       arguments.output, curves,

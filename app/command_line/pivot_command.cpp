@@ -56,7 +56,11 @@ std::vector<geometry::RigidTransform> fixed_from_tool(const Context& context,
                                                       const PivotArguments& arguments) {
   const bool to_standard_output = arguments.output == "-";
   auto rows = strokes::read_poses_file(arguments.poses);
-  if (!arguments.tools.empty()) rows = strokes::body_rows(rows, tools::read_tools_file(arguments.tools));
+  if (!arguments.tools.empty()) {
+    const tools::ToolSet set = tools::read_tools_file(arguments.tools);
+    strokes::require_sizes(rows, set, arguments.poses);
+    rows = strokes::body_rows(rows, set);
+  }
   const PosesByFrame tool = poses_of(rows, arguments.marker_id);
   if (tool.empty()) {
     throw InvalidInput(arguments.poses, "marker_id",

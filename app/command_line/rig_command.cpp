@@ -8,6 +8,7 @@
 
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
+#include "navigation/strokes/body_rows.h"
 #include "navigation/strokes/poses_file.h"
 #include "navigation/tools/rig_calibration.h"
 #include "navigation/tools/tool_set.h"
@@ -84,9 +85,16 @@ std::vector<int> markers_on_body(const RigArguments& arguments, const tools::Too
   return own;
 }
 
-// As the tools declare it, else as the command says; nothing where neither does.
+// That the poses were found with, where they say it.
+std::optional<double> tracked_size_mm(int id, const std::vector<strokes::PoseRow>& rows) {
+  for (const strokes::PoseRow& row : rows)
+    if (row.marker_id == id && row.size_mm) return row.size_mm;
+  return std::nullopt;
+}
+
+// As the tools declare it, else as the poses or the command say; nothing where none does.
 std::optional<double> known_size_mm(int id, const RigArguments& arguments, const tools::ToolSet& set,
-                                    const Body& body) {
+                                    const Body& body, const std::vector<strokes::PoseRow>& rows) {
   const auto look = [&](const auto& bodies) -> std::optional<double> {
     for (const auto& one : bodies)
       for (const tools::BodyMarker& marker : tools::markers_of(one))
@@ -98,7 +106,12 @@ std::optional<double> known_size_mm(int id, const RigArguments& arguments, const
     if (const auto size_mm = look(std::span(set.tools).first(said))) return *size_mm;
     if (const auto size_mm = look(set.world_markers)) return *size_mm;
   }
-  return arguments.size_mm;
+  const std::optional<double> tracked_mm = tracked_size_mm(id, rows);
+  if (tracked_mm && arguments.size_mm && *tracked_mm != *arguments.size_mm)
+    throw InvalidInput(arguments.poses, "size_mm",
+                       files::format("marker %d was taken for %g mm, --size-mm says %g", id, *tracked_mm,
+                                     *arguments.size_mm));
+  return tracked_mm ? tracked_mm : arguments.size_mm;
 }
 
 // Where the frame of the body's tip and axis lies: with the marker asked for; else it stays where it was.
@@ -140,7 +153,7 @@ tools::RigOptions rig_options(const RigArguments& arguments, const tools::ToolSe
                               const std::vector<strokes::PoseRow>& rows, std::vector<int>& assumed_ids) {
   tools::RigOptions options;
   for (const int id : markers_on_body(arguments, set, body, rows)) {
-    const auto size_mm = known_size_mm(id, arguments, set, body);
+    const auto size_mm = known_size_mm(id, arguments, set, body, rows);
     options.markers.emplace_back(id, size_mm.value_or(kStandardSize_mm));
     if (!size_mm) assumed_ids.push_back(id);
   }
@@ -221,7 +234,7 @@ void say_assumed(const Context& context, const RigArguments& arguments, const st
   std::string names;
   for (const int id : ids) names += (names.empty() ? "" : ", ") + std::to_string(id);
   (arguments.output == "-" ? std::cerr : std::cout) << files::format(
-      "marker %s: taken to be %g mm wide, since no tools declare it; --size-mm says otherwise\n",
+      "marker %s: taken to be %g mm wide, since neither tools nor poses say it; --size-mm says otherwise\n",
       names.c_str(), kStandardSize_mm);
 }
 
@@ -269,6 +282,7 @@ void calibrate(Context& context, const RigArguments& arguments) {
   const std::vector<strokes::PoseRow> rows = strokes::read_poses_file(arguments.poses);
   tools::ToolSet set =
       arguments.tools.empty() ? tools::standard_tools() : tools::read_tools_file(arguments.tools);
+  if (!arguments.tools.empty()) strokes::require_sizes(rows, set, arguments.poses);
   const Body body = body_of(set, arguments.tool);
   std::vector<int> assumed_ids;
   const tools::RigOptions options = rig_options(arguments, set, body, rows, assumed_ids);
@@ -331,7 +345,7 @@ void add_rig_command(CLI::App& app, Context& context) {
       ->check(a_marker_id());
   command
       ->add_option("--size-mm", arguments->size_mm,
-                   "Size of markers that the tools do not declare (default: 4, and said so)")
+                   "Size of markers of which neither tools nor poses say it (default: 4, and said so)")
       ->check(above_zero());
   command->add_option("-o,--output", arguments->output, "tools.json to write; - is standard output")
       ->required()

@@ -41,6 +41,16 @@ std::vector<std::string> reasons_of(const TrackedVideo& video) {
   return reasons;
 }
 
+// A pose is in proportion to the size that its marker was taken to have.
+void append_sized_rows(const PictureObservation& view, const std::vector<markers::DeclaredMarker>& declared,
+                       std::vector<strokes::PoseRow>& rows) {
+  const std::size_t before = rows.size();
+  append_pose_rows(view, rows);
+  for (std::size_t i = before; i < rows.size(); ++i)
+    for (const markers::DeclaredMarker& marker : declared)
+      if (marker.id == rows[i].marker_id) rows[i].size_mm = marker.size_mm;
+}
+
 }  // namespace
 
 ViewStatistics::ViewStatistics(const tools::ToolSet& tools) {
@@ -91,7 +101,7 @@ TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions&
     const auto begin = std::chrono::steady_clock::now();
     tracker.observe(*frame, view);
     const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
-    append_pose_rows(view, video.rows);
+    append_sized_rows(view, declared, video.rows);
     video.statistics.add(view, taken.count());
     medium.look(view);
     if (medium.wants_second_look()) medium.look_again(view, second.look(*frame, view.camera));

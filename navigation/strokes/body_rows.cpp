@@ -2,14 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "navigation/markers/body_pose.h"
+#include "navigation/markers/marker_tracker.h"
 #include "navigation/markers/planar_pose.h"
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::strokes {
 
 namespace {
 
+// Far below what a printed marker can be measured to.
+constexpr double kSameSize_mm = 1e-6;
 constexpr double kFocal_px = 600, kCornerSigma_px = 0.15;
 
 camera::CameraModel plain_camera() {
@@ -72,6 +79,21 @@ int body_id_of(int marker_id, const tools::ToolSet& tools) {
     for (const tools::BodyMarker& marker : body.markers)
       if (marker.marker_id == marker_id) return body.id;
   return marker_id;
+}
+
+void require_sizes(const std::vector<PoseRow>& rows, const tools::ToolSet& tools,
+                   const std::filesystem::path& file) {
+  std::map<int, double> said_mm;
+  for (const markers::DeclaredMarker& marker : markers::declared_markers(tools))
+    said_mm[marker.id] = marker.size_mm;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto said = said_mm.find(rows[i].marker_id);
+    if (!rows[i].size_mm || said == said_mm.end()) continue;
+    if (std::abs(*rows[i].size_mm - said->second) > kSameSize_mm)
+      throw InvalidInput(file, "line " + std::to_string(i + 2) + ", column size_mm",
+                         files::format("marker %d was taken for %g mm, the tools say %g mm", said->first,
+                                       *rows[i].size_mm, said->second));
+  }
 }
 
 std::vector<PoseRow> body_rows(const std::vector<PoseRow>& rows, const tools::ToolSet& tools) {

@@ -2,6 +2,7 @@
 // pose, named by the id of its first marker. For what reads poses.csv and knows tools.json.
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "navigation/strokes/poses_file.h"
@@ -16,6 +17,12 @@ namespace arthronaut::strokes {
 // length of 600 px can, it has no row in that frame; it may have had a pose there while the frame was at
 // hand, or none.
 [[nodiscard]] std::vector<PoseRow> body_rows(const std::vector<PoseRow>& rows, const tools::ToolSet& tools);
+
+// Throws InvalidInput (file, line, reason) where a pose was found of a marker of another size than the tools
+// say: pose and tools are then in different proportions, and nothing that is computed of both is right. Rows
+// that say no size pass. The rows are as read, one a line of the file.
+void require_sizes(const std::vector<PoseRow>& rows, const tools::ToolSet& tools,
+                   const std::filesystem::path& file);
 
 // The id that names the body which carries this marker; the marker's own where no body of several does.
 [[nodiscard]] int body_id_of(int marker_id, const tools::ToolSet& tools);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "planning/files/atomic_file.h"
 #include "planning/files/csv_table.h"
@@ -26,6 +27,8 @@ PoseRow read_row(const files::CsvTable& table, std::size_t row) {
                                             table.number(row, "tz_mm")};
   pose.rms_px = table.number(row, "rms_px");
   pose.mark_angle_deg = table.optional_number(row, "mark_angle_deg");
+  if (table.has_column("size_mm")) pose.size_mm = table.optional_number(row, "size_mm");
+  if (pose.size_mm && *pose.size_mm <= 0) table.fail(row, "size_mm", "is not above zero");
   return pose;
 }
 
@@ -36,8 +39,12 @@ std::vector<PoseRow> read_poses_file(const std::filesystem::path& file) {
                                                   "tx_mm", "ty_mm", "tz_mm", "rms_px", "mark_angle_deg"});
   std::vector<PoseRow> rows;
   rows.reserve(table.row_count());
+  std::set<int> ids_in_frame;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     rows.push_back(read_row(table, row));
+    if (row > 0 && rows[row].frame != rows[row - 1].frame) ids_in_frame.clear();
+    if (!ids_in_frame.insert(rows[row].marker_id).second)
+      table.fail(row, "marker_id", "is the second pose of this marker in its frame");
     if (row == 0) continue;
     const PoseRow& before = rows[row - 1];
     if (rows[row].time_s < before.time_s) table.fail(row, "time_s", "runs backwards");
@@ -56,6 +63,11 @@ void append_pose_line(const PoseRow& row, std::string& text) {
   text += line;
   if (row.mark_angle_deg) {
     std::snprintf(line, sizeof line, "%.6f", *row.mark_angle_deg);
+    text += line;
+  }
+  text += ',';
+  if (row.size_mm) {
+    std::snprintf(line, sizeof line, "%.9g", *row.size_mm);
     text += line;
   }
   text += '\n';

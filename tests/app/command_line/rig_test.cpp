@@ -27,7 +27,8 @@ RigidTransform turned(const Eigen::Vector3d& axis, double deg, const Eigen::Vect
 class RigCommand : public ::testing::Test {
  protected:
   // Markers 2 and 12 on the probe, 0 in the world; marker 12 moves at a frame, or is never seen with 2.
-  void write_poses(double cone_deg, int moves_at = -1, bool is_apart = false) {
+  void write_poses(double cone_deg, int moves_at = -1, bool is_apart = false,
+                   std::optional<double> size_mm = std::nullopt) {
     std::vector<strokes::PoseRow> rows;
     for (int i = 0; i < 240; ++i) {
       const double t = i / 30.0;
@@ -37,7 +38,7 @@ class RigCommand : public ::testing::Test {
       const RigidTransform slipped =
           i >= moves_at && moves_at >= 0 ? turned({1, 0, 0}, 1.5, {0.4, 0, 0}) : RigidTransform();
       const auto add = [&](int id, const RigidTransform& camera_from_marker) {
-        rows.push_back({i, t, id, camera_from_marker, 0.1, std::nullopt});
+        rows.push_back({i, t, id, camera_from_marker, 0.1, std::nullopt, size_mm});
       };
       add(0, facing);
       if (!is_apart || i < 120) add(2, pose);
@@ -132,6 +133,24 @@ TEST_F(RigCommand, SaysWhatSizeItTakes) {
   EXPECT_THAT(piped.output, ::testing::StartsWith("{"));
   const auto said = rig({"--size-mm", "4"});
   EXPECT_THAT(said.output + said.errors, ::testing::Not(HasSubstr("taken to be")));
+}
+
+// The size that poses were found with comes with them; where the tools, or the command, say another, what is
+// measured and what it would be used with are in different proportions.
+TEST_F(RigCommand, TakesTheSizeThatThePosesWereFoundWith) {
+  write_poses(25, -1, false, 2.89);
+  const auto result = rig();
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, ::testing::Not(HasSubstr("taken to be")));
+  EXPECT_EQ(tools::read_tools_file(folder_ / "out.json").find_tool("probe")->markers[1].size_mm, 2.89);
+  tools::write_tools_file(folder_ / "tools.json", tools::standard_tools());
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--tools", folder_ / "tools.json"}, {"--size-mm", "4"}}) {
+    const auto refused = rig(more);
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_THAT(refused.errors,
+                AllOf(HasSubstr("poses.csv"), HasSubstr("size_mm"), HasSubstr("was taken for 2.89 mm")));
+  }
 }
 
 // Wrong input names what is wrong.

@@ -32,7 +32,10 @@ TEST_P(Subcommand, HelpsWithAnExample) {
 
 // An option that does not exist is wrong usage everywhere.
 TEST_P(Subcommand, RefusesAnUnknownOption) {
-  EXPECT_EQ(run_program({GetParam(), "--no-such-option"}).exit_code, 2);
+  const auto result = run_program({GetParam(), "--no-such-option"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.errors, ::testing::StartsWith("arthronaut: "));
+  EXPECT_THAT(result.errors, HasSubstr(std::string("see arthronaut ") + GetParam()));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Subcommand,

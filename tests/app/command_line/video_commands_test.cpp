@@ -79,7 +79,7 @@ TEST_F(VideoCommands, TrackWritesToStandardOutput) {
   const auto result = run_program(arguments);
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_TRUE(result.output.starts_with(
-      "frame,time_s,marker_id,qw,qx,qy,qz,tx_mm,ty_mm,tz_mm,rms_px,mark_angle_deg"));
+      "frame,time_s,marker_id,qw,qx,qy,qz,tx_mm,ty_mm,tz_mm,rms_px,mark_angle_deg,size_mm\n"));
   EXPECT_EQ(std::count(result.output.begin(), result.output.end(), '\n'), 1 + 2 * test::kClipFrames);
   EXPECT_EQ(result.errors, "");
 }

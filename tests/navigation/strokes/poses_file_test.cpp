@@ -37,6 +37,7 @@ TEST(PosesFile, RoundTripKeepsPosesAndEmptyMarkAngles) {
   second = first;
   second.frame = 4;
   second.mark_angle_deg = 271.3;
+  second.size_mm = 2.89;
   const test::TemporaryFolder folder;
   const auto file = folder / "poses.csv";
   write_poses_file(file, {first, second});
@@ -46,6 +47,8 @@ TEST(PosesFile, RoundTripKeepsPosesAndEmptyMarkAngles) {
   EXPECT_EQ(rows[0].marker_id, 2);
   EXPECT_FALSE(rows[0].mark_angle_deg.has_value());
   EXPECT_NEAR(rows[1].mark_angle_deg.value(), 271.3, 1e-6);
+  EXPECT_FALSE(rows[0].size_mm.has_value());
+  EXPECT_EQ(rows[1].size_mm.value(), 2.89);
   EXPECT_LT((rows[0].camera_from_marker.translation_mm - first.camera_from_marker.translation_mm).norm(),
             1e-6);
   EXPECT_LT(rows[0].camera_from_marker.rotation.angularDistance(first.camera_from_marker.rotation), 1e-8);
@@ -53,6 +56,9 @@ TEST(PosesFile, RoundTripKeepsPosesAndEmptyMarkAngles) {
 
 // A number that is no rotation, time that runs backwards, a missing column: each is refused with its place.
 TEST(PosesFile, RefusesWhatBreaksTheContract) {
+  const std::string row = "0,0,2,1,0,0,0,1,2,3,0.1,\n";
+  EXPECT_THAT(error_of("twice.csv", kHeader + row + row),
+              testing::AllOf(testing::HasSubstr("line 3"), testing::HasSubstr("second pose")));
   EXPECT_THAT(
       error_of("norm.csv", std::string(kHeader) + "0,0,0,0.9,0,0,0,1,2,3,0.1,\n"),
       testing::AllOf(testing::HasSubstr("norm.csv"), testing::HasSubstr("qw"), testing::HasSubstr("norm")));
