@@ -24,7 +24,10 @@ TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptio
   const bool is_tall = !is_two && below > 5 * afar;  // as a screen of 4:3 is
   layout.video = {left.x + (left.width - side) / 2, is_tall ? left.y : left.y + below / 2, side, side};
 
-  if (options.is_whole_window) layout.header = rest.cut_top(1.2F * afar + 30 * options.scale, gap);
+  // Side, patient and what is to be said now stand one below the other: a title and two lines.
+  if (options.is_whole_window)
+    layout.header =
+        rest.cut_top(std::max(1.2F * afar + 30 * options.scale, (34 + 2 * 24 + 4) * options.scale), gap);
   layout.rail = rest.cut_top(1.25F * afar + 32 * options.scale, gap);
   layout.words = rest.cut_top(34 * options.scale + 3.1F * afar, gap);
   layout.states = rest.cut_bottom(44 * options.scale, gap);

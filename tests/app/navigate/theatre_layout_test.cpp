@@ -131,6 +131,17 @@ TEST(TheatreLayout, ThePictureIsAsLargeAsItCanBe) {
   }
 }
 
+// The side, the patient's name and what is to be said now, none over another.
+TEST(TheatreLayout, TheHeaderHasRoomForItsThreeLines) {
+  for (const Shape& shape : kShapes) {
+    SCOPED_TRACE(shape.name);
+    const Screen screen(shape);
+    const widgets::Theme& theme = screen.theme;
+    EXPECT_GE(screen.layout(true).header.height,
+              theme.title->FontSize + theme.strong->FontSize + theme.body->FontSize);
+  }
+}
+
 TEST(TheatreLayout, AcrossTwoScreensNothingLiesOnTheSeam) {
   for (const Shape& shape : kShapes) {
     if (std::string(shape.name).rfind("two", 0) != 0) continue;
