@@ -11,6 +11,7 @@
 #include "planning/import/case_import.h"
 #include "planning/import/import_child.h"
 #include "planning/import/import_process.h"
+#include "planning/import/import_side.h"
 
 namespace arthronaut::command_line {
 
@@ -74,7 +75,8 @@ void import(Context& context, const ImportArguments& arguments) {
   for (const importing::ImportedBone& imported : import.bones) {
     const std::string bone(bones::to_text(imported.bone.kind));
     for (const auto& line : imported.lines) context.say(bone + ": " + line);
-    for (const auto& doubt : imported.doubts) doubts.push_back(bone + ": " + doubt);
+    for (const auto& doubt : importing::doubts_with(import, imported, target.side))
+      doubts.push_back(bone + ": " + doubt);
     if (const auto space = imported.likelier_in())
       doubts.push_back(bone + ": --space " + std::string(bones::to_text(*space)) +
                        " reads it the other way round");

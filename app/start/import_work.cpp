@@ -6,6 +6,7 @@
 #include "app/case/case_opening.h"
 #include "planning/files/private_folder.h"
 #include "planning/import/case_import.h"
+#include "planning/import/import_side.h"
 
 namespace arthronaut::start {
 
@@ -179,20 +180,12 @@ void ImportWork::take_bones() {
   if (next_ == 0) {
     result_ = std::move(made);
   } else {  // another mesh of the same knee
-    if (result_.side && made.side && *result_.side != *made.side) {
+    if (!importing::add_bones(result_, std::move(made))) {
       failure_ = {.words = "the meshes are of different sides: " +
                            sources_.sources.at(wishes_.sources[next_]).title};
       state_ = State::Choosing;
       return;
     }
-    if (!result_.side) {  // with how it is known
-      result_.side = made.side;
-      result_.side_was_guessed = made.side_was_guessed;
-      result_.side_was_seen = made.side_was_seen;
-      result_.side_is_by_shape = made.side_is_by_shape;
-    }
-    result_.bones.insert(result_.bones.end(), made.bones.begin(), made.bones.end());
-    result_.lines.insert(result_.lines.end(), made.lines.begin(), made.lines.end());
   }
   if (++next_ < wishes_.sources.size())
     start_next();

@@ -1,5 +1,7 @@
 #include "app/start/side_line.h"
 
+#include "planning/import/import_side.h"
+
 namespace arthronaut::start {
 
 using widgets::Severity;
@@ -15,6 +17,9 @@ SideLine side_line(const importing::BoneImport& import, std::optional<bones::Sid
   if (import.side_is_contradicted && import.side == side)
     return {Severity::Bad, word + (was_said ? ", as you say" : ", by the name of the source") +
                                ", but the bones speak against it, see below: look at the picture"};
+  if (const auto shape = importing::side_by_shapes(import); was_said && shape && *shape != *side)
+    return {Severity::Caution, word + ", as you say, but the bones are shaped as in a " +
+                                   std::string(bones::to_text(*shape)) + " knee: look at the picture"};
   if (was_said) return {Severity::Good, word + ", as you say"};
   if (import.side_was_guessed)
     return {Severity::Caution, word + ", by the name of the source: is that so? Press R or L"};

@@ -23,6 +23,14 @@ struct Identity {
   [[nodiscard]] std::string birth_date_in_words() const;  // "1990-01-31"; empty before 1850
   // "Muster, Anna · 4711 · 1990-01-31": what a title or a report shows.
   [[nodiscard]] std::string in_words() const;
+  // This, and what it does not say as the other says it.
+  [[nodiscard]] Identity filled_from(const Identity& other) const {
+    const auto either = [](const std::string& mine, const std::string& theirs) {
+      return mine.empty() ? theirs : mine;
+    };
+    return {either(patient_name, other.patient_name), either(patient_id, other.patient_id),
+            either(birth_date, other.birth_date)};
+  }
   bool operator==(const Identity&) const = default;
 };
 

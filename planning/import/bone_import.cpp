@@ -12,6 +12,7 @@
 #include "planning/import/bone_labels.h"
 #include "planning/import/cut_check.h"
 #include "planning/import/failure_reason.h"
+#include "planning/import/import_side.h"
 #include "planning/import/shape_check.h"
 #include "planning/segmentation/anatomy_check.h"
 #include "planning/segmentation/ct_bones.h"
@@ -181,12 +182,6 @@ void import_labels(BoneImages& images, const std::map<BoneKind, int>& labels,
   if (result.bones.empty()) throw InvalidInput("--label does not name the bone of --bone");
 }
 
-std::string other_side_by_fibula(bones::Side fibula, bones::Side said) {
-  const std::string seen(bones::to_text(fibula));
-  return "the fibula lies on the " + seen + " of the tibia, as in a " + seen + " knee, but the side is " +
-         std::string(bones::to_text(said)) + ": check the side";
-}
-
 // Returns whether a fibula told the side.
 bool import_ct(BoneImages& images, const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
   segmentation::CtBonesOptions ct;
@@ -291,26 +286,6 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
 }
 
 }  // namespace
-
-std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBone& bone, bones::Side side) {
-  std::vector<std::string> doubts = bone.doubts;
-  if (!import.side || *import.side == side) return doubts;
-  // What spoke against the other side speaks for this one.
-  std::erase(doubts, other_side_by_fibula(side, *import.side));
-  for (const bool of_both : {true, false})
-    std::erase(doubts, other_side_by_shape(side, *import.side, of_both));
-  if (import.side_was_seen && !import.side_is_by_shape)
-    doubts.push_back(other_side_by_fibula(*import.side, side));
-  return doubts;
-}
-
-void say_side(BoneImport& import, bones::Side side) {
-  if (import.side == side) return;  // known as it was known
-  for (ImportedBone& bone : import.bones) bone.doubts = doubts_with(import, bone, side);
-  import.side = side;
-  import.side_is_contradicted = import.side_was_seen && !import.side_is_by_shape;
-  import.side_was_guessed = import.side_was_seen = import.side_is_by_shape = false;
-}
 
 BoneImport import_bones(const std::filesystem::path& source, const BoneImportOptions& options,
                         const Tell& listener) {

@@ -49,6 +49,10 @@ struct ImportedBone {
   std::vector<std::string> doubts;           // why a person should look before relying on it
   std::optional<bones::Space> read_in = {};  // of a mesh: the axes that the file was taken to be in
   bool looks_backwards = false;              // to the patient's back, which is among the doubts
+  // Of which knee its shape is, where that was looked at and it tells; import_side.h holds it against the
+  // side.
+  bool shape_was_judged = false;
+  std::optional<bones::Side> side_by_shape = {};
   // The axes that a mesh is likelier in than those it was read in; nullopt where nothing speaks against
   // these.
   [[nodiscard]] std::optional<bones::Space> likelier_in() const {
@@ -84,12 +88,6 @@ struct BoneImport {
     origin = {};
   }
 };
-
-// The doubts of one of its bones where a person says that side.
-[[nodiscard]] std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBone& bone,
-                                                   bones::Side side);
-// A person says the side. Where the fibula says another one that is a doubt of the bones from then on.
-void say_side(BoneImport& import, bones::Side side);
 
 // Throws IoError, ImportRefused (failure_reason.h) or InvalidInput; a bone that cannot be told from the name
 // is InvalidInput that says which option to add. `tell` is called on the same thread whenever there is

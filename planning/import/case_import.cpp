@@ -12,6 +12,7 @@
 #include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/import/failure_reason.h"
+#include "planning/import/import_side.h"
 
 namespace arthronaut::importing {
 
@@ -132,8 +133,10 @@ void save_studies_of(const fs::path& folder, const BoneImport& import, cases::St
 }
 
 // Those of the bones that were added take the place of what was said of the bones before them.
-void save_doubts_of(const fs::path& folder, const BoneImport& import, cases::BoneDoubts doubts) {
-  for (const ImportedBone& imported : import.bones) doubts[imported.bone.kind] = imported.doubts;
+void save_doubts_of(const fs::path& folder, const BoneImport& import, bones::Side side,
+                    cases::BoneDoubts doubts) {
+  for (const ImportedBone& imported : import.bones)
+    doubts[imported.bone.kind] = doubts_with(import, imported, side);
   cases::save_bone_doubts(folder, doubts);
 }
 
@@ -150,7 +153,7 @@ void save_new(const fs::path& folder, cases::Case& contents, const BoneImport& i
   files::make_whole_folder(folder, [&](const fs::path& unfinished) {
     if (const auto image = store_new_image(unfinished, contents, import)) contents.images.push_back(*image);
     cases::save_case(unfinished, contents);
-    save_doubts_of(unfinished, import, {});
+    save_doubts_of(unfinished, import, contents.side, {});
     if (!import.identity.is_empty()) cases::save_identity(unfinished, import.identity);
     save_studies_of(unfinished, import, {});
   });
@@ -165,7 +168,7 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
   try {
     forget_replaced(folder, target, import);
     // Before its bone: of a doubt too many, after a crash, nobody drills wrongly.
-    save_doubts_of(folder, import, std::move(doubts));
+    save_doubts_of(folder, import, target.side, std::move(doubts));
     put_bones(target, import);
     if (image) target.images.push_back(*image);
     cases::save_case(folder, target);
@@ -174,7 +177,10 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
     if (image) fs::remove(folder / image->file, ignored);
     throw;
   }
-  if (!import.identity.is_empty()) cases::save_identity(folder, import.identity);
+  // A source that says less than another did takes nothing away.
+  if (!import.identity.is_empty())
+    cases::save_identity(
+        folder, import.identity.filled_from(cases::load_identity(folder).value_or(cases::Identity())));
   save_studies_of(folder, import, std::move(studies));
 }
 

@@ -20,7 +20,7 @@ void refuse_missing_side(const std::filesystem::path& folder, const std::filesys
 // Writes the case with these bones into `folder`, and returns it. `name` becomes the case's name; empty:
 // "Knee" and the date, or the one it has. `source` is for messages.
 //
-// The bones' doubts stay with the case (cases/bone_doubts.h).
+// The bones' doubts, in a knee of the case's side, stay with the case (cases/bone_doubts.h).
 //
 // A new case appears whole, by renaming, or not at all. In one that is there bones are replaced, and their
 // landmarks and cartilage go. Throws InvalidInput: a folder that holds something else; a knee of the other

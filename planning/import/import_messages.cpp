@@ -135,6 +135,8 @@ void describe(Archive& archive, ImportedBone& imported) {
   describe(archive, imported.doubts);
   describe(archive, imported.read_in);
   describe(archive, imported.looks_backwards);
+  describe(archive, imported.shape_was_judged);
+  describe(archive, imported.side_by_shape);
 }
 
 // The voxels go another way (shared_voxels.h).

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <future>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
+#include "planning/import/import_side.h"
 #include "planning/landmarks/propose.h"
 
 namespace arthronaut::importing {
@@ -17,8 +17,6 @@ namespace {
 // Of a knee turned outwards by more than this in the scanner nobody has heard; half a turn is another file's
 // axes.
 constexpr double kMostTurned_deg = 120;
-
-std::string word_of(bones::Side side) { return std::string(bones::to_text(side)); }
 
 // The front of the bone, seen from above, against the patient's.
 bool looks_backwards(const landmarks::AnatomicalAxes& axes) {
@@ -30,11 +28,6 @@ bool looks_backwards(const landmarks::AnatomicalAxes& axes) {
 
 }  // namespace
 
-std::string other_side_by_shape(bones::Side shape, bones::Side said, bool of_both) {
-  return "by the shape of " + std::string(of_both ? "both bones" : "the bone") + " it is a " +
-         word_of(shape) + " knee, but the side is " + word_of(said) + ": check the side";
-}
-
 void check_shapes(BoneImport& import, bool fibula_was_seen) {
   // Seconds each, and they have nothing to do with each other.
   std::vector<std::pair<ImportedBone*, std::future<landmarks::Proposal>>> looked_at;
@@ -45,34 +38,33 @@ void check_shapes(BoneImport& import, bool fibula_was_seen) {
                                return landmarks::propose(*mesh, kind);
                              }));
   }
-  std::vector<std::optional<bones::Side>> told;
+  std::size_t judged = 0;
   std::vector<ImportedBone*> backwards;
   for (auto& [bone, result] : looked_at) {
     const landmarks::Proposal proposal = result.get();
     if (!proposal.is_usable()) continue;
-    told.push_back(proposal.side_by_shape);
+    ++judged;
+    bone->shape_was_judged = !fibula_was_seen;
+    if (!fibula_was_seen) bone->side_by_shape = proposal.side_by_shape;
     if (looks_backwards(proposal.axes)) backwards.push_back(bone);
   }
   // A coarse shape alone may be taken for turned; bones of one file are turned together.
-  if (backwards.size() == told.size()) {
+  if (backwards.size() == judged) {
     for (ImportedBone* bone : backwards) {
       bone->looks_backwards = true;
       bone->doubts.emplace_back("its front looks to the patient's back: LPS and RAS may be mixed up");
     }
   }
-  const bool agree =
-      !told.empty() && told.front() && std::ranges::count(told, told.front()) == std::ssize(told);
-  if (fibula_was_seen || !agree) return;
-  const std::string seen = word_of(*told.front());
-  if (import.side && *import.side != *told.front()) {
+  const auto shape = side_by_shapes(import);
+  if (!shape) return;
+  if (import.side && *import.side != *shape) {
     import.side_is_contradicted = true;
-    import.bones.front().doubts.push_back(other_side_by_shape(*told.front(), *import.side, told.size() > 1));
+    import.bones.front().doubts.push_back(other_side_by_shape(*shape, *import.side, judged > 1));
   }
-  if (!import.side && told.size() > 1) {
-    import.side = told.front();
+  if (!import.side && judged > 1) {
+    import.side = shape;
     import.side_was_seen = import.side_is_by_shape = true;
-    import.bones.front().doubts.push_back("that it is a " + seen +
-                                          " knee is told by the shape of its bones alone: check the side");
+    import.bones.front().doubts.push_back(side_by_shape_alone(*shape));
   }
 }
 

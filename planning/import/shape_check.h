@@ -2,8 +2,6 @@
 // of import.
 #pragma once
 
-#include <string>
-
 #include "planning/import/bone_import.h"
 
 namespace arthronaut::importing {
@@ -15,10 +13,8 @@ namespace arthronaut::importing {
 //     turn, so that it stays a whole knee, of the same side);
 //   - no fibula was seen, and the shapes of all bones tell another side than `import.side`.
 // Without a side, one that both bones tell alike is taken, as a doubt: of a bone alone the shape misleads too
-// often. `fibula_was_seen`: the side needs no judging.
+// often; what it tells stays with the bone (side_by_shape), for when the side is known. `fibula_was_seen`:
+// the side needs no judging.
 void check_shapes(BoneImport& import, bool fibula_was_seen);
-
-// The sentence of such a doubt.
-[[nodiscard]] std::string other_side_by_shape(bones::Side shape, bones::Side said, bool of_both);
 
 }  // namespace arthronaut::importing

@@ -49,6 +49,16 @@ TEST(SideLineTest, APersonAgainstTheAnatomyIsTold) {
   EXPECT_NE(shape.text.find("shaped as in a left knee"), std::string::npos) << shape.text;
 }
 
+// Where a bone alone was looked at, which tells nothing by itself.
+TEST(SideLineTest, APersonAgainstTheShapeOfABoneAloneIsTold) {
+  importing::BoneImport import;
+  import.bones.resize(1);
+  import.bones[0].shape_was_judged = true;
+  import.bones[0].side_by_shape = Side::Left;
+  EXPECT_EQ(side_line(import, Side::Right, true).severity, Severity::Caution);
+  EXPECT_EQ(side_line(import, Side::Left, true).severity, Severity::Good);
+}
+
 // Said before the bones were made, as of images of both knees, or told by a name.
 TEST(SideLineTest, ASideThatTheBonesSpeakAgainstIsNotGood) {
   importing::BoneImport import = import_of(false, false, false);

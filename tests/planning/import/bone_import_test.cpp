@@ -5,6 +5,7 @@
 
 #include "planning/geometry/error.h"
 #include "planning/images/volume_writer.h"
+#include "planning/import/import_side.h"
 #include "planning/phantom/phantom_knee.h"
 #include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"

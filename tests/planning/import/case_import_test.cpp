@@ -50,6 +50,29 @@ TEST(CaseImport, MakesACaseAndAddsToIt) {
   EXPECT_EQ(both.side, Side::Right);
 }
 
+// A bone that says no side of its own, but is shaped as of the other knee than the case's.
+TEST(CaseImport, ABoneThatIsShapedAsOfTheOtherKneeIsDoubted) {
+  const TemporaryFolder folder;
+  add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
+  BoneImport tibia = imported(BoneKind::Tibia, std::nullopt);
+  tibia.bones[0].shape_was_judged = true;
+  tibia.bones[0].side_by_shape = Side::Left;
+  add_to_case(folder / "a", tibia, "", "bone.stl");
+  EXPECT_THAT(cases::load_bone_doubts(folder / "a").at(BoneKind::Tibia),
+              ElementsAre(HasSubstr("by the shape of the bone it is a left knee, but the side is right")));
+}
+
+// Images that say less of the patient than those before take nothing of it away.
+TEST(CaseImport, ASecondSourceTakesNothingOfTheIdentityAway) {
+  const TemporaryFolder folder;
+  BoneImport femur = imported(BoneKind::Femur), tibia = imported(BoneKind::Tibia);
+  femur.identity = {"Muster^Anna", "4711", "19700102"};
+  tibia.identity = {"", "4711", ""};
+  add_to_case(folder / "a", femur, "", "bone.stl");
+  add_to_case(folder / "a", tibia, "", "bone.stl");
+  EXPECT_EQ(cases::load_identity(folder / "a"), femur.identity);
+}
+
 // An empty folder, as made for it, becomes the case; folders that are not there are made.
 TEST(CaseImport, TakesAnEmptyFolder) {
   const TemporaryFolder folder;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "planning/import/import_side.h"
 #include "planning/phantom/phantom_knee.h"
 
 namespace arthronaut::importing {
@@ -79,6 +80,47 @@ TEST(ShapeCheck, ASideThatBothBonesContradictRaisesADoubt) {
   EXPECT_EQ(import.side, Side::Right);  // what a person said stands
   EXPECT_THAT(doubts_of(import),
               ElementsAre(::testing::AllOf(HasSubstr("left knee"), HasSubstr("check the side"))));
+}
+
+// A bone alone does not tell which knee it is of; but what its shape tells is held against what is said
+// later, and taken back with it.
+TEST(ShapeCheck, WhatABoneAloneTellsIsHeldAgainstTheSideThatIsSaidLater) {
+  BoneImport import = knee(Side::Left, std::nullopt);
+  import.bones.pop_back();
+  check_shapes(import, false);
+  EXPECT_EQ(import.side, std::nullopt);
+  ASSERT_EQ(side_by_shapes(import), Side::Left) << "else nothing is held against anything";
+  say_side(import, Side::Right);
+  EXPECT_TRUE(import.side_is_contradicted);
+  EXPECT_THAT(doubts_of(import),
+              ElementsAre(::testing::AllOf(HasSubstr("by the shape of the bone it is a left knee"),
+                                           HasSubstr("the side is right"))));
+  say_side(import, Side::Left);
+  EXPECT_FALSE(import.side_is_contradicted);
+  EXPECT_THAT(doubts_of(import), IsEmpty());
+}
+
+// Two bones from files of their own, of which one alone says the side.
+TEST(ShapeCheck, ASecondFileHearsOfTheFirstOnesSide) {
+  BoneImport femur = knee(Side::Left, std::nullopt), tibia = femur;
+  femur.bones.pop_back();
+  tibia.bones.erase(tibia.bones.begin());
+  femur.side = Side::Right;
+  femur.side_was_guessed = true;
+  check_shapes(tibia, false);
+  BoneImport both = femur;
+  ASSERT_TRUE(add_bones(both, tibia));
+  EXPECT_EQ(both.bones.size(), 2U);
+  EXPECT_TRUE(both.side_was_guessed);
+  EXPECT_TRUE(both.side_is_contradicted);
+  EXPECT_THAT(doubts_of(both), ElementsAre(HasSubstr("by the shape of the bone it is a left knee")));
+  ASSERT_TRUE(add_bones(tibia, femur));
+  EXPECT_EQ(tibia.side, Side::Right);
+  EXPECT_THAT(doubts_of(tibia), ElementsAre(HasSubstr("by the shape of the bone it is a left knee")));
+  BoneImport other = femur;
+  other.side = Side::Left;
+  EXPECT_FALSE(add_bones(other, femur));
+  EXPECT_EQ(other.bones.size(), 1U);
 }
 
 // What a fibula told was looked at before.

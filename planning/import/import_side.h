@@ -1,0 +1,32 @@
+// Which knee an import is of: as it is said, named, or told by its bones, and what the bones say against it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning/import/bone_import.h"
+
+namespace arthronaut::importing {
+
+// The side that all bones whose shapes were judged tell alike; nullopt where they do not, or none was (where
+// a fibula tells the side none is).
+[[nodiscard]] std::optional<bones::Side> side_by_shapes(const BoneImport& import);
+
+// The sentences of such doubts.
+[[nodiscard]] std::string other_side_by_fibula(bones::Side fibula, bones::Side said);
+[[nodiscard]] std::string other_side_by_shape(bones::Side shape, bones::Side said, bool of_both);
+[[nodiscard]] std::string side_by_shape_alone(bones::Side shape);
+
+// The doubts of one of its bones in a knee of that side: as a person says it, or as the case has it that the
+// bone is added to. Those of shapes stay with the first bone.
+[[nodiscard]] std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBone& bone,
+                                                   bones::Side side);
+// A person says the side. Where fibula or shapes say another one that is a doubt of the bones from then on.
+void say_side(BoneImport& import, bones::Side side);
+
+// Another bone of the same knee, from a file of its own. Who knows the side tells it to the other; false
+// where both know it and they differ, and nothing is changed.
+[[nodiscard]] bool add_bones(BoneImport& import, BoneImport more);
+
+}  // namespace arthronaut::importing
