@@ -183,9 +183,14 @@ void PlanHistory::look_at_disk(double now_s) {
   std::error_code error;
   if (!std::filesystem::is_directory(case_folder_, error))
     return;  // one that is gone is told by the next save
+  if (is_changed_on_disk()) set_conflict();
+}
+
+bool PlanHistory::is_changed_on_disk() const {
   try {
-    if (cases::plan_version(case_folder_) != version_) set_conflict();
-  } catch (const std::runtime_error&) {  // so is one that cannot be read: a share that is away for a moment
+    return cases::plan_version(case_folder_) != version_;
+  } catch (const std::runtime_error&) {  // a share that is away for a moment: told by the next save
+    return false;
   }
 }
 
@@ -277,9 +282,10 @@ void PlanHistory::save() {
     fail(error);
   } catch (const std::filesystem::filesystem_error& error) {
     fail(error);
-  } catch (const InvalidInput& error) {  // another program has written it, or the folder is gone
+  } catch (
+      const InvalidInput& error) {  // another program has written it, it is no plan, or the folder is gone
     std::error_code none;
-    if (std::filesystem::is_directory(case_folder_, none))
+    if (std::filesystem::is_directory(case_folder_, none) && is_changed_on_disk())
       set_conflict();
     else
       fail(error);

@@ -91,6 +91,7 @@ class PlanHistory {
   void moved(double now_s);
   void save();
   void set_conflict();
+  [[nodiscard]] bool is_changed_on_disk() const;
   void read_theirs();
   void describe();
 

@@ -120,7 +120,7 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee
   return planned.tunnel;
 }
 
-// What a default takes the place of may be an evening's work, and nobody undoes a command: it is kept as a
+// What a new plan takes the place of may be an evening's work, and nobody undoes a command: it is kept as a
 // version, unless one is the same.
 void keep_replaced(const PlanArguments& arguments, const Context& context, const cases::Plan& before,
                    const cases::Plan& now, PlanVerdict& verdict) {
@@ -138,7 +138,7 @@ void keep_replaced(const PlanArguments& arguments, const Context& context, const
   const std::string number = std::to_string(verdict.kept_version);
   if (!arguments.as_json)
     context.say("The plan that was there is kept as version " + number + ", --take " + number +
-                " brings it back. Against the default, " + replaced + ".");
+                " brings it back. Against the one that is there now, " + replaced + ".");
 }
 
 // Tunnels as another program moved them; only those of bones that the case holds.
@@ -159,7 +159,9 @@ void take_markups(const PlanArguments& arguments, const Context& context, cases:
     const auto bone = knee.bones.find(kind);
     return bone == knee.bones.end() ? nullptr : &surfaces.try_emplace(kind, bone->second.mesh).first->second;
   };
-  for (const auto& [key, tunnel] : plan_export::read_tunnels(arguments.markups, surface_of))
+  const plan_export::TakenTunnels taken = plan_export::read_tunnels(arguments.markups, knee.plan, surface_of);
+  if (!taken.note.empty() && !arguments.as_json) context.say("The " + taken.note + ".");
+  for (const auto& [key, tunnel] : taken.tunnels)
     put(tunnel, bones::mesh_sha256(knee.bones.at(key.bone).mesh), arguments, context, knee);
 }
 
@@ -349,6 +351,7 @@ void add_plan_command(CLI::App& app, Context& context) {
     // Before anything is written: a file that cannot be read leaves the plan as it was.
     cases::BoneDoubts doubts = cases::load_bone_doubts(arguments->case_folder);
     PlanVerdict verdict;
+    const cases::Plan before = knee.plan;
     if (!arguments->markups.empty()) {
       take_markups(*arguments, context, knee);
     } else if (arguments->version > 0) {
@@ -362,14 +365,13 @@ void add_plan_command(CLI::App& app, Context& context) {
         throw InvalidInput(arguments->case_folder, "case.json", "holds no " + arguments->bone);
       }
       const geometry::Surface surface(bone_of_case->second.mesh);
-      const cases::Plan before = knee.plan;
       put(arguments->by_default ? default_tunnel(*arguments, knee, kind, surface, verdict)
                                 : planned_tunnel(*arguments, knee, surface),
           bones::mesh_sha256(bone_of_case->second.mesh), *arguments, context, knee);
-      if (arguments->by_default) keep_replaced(*arguments, context, before, knee.plan, verdict);
       arguments->names_type = true;  // what was placed is shown
     }
     if (writes) {
+      keep_replaced(*arguments, context, before, knee.plan, verdict);
       cases::name_meshes(knee);
       knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
       if (arguments->by_default) cases::save_case(arguments->case_folder, knee);  // with its landmarks

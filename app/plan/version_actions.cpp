@@ -59,13 +59,14 @@ void PlanView::take_markups(const std::filesystem::path& file) {
     return;
   }
   try {  // a file from elsewhere
-    const auto tunnels = plan_export::read_tunnels(file, [this](bones::BoneKind kind) {
-      return model_->has_bone(kind) ? &model_->surface(kind) : nullptr;
-    });
+    const auto [tunnels, note] = plan_export::read_tunnels(
+        file, model_->knee().plan,
+        [this](bones::BoneKind kind) { return model_->has_bone(kind) ? &model_->surface(kind) : nullptr; });
     history_.apply_tunnels(tunnels, "Take the tunnels of " + file.filename().string());
     std::string names;
     for (const auto& [key, tunnel] : tunnels) names += (names.empty() ? "" : ", ") + tunnels::name_of(key);
     state_.hint = {"Taken from " + file.filename().string() + ": " + names +
+                       (note.empty() ? "" : ". The " + note) +
                        ". Ctrl+Z brings back the plan that was there.",
                    true, model_->revision()};
     follow_plan();

@@ -125,7 +125,9 @@ nlohmann::ordered_json to_json(const Plan& plan) {
 }
 
 void save_plan(const fs::path& folder, const Plan& plan) {
-  files::write_json(plan_file(folder), to_json(plan));
+  const nlohmann::ordered_json json = to_json(plan);
+  (void)plan_from(json.dump(), plan_file(folder));  // what could not be read again would shut the case
+  files::write_json(plan_file(folder), json);
 }
 
 std::string plan_version(const fs::path& folder) {

@@ -6,11 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "planning/default_plan/default_plan.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
+#include "planning/tunnels/diameter_range.h"
 
 namespace arthronaut::plan_export {
 
@@ -23,8 +25,6 @@ using nlohmann::ordered_json;
 constexpr const char* kSchema =
     "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
     "markups-schema-v1.0.3.json#";
-constexpr double kUsualDiameter_mm = 9, kLeastDiameter_mm = 1, kGreatestDiameter_mm = 30;
-
 std::string tunnel_name(const tunnels::TunnelKey& key) { return tunnels::name_of(key) + " tunnel"; }
 std::string landmarks_name(bones::BoneKind bone) { return std::string(bones::to_text(bone)) + " landmarks"; }
 
@@ -77,19 +77,21 @@ Vector3d position_of(const json& point, double sign, const Place& place) {
   return {sign * position.x(), sign * position.y(), position.z()};
 }
 
-double diameter_of(const json& node, const Place& place) {
+// nullopt where the description was emptied, or is another program's.
+std::optional<double> diameter_of(const json& node, const Place& place) {
   const std::string text = text_of(node, "description", "");
   constexpr std::string_view kKey = "diameter_mm=";
   const auto at = text.find(kKey);
-  if (at == std::string::npos) return kUsualDiameter_mm;
+  if (at == std::string::npos) return std::nullopt;
   const double diameter = std::strtod(text.c_str() + at + kKey.size(), nullptr);
-  if (!(diameter >= kLeastDiameter_mm && diameter <= kGreatestDiameter_mm))
-    place.fail("has a diameter_mm that is none of a tunnel");
+  if (!(diameter >= tunnels::kLeastDiameter_mm && diameter <= tunnels::kGreatestDiameter_mm))
+    place.fail(files::format("has diameter_mm=%g, must be %g to %g", diameter, tunnels::kLeastDiameter_mm,
+                             tunnels::kGreatestDiameter_mm));
   return diameter;
 }
 
-void take_tunnel(const tunnels::TunnelKey& key, const std::vector<Vector3d>& positions, double diameter_mm,
-                 const Place& place, MarkupsPlan& plan) {
+void take_tunnel(const tunnels::TunnelKey& key, const std::vector<Vector3d>& positions,
+                 const std::optional<double>& diameter_mm, const Place& place, MarkupsPlan& plan) {
   if (positions.size() != 2) place.fail("must have two control points, entry and exit");
   const Vector3d along = positions[1] - positions[0];
   if (along.norm() < 1) place.fail("is shorter than 1 mm");
@@ -100,8 +102,10 @@ void take_tunnel(const tunnels::TunnelKey& key, const std::vector<Vector3d>& pos
       place.fail("stands beside \"" + tunnel_name(other) +
                  "\": a bone has a single tunnel or those of bundles");
   }
-  plan.tunnels.emplace(key,
-                       tunnels::Tunnel{key.bone, positions[0], along.normalized(), diameter_mm, key.bundle});
+  if (!diameter_mm) plan.without_diameter.insert(key);
+  plan.tunnels.emplace(
+      key, tunnels::Tunnel{key.bone, positions[0], along.normalized(),
+                           diameter_mm.value_or(default_plan::usual_diameter_mm(key.bundle)), key.bundle});
 }
 
 void read_markup(const json& node, const Place& place, MarkupsPlan& plan) {
@@ -176,20 +180,28 @@ MarkupsPlan read_markups(const std::filesystem::path& file) {
   return plan;
 }
 
-std::map<tunnels::TunnelKey, tunnels::Tunnel> read_tunnels(
-    const std::filesystem::path& file,
-    const std::function<const geometry::Surface*(bones::BoneKind)>& surface_of) {
-  std::map<tunnels::TunnelKey, tunnels::Tunnel> tunnels = read_markups(file).tunnels;
-  std::erase_if(tunnels, [&](const auto& one) { return surface_of(one.first.bone) == nullptr; });
-  if (tunnels.empty())
+TakenTunnels read_tunnels(const std::filesystem::path& file, const cases::Plan& planned,
+                          const std::function<const geometry::Surface*(bones::BoneKind)>& surface_of) {
+  MarkupsPlan plan = read_markups(file);
+  std::erase_if(plan.tunnels, [&](const auto& one) { return surface_of(one.first.bone) == nullptr; });
+  if (plan.tunnels.empty())
     throw InvalidInput(
         file, "markups",
         "hold no line \"femur tunnel\" or \"tibia tunnel\", nor of bundles, as \"femur AM tunnel\"");
-  for (const auto& [key, tunnel] : tunnels)
+  TakenTunnels taken;
+  for (auto& [key, tunnel] : plan.tunnels) {
     if (!tunnels::measure(tunnel, *surface_of(key.bone)).enters_bone)
-      throw InvalidInput(file, tunnels::name_of(key) + " tunnel",
-                         "does not enter the case's bone: markups of another knee?");
-  return tunnels;
+      throw InvalidInput(file, tunnel_name(key), "does not enter the case's bone: markups of another knee?");
+    if (!plan.without_diameter.contains(key)) continue;
+    const auto here = planned.tunnels.find(key);
+    const bool is_planned = here != planned.tunnels.end();
+    if (is_planned) tunnel.diameter_mm = here->second.diameter_mm;
+    taken.note += files::format("%s%s has no diameter_mm there: %.1f mm, as %s",
+                                taken.note.empty() ? "" : "; ", tunnel_name(key).c_str(), tunnel.diameter_mm,
+                                is_planned ? "it was planned" : "is usual");
+  }
+  taken.tunnels = std::move(plan.tunnels);
+  return taken;
 }
 
 }  // namespace arthronaut::plan_export

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 
 #include "planning/bones/bone.h"
@@ -23,18 +24,25 @@ namespace arthronaut::plan_export {
 
 struct MarkupsPlan {
   std::map<tunnels::TunnelKey, tunnels::Tunnel> tunnels;
+  std::set<tunnels::TunnelKey> without_diameter;  // of them, of which the file does not say it
   std::map<bones::BoneKind, landmarks::Landmarks> landmarks;
 };
 // Reads what markups_of wrote, also after 3D Slicer moved it: lines and point lists by their names, others
-// are passed over. A diameter that is not said is 9 mm. Throws IoError or InvalidInput (file, place, reason):
-// no markups, a unit other than mm, a line without two points or without length, a position that is not
-// finite, a tunnel that is there twice, a bone's single tunnel beside one of a bundle.
+// are passed over. A diameter that is not said is what is usual of the bundle. Throws IoError or InvalidInput
+// (file, place, reason): no markups, a unit other than mm, a line without two points or without length, a
+// position that is not finite, a diameter that cannot be planned (tunnels/diameter_range.h), a tunnel that is
+// there twice, a bone's single tunnel beside one of a bundle.
 [[nodiscard]] MarkupsPlan read_markups(const std::filesystem::path& file);
 
-// The tunnels of such a file that are of bones that there are; `surface_of` is null for others. Throws as
+struct TakenTunnels {
+  std::map<tunnels::TunnelKey, tunnels::Tunnel> tunnels;
+  std::string note;  // which diameters are not of the file; empty where all are
+};
+// The tunnels of such a file that are of bones that there are; `surface_of` is null for others. One whose
+// diameter the file does not say has that of the same tunnel in `plan`, else what is usual. Throws as
 // read_markups, and InvalidInput where there is none of them, or one does not enter its bone.
-[[nodiscard]] std::map<tunnels::TunnelKey, tunnels::Tunnel> read_tunnels(
-    const std::filesystem::path& file,
+[[nodiscard]] TakenTunnels read_tunnels(
+    const std::filesystem::path& file, const cases::Plan& plan,
     const std::function<const geometry::Surface*(bones::BoneKind)>& surface_of);
 
 }  // namespace arthronaut::plan_export

@@ -294,6 +294,18 @@ TEST_F(PlanConflict, Hazard15APlanChangedElsewhereIsNotWrittenOver) {
   EXPECT_NEAR(model_.tunnel(BoneKind::Femur)->diameter_mm, start_mm_ + 1, 1e-12);
 }
 
+// What could not be read again is not written, and is not another program's doing.
+TEST_F(PlanConflict, APlanThatCannotBeWrittenIsNoConflict) {
+  history_.apply(wider(100, false), 1.0);
+  history_.settle_now();
+  EXPECT_FALSE(history_.is_in_conflict());
+  EXPECT_NE(history_.status().text.find("not saved: "), std::string::npos) << history_.status().text;
+  EXPECT_NE(history_.status().text.find("must be 3 to 15"), std::string::npos) << history_.status().text;
+  EXPECT_EQ(saved_diameter_mm(), start_mm_);
+  history_.undo();
+  EXPECT_EQ(history_.status().save, PlanStatus::Save::Saved);
+}
+
 // Hazard 15: it is noticed within a second, before anybody edits.
 TEST_F(PlanConflict, Hazard15AChangeElsewhereIsNoticedWithoutAnEdit) {
   history_.look_at_disk(10.0);

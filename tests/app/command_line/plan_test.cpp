@@ -90,7 +90,27 @@ TEST_F(PlanCommand, KeepsWhatADefaultTakesThePlaceOf) {
   EXPECT_LT((taken.entry_mm - by_hand.entry_mm).norm(), 1e-6);
   const auto again = run({"plan", "--bone", "femur", "--default", "--json"});
   EXPECT_EQ(nlohmann::json::parse(again.output).at("kept_version"), 1) << "it is a version already";
-  EXPECT_EQ(cases::load_plan_versions(folder_ / "knee.arthro").size(), 1U);
+  EXPECT_EQ(cases::load_plan_versions(folder_ / "knee.arthro").size(), 2U)
+      << "the default, too, when 1 was taken";
+}
+
+// So is what any other command takes the place of: a tunnel placed by numbers, taken from markups, removed, a
+// version taken again.
+TEST_F(PlanCommand, KeepsWhatAnyCommandTakesThePlaceOf) {
+  const std::vector<std::string> placed{"plan",        "--bone",          "femur",         "--at-footprint",
+                                        "--direction", "-0.83,-0.3,0.41", "--diameter-mm", "8"};
+  EXPECT_THAT(run(placed).output, HasSubstr("kept as version 1, --take 1 brings it back"));
+  EXPECT_THAT(run({"plan", "--take", "1"}).output, HasSubstr("kept as version 2, --take 2 brings it back"));
+  EXPECT_EQ(run({"plan", "--export", folder_ / "out"}).exit_code, 0);
+  EXPECT_THAT(run({"plan", "--bone", "femur", "--remove"}).output, HasSubstr("kept as version 1"))
+      << "which is the same";
+  EXPECT_EQ(run(placed).exit_code, 0);
+  EXPECT_EQ(run({"plan", "--take", "2"}).exit_code, 0);
+  EXPECT_THAT(run({"plan", "--from-markups", folder_ / "out/plan.mrk.json"}).output,
+              Not(HasSubstr("kept as version 3")));
+  const auto versions = cases::load_plan_versions(folder_ / "knee.arthro");
+  ASSERT_EQ(versions.size(), 2U);
+  EXPECT_NEAR(versions[1].plan.tunnels.at(bones::BoneKind::Femur).diameter_mm, 8, 1e-9);
 }
 
 // What a newer program says against a bone cannot be read: the plan that is there stays, and no version of it

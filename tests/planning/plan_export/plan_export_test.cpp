@@ -265,17 +265,51 @@ TEST(Markups, GiveTheTunnelsOfTheBonesThatAreThere) {
   const auto of_femur = [&](BoneKind kind) { return kind == BoneKind::Femur ? &femur : nullptr; };
   const auto file = folder / "plan.mrk.json";
   files::write_atomically(file, markups_of(knee));
-  const auto tunnels = read_tunnels(file, of_femur);
+  const auto tunnels = read_tunnels(file, {}, of_femur).tunnels;
   ASSERT_EQ(tunnels.size(), 1U);
   EXPECT_LT((tunnels.at(BoneKind::Femur).entry_mm - knee.plan.tunnels.at(BoneKind::Femur).entry_mm).norm(),
             1e-6);
   EXPECT_THAT(
-      test::message_of<InvalidInput>([&] { (void)read_tunnels(file, [](BoneKind) { return nullptr; }); }),
+      test::message_of<InvalidInput>([&] { (void)read_tunnels(file, {}, [](BoneKind) { return nullptr; }); }),
       testing::HasSubstr("hold no line"));
   const geometry::Surface elsewhere(test::box({1, 1, 1}));
-  EXPECT_THAT(
-      test::message_of<InvalidInput>([&] { (void)read_tunnels(file, [&](BoneKind) { return &elsewhere; }); }),
-      testing::HasSubstr("another knee"));
+  EXPECT_THAT(test::message_of<InvalidInput>(
+                  [&] { (void)read_tunnels(file, {}, [&](BoneKind) { return &elsewhere; }); }),
+              testing::HasSubstr("another knee"));
+}
+
+// Another program may empty the description: a tunnel is then as wide as it was planned, one that is new as
+// is usual of its bundle, and either is said. A width that no plan may have is refused before it is in one.
+TEST(Markups, ADiameterThatIsNotSaidIsThePlansOwn) {
+  const test::TemporaryFolder folder;
+  auto knee = knee_case();
+  const geometry::Surface femur(knee.bones.at(BoneKind::Femur).mesh);
+  const auto of_femur = [&](BoneKind kind) { return kind == BoneKind::Femur ? &femur : nullptr; };
+  tunnels::Tunnel am = knee.plan.tunnels.at(BoneKind::Femur);
+  am.bundle = norms::Bundle::Anteromedial;
+  am.diameter_mm = 6.5;
+  knee.plan.put(am, knee.plan.mesh_sha256.at(BoneKind::Femur));
+  const std::string said = markups_of(knee);
+  const auto with_description = [&](const std::string& description) {
+    std::string text = said;
+    constexpr std::string_view kSaid = "diameter_mm=6.500";
+    text.replace(text.find(kSaid), kSaid.size(), description);
+    files::write_atomically(folder / "plan.mrk.json", text);
+  };
+  with_description("seen by a colleague");
+  const auto kept = read_tunnels(folder / "plan.mrk.json", knee.plan, of_femur);
+  EXPECT_EQ(kept.tunnels.at(am.key()).diameter_mm, 6.5);
+  EXPECT_EQ(kept.note, "femur AM tunnel has no diameter_mm there: 6.5 mm, as it was planned");
+  const auto usual = read_tunnels(folder / "plan.mrk.json", {}, of_femur);
+  EXPECT_EQ(usual.tunnels.at(am.key()).diameter_mm, 7.0);
+  EXPECT_THAT(usual.note, testing::HasSubstr("7.0 mm, as is usual"));
+  for (const char* width : {"diameter_mm=20", "diameter_mm=2.9", "diameter_mm=nan", "diameter_mm="}) {
+    with_description(width);
+    EXPECT_THAT(test::message_of<InvalidInput>(
+                    [&] { (void)read_tunnels(folder / "plan.mrk.json", knee.plan, of_femur); }),
+                testing::HasSubstr("must be 3 to 15"))
+        << width;
+  }
 }
 
 }  // namespace
