@@ -1,9 +1,14 @@
 #include "app/start/pacs_pane.h"
 
 #include <GLFW/glfw3.h>
+#include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
 #include <cstdlib>
+#include <string>
 #include <utility>
 
 #include "planning/geometry/error.h"
@@ -15,8 +20,20 @@ using Kind = PacsJob::Kind;
 using State = PacsNews::State;
 using widgets::Severity;
 
+namespace {
+
+bool is_running(const std::string& process_id) {
+  int number = 0;
+  const char* const end = process_id.data() + process_id.size();
+  if (std::from_chars(process_id.data(), end, number).ptr != end || number <= 0) return false;
+  return ::kill(number, 0) == 0 || errno == EPERM;
+}
+
+}  // namespace
+
 PacsPane::PacsPane(std::function<void(const fs::path&)> look_into, std::function<void()> wake)
     : data_folder_(pacs_peers_file().parent_path()),
+      outgoing_folder_(data_folder_ / "outgoing" / std::to_string(::getpid())),
       look_into_(std::move(look_into)),
       work_(std::move(wake)) {}
 
@@ -142,10 +159,14 @@ void PacsPane::forget_found() {
   view_.row = 0;
 }
 
-// It names the patient.
+// It names the patient; so does what a program that crashed has left. What another window is about to send
+// stays.
 void PacsPane::forget_outgoing() {
   std::error_code ignored;
-  fs::remove_all(data_folder_ / "outgoing", ignored);
+  fs::remove_all(outgoing_folder_, ignored);
+  for (const auto& left : fs::directory_iterator(outgoing_folder_.parent_path(), ignored))
+    if (!is_running(left.path().filename().string())) fs::remove_all(left.path(), ignored);
+  fs::remove(outgoing_folder_.parent_path(), ignored);  // which the last one empties
   view_.outgoing.clear();
   view_.outgoing_doubts.clear();
 }
@@ -221,7 +242,7 @@ void PacsPane::write_results() {
   work_.start({.kind = Kind::WriteResults,
                .peer = *peer(),
                .case_folder = view_.sendable.folder,
-               .results_folder = data_folder_ / "outgoing" / "results",
+               .results_folder = outgoing_folder_,
                .is_deidentified = view_.is_deidentified});
 }
 

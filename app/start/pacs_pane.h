@@ -104,6 +104,7 @@ class PacsPane {
   bool field(const widgets::Ui& ui, const char* id, const std::string& name, std::string& text, float width);
 
   const std::filesystem::path data_folder_;
+  const std::filesystem::path outgoing_folder_;  // this process's own
   std::function<void(const std::filesystem::path&)> look_into_;
   PacsWork work_;
   std::vector<PacsPeer> peers_;

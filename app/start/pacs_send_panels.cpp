@@ -48,7 +48,7 @@ void PacsPane::draw_send(const widgets::Ui& ui, const widgets::Rect& area) {
                                        : "Not all sent",
                         news.words);
     const pacs::Commitment commitment = news.sent.commitment;
-    if (commitment != pacs::Commitment::NotAsked)
+    if (commitment != pacs::Commitment::NotAsked || !news.sent.commitment_note.empty())
       widgets::status_row(ui,
                           commitment == pacs::Commitment::Confirmed ? Severity::Good
                           : commitment == pacs::Commitment::Failed  ? Severity::Bad

@@ -163,6 +163,10 @@ class Sending {
   }
 
   bool send_one(Association& association, SentFile& file, Loaded& loaded, std::string& reason) {
+    if (!is_unchanged(file)) {
+      file.note = kChanged;
+      return true;
+    }
     const T_ASC_PresentationContextID context =
         association.accepted(file.sop_class_uid, loaded.transfer_syntax);
     T_ASC_PresentationContext negotiated{};
@@ -250,7 +254,13 @@ std::vector<SentFile> files_to_send(const std::vector<fs::path>& paths) {
   return files;
 }
 
-bool end_broken_off(const DeviceError& error, SendSummary& summary) {
+bool is_unchanged(const SentFile& file) {
+  const SentFile now = described(file.file);
+  return now.sop_class_uid == file.sop_class_uid && now.sop_instance_uid == file.sop_instance_uid &&
+         now.patient_name == file.patient_name && now.patient_id == file.patient_id;
+}
+
+bool end_broken_off(const std::exception& error, SendSummary& summary) {
   const bool is_some = std::any_of(summary.files.begin(), summary.files.end(),
                                    [](const SentFile& file) { return file.is_stored; });
   if (!is_some) return false;
@@ -281,7 +291,8 @@ SendSummary send_files(const Peer& peer, const ConnectionOptions& connection,
       summary.outcome = SendSummary::Outcome::Stopped;
       return summary;
     }
-  } catch (const DeviceError& error) {
+  } catch (
+      const std::runtime_error& error) {  // of the line; or of a file that was whole when it was looked at
     if (!end_broken_off(error, summary)) throw;
     return summary;
   }
@@ -289,8 +300,14 @@ SendSummary send_files(const Peer& peer, const ConnectionOptions& connection,
   summary.outcome = std::all_of(summary.files.begin(), summary.files.end(), is_stored)
                         ? SendSummary::Outcome::Stored
                         : SendSummary::Outcome::SomeRefused;
-  if (options.asks_commitment && std::any_of(summary.files.begin(), summary.files.end(), is_stored))
-    ask_commitment(peer, connection, options, summary, stop);
+  if (options.asks_commitment && std::any_of(summary.files.begin(), summary.files.end(), is_stored)) {
+    try {  // whatever becomes of it, what is stored is stored
+      ask_commitment(peer, connection, options, summary, stop);
+    } catch (const DeviceError& error) {
+      summary.commitment = Commitment::NotAsked;
+      summary.commitment_note = std::string("could not be asked for: ") + error.what();
+    }
+  }
   return summary;
 }
 

@@ -12,7 +12,7 @@
 namespace arthronaut::pacs {
 
 enum class Commitment {
-  NotAsked,
+  NotAsked,      // not wanted; or it could not be asked for, which the note says
   NotSupported,  // the peer offers no storage commitment to us, or refused the request
   Awaited,       // asked for, and taken on; no report came within the time
   Confirmed,     // the peer keeps all that it was sent
@@ -57,15 +57,22 @@ struct SendSummary {
 
 // Sends each as it is encoded; one that is not compressed may be sent in another order of bytes, which is
 // without loss. What the peer has confirmed is not sent again when the connection breaks and is begun anew.
-// A file that the peer refuses is told in the summary, and which are stored when the connection is lost for
-// good in the middle. Throws InvalidInput, and DeviceError where none was stored, as find().
+// A file that the peer refuses is told in the summary, one that is another than it was when it was looked at
+// is not sent, and which are stored is told when the connection is lost for good in the middle, a file can no
+// longer be read, or commitment cannot be asked for. Throws InvalidInput, and DeviceError where none was
+// stored, as find().
 [[nodiscard]] SendSummary send_files(const Peer& peer, const ConnectionOptions& connection,
                                      const std::vector<SentFile>& files, const SendOptions& options = {},
                                      const OnProgress& on_progress = {}, const std::stop_token& stop = {});
 
+// Inner: whether the file still holds the object, of the patient, that somebody has read and said shall go;
+// what is said of one that does not. Throws InvalidInput.
+[[nodiscard]] bool is_unchanged(const SentFile& file);
+inline constexpr const char* kChanged =
+    "was changed since it was looked at: it is not the object that was to be sent";
 // Inner: what was stored before the error is the account that is kept; the file that was on its way then is
 // "not confirmed", with the error, and those after it are "not sent". False where nothing was stored: then
 // the error alone says all.
-[[nodiscard]] bool end_broken_off(const DeviceError& error, SendSummary& summary);
+[[nodiscard]] bool end_broken_off(const std::exception& error, SendSummary& summary);
 
 }  // namespace arthronaut::pacs

@@ -35,6 +35,10 @@ bool names(const json& answer, const char* sequence, const std::string& uid, int
 
 // False when stopped.
 bool send_one(HttpClient& client, SentFile& file) {
+  if (!is_unchanged(file)) {
+    file.note = kChanged;
+    return true;
+  }
   const std::string boundary = "arthronaut-" + files::sha256_of(file.sop_instance_uid);
   const HttpAnswer answer =
       client.perform({.path = "/studies",
@@ -78,7 +82,7 @@ SendSummary send_files(const WebServer& server, const ConnectionOptions& connect
         summary.outcome = SendSummary::Outcome::Stopped;
         return summary;
       }
-    } catch (const DeviceError& error) {
+    } catch (const std::runtime_error& error) {
       if (!end_broken_off(error, summary)) throw;
       return summary;
     }

@@ -37,6 +37,16 @@ TEST(PacsCommitment, IsAwaitedWhereItCannot) {
   EXPECT_FALSE(summary.files.front().is_committed);
 }
 
+// Whatever comes of the request: what is stored is stored, and its account is not lost with it.
+TEST(PacsCommitment, APortThatIsTakenLosesNothingOfTheAccount) {
+  const test::Orthanc orthanc, elsewhere;
+  const auto summary = sent(orthanc, elsewhere.peer().port, 1);
+  EXPECT_EQ(summary.outcome, SendSummary::Outcome::Stored);
+  for (const SentFile& file : summary.files) EXPECT_TRUE(file.is_stored) << file.file;
+  EXPECT_EQ(summary.commitment, Commitment::NotAsked);
+  EXPECT_THAT(summary.commitment_note, HasSubstr("could not be asked for: "));
+}
+
 // Orthanc commits itself to those alone whom it knows.
 TEST(PacsCommitment, IsSaidNotToBeHad) {
   const test::Orthanc orthanc({.knows_us = false});

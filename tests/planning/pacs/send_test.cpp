@@ -65,6 +65,20 @@ TEST(PacsSend, StoresEachFileAndTellsHowFarItIs) {
       kImageCount);
 }
 
+// What was looked at, and said to go, is what goes.
+TEST(PacsSend, AFileThatWasChangedSinceIsNotSent) {
+  const test::Orthanc orthanc;
+  const test::TemporaryFolder folder;
+  test::write_dicom_series(folder / "ct", test::ellipsoid_ct());
+  const auto files = files_to_send({folder / "ct"});
+  std::filesystem::copy_file(files[1].file, files[0].file, std::filesystem::copy_options::overwrite_existing);
+  const auto summary = send_files(orthanc.peer(), quick_connection(), files, {.asks_commitment = false});
+  EXPECT_EQ(summary.outcome, SendSummary::Outcome::SomeRefused);
+  EXPECT_FALSE(summary.files[0].is_stored);
+  EXPECT_THAT(summary.files[0].note, ::testing::HasSubstr("was changed since it was looked at"));
+  EXPECT_TRUE(summary.files[1].is_stored);
+}
+
 // The peer dies at one file and is back before the tries are over: no file is lost.
 TEST(PacsSend, GoesOnAfterABrokenConnection) {
   test::Orthanc orthanc;

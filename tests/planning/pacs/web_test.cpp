@@ -259,12 +259,12 @@ TEST_F(PacsWeb, BoundsWhatAServerCanDo) {
 // What it says of what it was sent may be of any shape: nothing of it is stored, and nothing is thrown.
 TEST_F(PacsWeb, AnAnswerToWhatWasSentMayBeOfAnyShape) {
   test::TemporaryFolder folder;
-  std::ofstream(folder / "object.dcm") << "DICM";
-  SentFile file;
-  file.file = folder / "object.dcm";
-  file.sop_instance_uid = "1.2.3";
-  for (const char* item : {"{\"00081155\":[\"1.2.3\"]}", "{\"00081155\":{\"Value\":{}}}", "7", "{}",
-                           "{\"00081155\":{\"Value\":[\"1.2.3\"]},\"00081197\":[1]}"}) {
+  test::write_dicom_series(folder / "ct", test::ellipsoid_ct());
+  const SentFile file = files_to_send({folder / "ct"}).front();
+  const std::string uid = '"' + file.sop_instance_uid + '"';
+  for (const std::string& item :
+       {"{\"00081155\":[" + uid + "]}", std::string("{\"00081155\":{\"Value\":{}}}"), std::string("7"),
+        std::string("{}"), "{\"00081155\":{\"Value\":[" + uid + "]},\"00081197\":[1]}"}) {
     const std::string body = std::string("{\"00081198\":{\"Value\":[") + item + "]}}";
     const test::RawWebServer raw(
         "HTTP/1.1 200 OK\r\nContent-Type: application/dicom+json\r\nContent-Length: " +
