@@ -60,7 +60,9 @@ void compare(Context& context, const CompareArguments& arguments) {
     }
     context.say("Wrote " + arguments.output + ".");
   }
-  if (const auto doubts = answer.doubts(); !doubts.empty()) context.say_unreliable("The comparison", doubts);
+  auto doubts = answer.doubts();
+  if (!answer.other_patient.empty()) doubts.push_back("the images are of " + answer.other_patient);
+  if (!doubts.empty()) context.say_unreliable("The comparison", doubts);
 }
 
 }  // namespace

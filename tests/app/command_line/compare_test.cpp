@@ -12,6 +12,7 @@
 #include "planning/phantom/phantom_case.h"
 #include "planning/plan_export/drilled_bone.h"
 #include "tests/app/command_line/program.h"
+#include "tests/planning/images/dicom_series_form.h"
 #include "tests/planning/postop/postop_ct.h"
 #include "tests/temporary_folder.h"
 
@@ -140,6 +141,19 @@ TEST_F(CompareCommand, AnotherPatientIsNotReliable) {
   const json achieved = read("achieved.json");
   EXPECT_FALSE(achieved.at("tunnels").at(0).at("reliable").get<bool>());
   EXPECT_FALSE(achieved.at("bones").at(0).at("reliable").get<bool>());
+}
+
+// Images that name somebody else: said, and to whom it may concern; but not kept, since what is kept goes out
+// with reports that name nobody.
+TEST_F(CompareCommand, WhoElseTheImagesAreOfIsSaidAndNotKept) {
+  test::write_dicom_series(folder_ / "ct",
+                           test::postop_ct({made_.femur.mesh}, {}, lying_, test::half_fine()));
+  cases::save_identity(folder_ / "knee.arthro", {"Beispiel^Bert", "1234", "19500101"});
+  const auto result = compare("ct", "achieved.json");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.errors, AllOf(HasSubstr("of another patient than the case"), HasSubstr("4711")));
+  const std::string kept = files::read_text(folder_ / "achieved.json");
+  EXPECT_THAT(kept, AllOf(HasSubstr("of another patient than the case"), ::testing::Not(HasSubstr("4711"))));
 }
 
 // The drilled bone as a mesh, as the plan's own export makes it. The case has no landmarks: what its shape
