@@ -74,13 +74,14 @@ void adopt(const std::string& given, const fs::path& of_case) {
   files::write_atomically(of_case, files::read_text(given));
 }
 
-pipeline::PipelineOptions pipeline_options(const Context& context, const NavigateArguments& arguments,
-                                           const cases::Case& knee) {
+fs::path camera_file_of(const NavigateArguments& arguments) {
+  return file_to_use(arguments.camera, cases::camera_file(arguments.case_folder), "--camera");
+}
+
+pipeline::PipelineOptions pipeline_options(const NavigateArguments& arguments, const cases::Case& knee) {
   pipeline::PipelineOptions options;
   const fs::path folder = arguments.case_folder;
-  const fs::path camera_file = file_to_use(arguments.camera, cases::camera_file(folder), "--camera");
-  options.calibration = camera::read_camera_file(camera_file).calibration;
-  say_camera_doubts(context, camera_file);
+  options.calibration = camera::read_camera_file(camera_file_of(arguments)).calibration;
   const fs::path tools_file = file_to_use(arguments.tools, cases::tools_file(folder), "--tools");
   options.tools = tools::read_tools_file(tools_file);
   use_tracker(arguments.tracker, tools_file, arguments.video, options.tools);
@@ -106,6 +107,7 @@ pipeline::PipelineOptions pipeline_options(const Context& context, const Navigat
 // A registration that was given by name and is of something else is refused; one of the case is passed over.
 std::optional<operation::GiveRegistration> known_registration(const Context& context,
                                                               const NavigateArguments& arguments,
+                                                              const cases::Case& knee,
                                                               const theatre::NavigateOptions& options) {
   const registration::Provenance now = operation::provenance_of(options.operation, options.source);
   const bones::BoneKind bone = options.operation.bone;
@@ -115,6 +117,10 @@ std::optional<operation::GiveRegistration> known_registration(const Context& con
     if (mismatch)
       throw InvalidInput(arguments.registration, "of",
                          "does not match: " + registration::in_words(*mismatch, *record.of, now));
+    if (record.mesh && !registration::may_be(*record.mesh, knee.bones.at(bone).mesh))
+      throw InvalidInput(arguments.registration, "mesh",
+                         "does not match: the bone that it was found on lies elsewhere than the case's " +
+                             std::string(bones::to_text(bone)));
     return operation::GiveRegistration{record.registration, record.of.value_or(now)};
   }
   const auto known = recording::find_registration(arguments.case_folder, bone, options.source.pipeline.tools);
@@ -163,7 +169,7 @@ theatre::NavigateOptions navigate_options(const Context& context, const Navigate
   options.source.kind = sources::kind_of_source(arguments.video);
   if (arguments.duration_s > 0) options.duration_s = arguments.duration_s;
   options.source.title = arguments.video;
-  options.source.pipeline = pipeline_options(context, arguments, knee);
+  options.source.pipeline = pipeline_options(arguments, knee);
   const bones::BoneKind bone = options.source.pipeline.bone;
   const auto found = knee.bones.find(bone);
   if (found == knee.bones.end())
@@ -186,7 +192,7 @@ theatre::NavigateOptions navigate_options(const Context& context, const Navigate
   options.source.pipeline.axes = landmarks::anatomical_axes(
       bone, knee.side, landmarks != knee.landmarks.end() ? landmarks->second : landmarks::Landmarks(),
       found->second.mesh);
-  options.registration = known_registration(context, arguments, options);
+  options.registration = known_registration(context, arguments, knee, options);
   listen_to_tracker(context, options);
   // Case, bone, medium and source are all named by whoever typed the command.
   options.is_confirmed = true;
@@ -227,6 +233,7 @@ void navigate(Context& context, const NavigateArguments& arguments,
   if (!lock.notice().empty()) context.say(lock.notice() + ".");
   const cases::Case knee = cases::load_case(arguments.case_folder);
   theatre::NavigateOptions options = navigate_options(context, arguments, knee);
+  std::vector<std::string> doubts = camera_doubts(camera_file_of(arguments));  // before it becomes the case's
   const bones::BoneKind kind = options.operation.bone;
   options.bone = std::make_shared<const registration::SurfaceIndex>(
       knee.bones.at(kind).mesh, cases::surface_index_file(arguments.case_folder, kind));
@@ -283,7 +290,8 @@ void navigate(Context& context, const NavigateArguments& arguments,
 
   say_navigation(context, summary);
   context.say("session: " + session.folder().string());
-  auto reasons = summary.reasons;
+  std::vector<std::string> reasons = std::move(doubts);
+  reasons.insert(reasons.end(), summary.reasons.begin(), summary.reasons.end());
   if (!summary.record_trouble.empty()) reasons.push_back("the record ended early: " + summary.record_trouble);
   if (!reasons.empty()) context.say_unreliable("the navigation", reasons);
 }

@@ -56,7 +56,7 @@ void register_bone(Context& context, const RegisterArguments& arguments) {
   }
   const registration::SurfaceIndex bone = prepare(mesh, arguments.bone);
   const auto summary = registration::register_curves(bone, curves, options);
-  registration::write_registration_file(arguments.output, summary);
+  registration::write_registration_file(arguments.output, summary, registration::registered_mesh(mesh));
   if (summary.has_pose && arguments.output != "-") {
     char line[160];
     std::snprintf(line, sizeof line, "%d points, rms %.2f mm, %.0f %% on the bone, predicted error %.2f mm",

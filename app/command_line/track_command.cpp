@@ -25,7 +25,7 @@ void track(Context& context, const TrackArguments& arguments) {
   refuse_before_the_work(
       {.read = {arguments.camera, arguments.tools, arguments.video}, .written = {arguments.output}});
   const camera::CalibrationRecord camera = camera::read_camera_file(arguments.camera);
-  if (arguments.output != "-") say_camera_doubts(context, arguments.camera);
+  std::vector<std::string> reasons = camera_doubts(arguments.camera);
   const tools::ToolSet tools = tools::read_tools_file(arguments.tools);
   if (tools.tracker)
     throw InvalidInput(arguments.tools, "tracker",
@@ -50,7 +50,8 @@ void track(Context& context, const TrackArguments& arguments) {
   }
   files::write_atomically(arguments.output, strokes::poses_to_text(tracked.rows));
   if (arguments.output != "-") say_statistics(context, tracked.statistics);
-  if (!tracked.reasons.empty()) context.say_unreliable(arguments.output, tracked.reasons);
+  reasons.insert(reasons.end(), tracked.reasons.begin(), tracked.reasons.end());
+  if (!reasons.empty()) context.say_unreliable(arguments.output, reasons);
 }
 
 }  // namespace

@@ -13,9 +13,11 @@ std::string share(long part, long whole) {
 
 }  // namespace
 
-void say_camera_doubts(const Context& context, const std::filesystem::path& camera_file) {
-  for (const std::string& reason : camera::read_camera_doubts(camera_file))
-    context.say(camera_file.string() + ": the calibration is not reliable: " + reason);
+std::vector<std::string> camera_doubts(const std::filesystem::path& camera_file) {
+  std::vector<std::string> doubts = camera::read_camera_doubts(camera_file);
+  for (std::string& doubt : doubts)
+    doubt = camera_file.string() + ": the calibration is not reliable: " + doubt;
+  return doubts;
 }
 
 void say_statistics(const Context& context, const pipeline::ViewStatistics& statistics) {

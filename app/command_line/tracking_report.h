@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "app/command_line/command.h"
 #include "navigation/pipeline/track_video.h"
@@ -11,8 +12,9 @@
 
 namespace arthronaut::command_line {
 
-// Why the camera of this file, which is tracked with, is not reliable, where the file says so.
-void say_camera_doubts(const Context& context, const std::filesystem::path& camera_file);
+// Why the camera of this file, which is tracked with, is not reliable, where the file says so: nor then is
+// what was seen by it.
+[[nodiscard]] std::vector<std::string> camera_doubts(const std::filesystem::path& camera_file);
 void say_statistics(const Context& context, const pipeline::ViewStatistics& statistics);
 
 using files::format;

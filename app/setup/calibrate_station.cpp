@@ -6,6 +6,7 @@
 
 #include "app/case/case_calibration.h"
 #include "navigation/camera/camera_file.h"
+#include "navigation/camera/doubted_camera_file.h"
 #include "planning/cases/case.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
@@ -34,8 +35,11 @@ void CalibrateStation::read_adopted() {
     if (form_.scope_name.empty()) form_.scope_name = record.scope_name;
     if (form_.head_name.empty()) form_.head_name = record.head_name;
     const bool is_measured = record.provenance.origin == provenance::Origin::Measured;
-    adopted_ = {is_measured ? widgets::Severity::Good : widgets::Severity::Caution, "Camera",
-                open_case::in_words(record.provenance, files::utc_now())};
+    std::string words = open_case::in_words(record.provenance, files::utc_now());
+    const std::vector<std::string> doubts = camera::read_camera_doubts(file);
+    for (const std::string& doubt : doubts) words += "; not reliable: " + doubt;
+    adopted_ = {is_measured && doubts.empty() ? widgets::Severity::Good : widgets::Severity::Caution,
+                "Camera", std::move(words)};
   } catch (const std::runtime_error& error) {
     adopted_ = {widgets::Severity::Bad, "Camera", error.what()};
   }

@@ -1,8 +1,10 @@
 #include "navigation/registration/registration_file.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "navigation/camera/medium.h"
+#include "planning/bones/mesh_hash.h"
 #include "planning/files/json_covariance.h"
 #include "planning/files/json_document.h"
 
@@ -44,7 +46,20 @@ RegistrationSummary summary_from(const files::JsonObject& document) {
   return summary;
 }
 
+constexpr double kSamePlace_mm = 1.0;
+
 }  // namespace
+
+RegisteredMesh registered_mesh(const geometry::TriangleMesh& mesh) {
+  return {bones::mesh_sha256(mesh), geometry::bounds_of(mesh)};
+}
+
+bool may_be(const RegisteredMesh& mesh, const geometry::TriangleMesh& bone) {
+  const geometry::Bounds bounds = geometry::bounds_of(bone);
+  const double off_mm = std::max((mesh.bounds.min_mm - bounds.min_mm).lpNorm<Eigen::Infinity>(),
+                                 (mesh.bounds.max_mm - bounds.max_mm).lpNorm<Eigen::Infinity>());
+  return off_mm <= kSamePlace_mm || mesh.sha256 == bones::mesh_sha256(bone);
+}
 
 nlohmann::ordered_json to_json(const Provenance& of) {
   Json json;
@@ -86,14 +101,27 @@ RegistrationRecord read_registration_record(const std::filesystem::path& file) {
 }
 
 RegistrationRecord registration_record_from(const files::JsonObject& document) {
-  RegistrationRecord record{summary_from(document), std::nullopt};
+  RegistrationRecord record{summary_from(document), std::nullopt, std::nullopt};
   if (document.has("of")) record.of = provenance_from(document.object("of"));
+  if (document.has("mesh")) {
+    const files::JsonObject mesh = document.object("mesh");
+    record.mesh = RegisteredMesh{mesh.text("sha256"), {mesh.vector3("min_mm"), mesh.vector3("max_mm")}};
+  }
   return record;
 }
 
 void write_registration_file(const std::filesystem::path& file, const RegistrationSummary& registration,
                              const Provenance* of) {
   files::write_json(file, to_json(registration, of));
+}
+
+void write_registration_file(const std::filesystem::path& file, const RegistrationSummary& registration,
+                             const RegisteredMesh& mesh) {
+  Json document = to_json(registration, nullptr);
+  document["mesh"] = {{"sha256", mesh.sha256},
+                      {"min_mm", files::to_json(mesh.bounds.min_mm)},
+                      {"max_mm", files::to_json(mesh.bounds.max_mm)}};
+  files::write_json(file, document);
 }
 
 nlohmann::ordered_json to_json(const RegistrationSummary& registration, const Provenance* of) {

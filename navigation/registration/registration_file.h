@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
 
 #include "navigation/registration/provenance.h"
 #include "navigation/registration/registration.h"
+#include "planning/geometry/triangle_mesh.h"
 
 namespace arthronaut::files {
 class JsonObject;
@@ -15,9 +17,20 @@ class JsonObject;
 
 namespace arthronaut::registration {
 
+// The surface that it was found on, where there is no operation that could say more.
+struct RegisteredMesh {
+  std::string sha256;  // bones::mesh_sha256
+  geometry::Bounds bounds;
+};
+[[nodiscard]] RegisteredMesh registered_mesh(const geometry::TriangleMesh& mesh);
+// Whether it may be this bone's: the same mesh, or one in its place, as another program or a repair leaves
+// it, no face of its bounds further off than 1 mm.
+[[nodiscard]] bool may_be(const RegisteredMesh& mesh, const geometry::TriangleMesh& bone);
+
 struct RegistrationRecord {
   RegistrationSummary registration;
-  std::optional<Provenance> of;  // files of other programs and of older versions do not say
+  std::optional<Provenance> of;        // files of other programs and of older versions do not say
+  std::optional<RegisteredMesh> mesh;  // `arthronaut register` says it
 };
 
 // Throws IoError or InvalidInput (file, place, reason). What was written comes back to the last bit, but for
@@ -27,6 +40,8 @@ struct RegistrationRecord {
 // Atomic. Throws IoError. `of` may be null.
 void write_registration_file(const std::filesystem::path& file, const RegistrationSummary& registration,
                              const Provenance* of = nullptr);
+void write_registration_file(const std::filesystem::path& file, const RegistrationSummary& registration,
+                             const RegisteredMesh& mesh);
 
 // The same document inside another one.
 [[nodiscard]] RegistrationRecord registration_record_from(const files::JsonObject& document);

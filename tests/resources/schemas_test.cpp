@@ -227,6 +227,8 @@ TEST_F(Schemas, DescribeTheRegistration) {
   }
   registration::write_registration_file(file, found);
   expect_described(file, "registration", [&] { (void)registration::read_registration_file(file); });
+  registration::write_registration_file(file, found, registration::RegisteredMesh{"5f", {}});
+  EXPECT_EQ(violations_of(read(file), "registration"), "");
   // And what it is of, as the sessions of an operation and `register` for a case write it.
   registration::Provenance of;
   of.mesh_sha256 = of.camera = of.tools = "5f";

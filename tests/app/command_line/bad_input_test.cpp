@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "navigation/registration/registration_file.h"
+#include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
 #include "tests/app/command_line/marker_clip.h"
 #include "tests/temporary_folder.h"
@@ -224,8 +225,16 @@ TEST_F(BadInput, RegistrationOfSomethingElse) {
   EXPECT_EQ(simulated.exit_code, 3);
   EXPECT_THAT(simulated.errors, AllOf(HasSubstr("registration.json"), HasSubstr("simulation")));
   EXPECT_FALSE(std::filesystem::exists(knee + "/sessions") && !std::filesystem::is_empty(knee + "/sessions"));
-  registration::write_registration_file(folder_ / "registration.json", registration);
+  geometry::TriangleMesh elsewhere = cases::load_case(knee).bones.at(bones::BoneKind::Femur).mesh;
+  registration::write_registration_file(folder_ / "registration.json", registration,
+                                        registration::registered_mesh(elsewhere));
   EXPECT_NE(run_program(arguments).exit_code, 3);
+  for (Eigen::Vector3d& vertex : elsewhere.vertices_mm) vertex.x() += 600;
+  registration::write_registration_file(folder_ / "registration.json", registration,
+                                        registration::registered_mesh(elsewhere));
+  const auto other_bone = run_program(arguments);
+  EXPECT_EQ(other_bone.exit_code, 3);
+  EXPECT_THAT(other_bone.errors, AllOf(HasSubstr("registration.json"), HasSubstr("lies elsewhere")));
 }
 
 // An outside tracker tells where the tools are now: it goes with live pictures alone, and with none that are

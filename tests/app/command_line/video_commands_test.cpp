@@ -46,6 +46,22 @@ TEST_F(VideoCommands, TrackFindsEveryMarkerWhereItWasDrawn) {
   }
 }
 
+// What was seen by a camera whose own file says that it is not to be relied on is not reliable either:
+// written, and said, also where nothing else is said.
+TEST_F(VideoCommands, WhatIsSeenByADoubtedCameraIsNotReliable) {
+  std::string camera = test::clip_camera_json();
+  camera.insert(camera.find('{') + 1, R"("reliable": false, "reasons": ["the lens was not turned"],)");
+  test::write_file(folder_ / "camera.json", camera);
+  for (const char* output : {"poses.csv", "-"}) {
+    const auto result = run_program(
+        {"track", "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json", "--fixed-lens",
+         "--quiet", "-o", output[0] == '-' ? output : (folder_ / output).string(), folder_ / "clip.mkv"});
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_THAT(result.errors, HasSubstr("the lens was not turned"));
+  }
+  EXPECT_EQ(strokes::read_poses_file(folder_ / "poses.csv").size(), 2U * test::kClipFrames);
+}
+
 // A dump holds of every frame a picture and what was seen in it; in the first one, where both markers had to
 // be searched for, the squares that were looked at lie where the markers were drawn.
 TEST_F(VideoCommands, TrackDumpsWhatItSawInEveryFrame) {

@@ -5,6 +5,7 @@
 #include "planning/files/atomic_file.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
+#include "tests/planning/geometry/shapes.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::registration {
@@ -41,6 +42,19 @@ TEST(RegistrationFile, WhatItIsOfComesBack) {
   EXPECT_EQ(record.registration.covariance, some_registration().covariance);
   write_registration_file(folder / "plain.json", some_registration());
   EXPECT_FALSE(read_registration_record(folder / "plain.json").of) << "it does not say";
+}
+
+// What was found on another bone is not taken for this one's; a surface that was mended is still this bone's.
+TEST(RegistrationFile, TheSurfaceThatItWasFoundOnComesBack) {
+  const test::TemporaryFolder folder;
+  const geometry::TriangleMesh bone = test::ellipsoid({40, 30, 25}, 2);
+  write_registration_file(folder / "registration.json", some_registration(), registered_mesh(bone));
+  const RegistrationRecord record = read_registration_record(folder / "registration.json");
+  ASSERT_TRUE(record.mesh);
+  EXPECT_FALSE(record.of);
+  EXPECT_TRUE(may_be(*record.mesh, bone));
+  EXPECT_TRUE(may_be(*record.mesh, test::ellipsoid({40.5, 30, 25}, 3)));
+  EXPECT_FALSE(may_be(*record.mesh, test::ellipsoid({42, 30, 25}, 2)));
 }
 
 // However many digits the medium has, what was registered in it is of it.
