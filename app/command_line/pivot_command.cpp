@@ -37,10 +37,10 @@ PosesByFrame poses_of(const std::vector<strokes::PoseRow>& rows, int marker_id) 
 
 // The world marker that the tool's marker shares the most frames with; nullopt without one.
 std::optional<int> likely_world(const std::vector<strokes::PoseRow>& rows, const PosesByFrame& tool,
-                                int tool_id) {
+                                int tool_id, const std::vector<int>& world_ids) {
   std::optional<int> best;
   std::size_t most = 2;
-  for (const int id : {0, 1}) {
+  for (const int id : world_ids) {
     if (id == tool_id) continue;
     std::size_t shared = 0;
     for (const auto& [frame, pose] : poses_of(rows, id)) shared += tool.count(frame);
@@ -56,10 +56,13 @@ std::vector<geometry::RigidTransform> fixed_from_tool(const Context& context,
                                                       const PivotArguments& arguments) {
   const bool to_standard_output = arguments.output == "-";
   auto rows = strokes::read_poses_file(arguments.poses);
+  std::vector<int> world_ids{0, 1};  // the standard ones
   if (!arguments.tools.empty()) {
     const tools::ToolSet set = tools::read_tools_file(arguments.tools);
     strokes::require_sizes(rows, set, arguments.poses);
     rows = strokes::body_rows(rows, set);
+    world_ids.clear();
+    for (const tools::WorldMarker& marker : set.world_markers) world_ids.push_back(marker.marker_id);
   }
   const PosesByFrame tool = poses_of(rows, arguments.marker_id);
   if (tool.empty()) {
@@ -67,7 +70,7 @@ std::vector<geometry::RigidTransform> fixed_from_tool(const Context& context,
                        "marker " + std::to_string(arguments.marker_id) + " is never seen");
   }
   std::optional<int> world = arguments.world_id;
-  if (!world && !arguments.camera_fixed) world = likely_world(rows, tool, arguments.marker_id);
+  if (!world && !arguments.camera_fixed) world = likely_world(rows, tool, arguments.marker_id, world_ids);
 
   std::vector<geometry::RigidTransform> poses;
   if (!world) {
@@ -127,7 +130,12 @@ void calibrate_tip(Context& context, const PivotArguments& arguments) {
 }
 
 void calibrate_axis(Context& context, const PivotArguments& arguments) {
-  const auto summary = tools::calibrate_spin(fixed_from_tool(context, arguments));
+  tools::SpinCalibrationOptions options;
+  if (!arguments.tools.empty())
+    for (const tools::Tool& tool : tools::read_tools_file(arguments.tools).tools)
+      if (tool.marker_id == arguments.marker_id && tool.axis)
+        options.declared_direction = tool.axis->direction;
+  const auto summary = tools::calibrate_spin(fixed_from_tool(context, arguments), options);
   nlohmann::ordered_json document;
   document["format"] = "arthronaut.axis";
   document["version"] = 1;
@@ -162,11 +170,11 @@ void add_pivot_command(CLI::App& app, Context& context) {
       ->required()
       ->check(a_marker_id());
   subcommand->add_option("--poses", arguments->poses, "Poses as written by track")->required();
-  CLI::Option* world =
-      subcommand
-          ->add_option("--world", arguments->world_id,
-                       "Id of the world marker (default: 0 or 1, whichever is seen with the tool)")
-          ->check(a_marker_id());
+  CLI::Option* world = subcommand
+                           ->add_option("--world", arguments->world_id,
+                                        "Id of the world marker (default: of those that the tools declare, "
+                                        "or 0 and 1, whichever is seen with the tool)")
+                           ->check(a_marker_id());
   subcommand
       ->add_flag("--camera-fixed", arguments->camera_fixed, "The scope was clamped: use no world marker")
       ->excludes(world);
@@ -174,9 +182,10 @@ void add_pivot_command(CLI::App& app, Context& context) {
   subcommand->add_option("-o,--output", arguments->output, "tip.json, or - for standard output")
       ->required()
       ->check(a_name());
-  subcommand->add_option(
-      "--tools", arguments->tools,
-      "tools.json: the poses of bodies of several markers, and the tip in the tool's frame");
+  subcommand->add_option("--tools", arguments->tools,
+                         "tools.json: world markers, which way a guide drills, and bodies of several "
+                         "markers, whose tip is then in "
+                         "the tool's frame");
   subcommand->callback([arguments, &context] {
     refuse_before_the_work({.read = {arguments->poses, arguments->tools}, .written = {arguments->output}});
     // Any marker of a body stands for it.

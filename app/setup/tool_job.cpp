@@ -139,7 +139,8 @@ bool ToolJob::work() {
   if (choice_.task == ToolTask::Tip)
     result->tip = tools::calibrate_pivot(fixed_from_tool_);
   else
-    result->axis = tools::calibrate_spin(fixed_from_tool_);
+    result->axis = tools::calibrate_spin(
+        fixed_from_tool_, {.declared_direction = tool_of(tools_, choice_.tool_name).axis->direction});
   status_.result = std::move(result);
   return true;
 }

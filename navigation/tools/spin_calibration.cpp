@@ -19,7 +19,8 @@ struct Axis {
   Eigen::Vector3d point_in_tool, point_in_fixed;
 };
 
-Axis fit_axis(std::span<const RigidTransform> poses, const std::vector<bool>& use) {
+Axis fit_axis(std::span<const RigidTransform> poses, const std::vector<bool>& use,
+              const Eigen::Vector3d& towards) {
   Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (use[i]) mean += poses[i].matrix();
@@ -28,7 +29,7 @@ Axis fit_axis(std::span<const RigidTransform> poses, const std::vector<bool>& us
   Axis axis;
   axis.in_tool = svd.matrixV().col(0);
   axis.in_fixed = svd.matrixU().col(0);
-  if (axis.in_tool.y() > 0) {
+  if (axis.in_tool.dot(towards) < 0) {
     axis.in_tool = -axis.in_tool;
     axis.in_fixed = -axis.in_fixed;
   }
@@ -103,7 +104,8 @@ SpinCalibrationSummary calibrate_spin(std::span<const RigidTransform> fixed_from
 
   // A few rounds of leaving out what stands apart, in angle or in place.
   std::vector<bool> use(fixed_from_tool.size(), true);
-  Axis axis = fit_axis(fixed_from_tool, use);
+  const Eigen::Vector3d towards = options.declared_direction.value_or(-Eigen::Vector3d::UnitY()).normalized();
+  Axis axis = fit_axis(fixed_from_tool, use, towards);
   for (int round = 0; round < 6; ++round) {
     std::vector<double> angles, offsets;
     for (const RigidTransform& pose : fixed_from_tool) {
@@ -114,7 +116,7 @@ SpinCalibrationSummary calibrate_spin(std::span<const RigidTransform> fixed_from
     const double offset_limit = options.outlier_factor * std::max(1e-3, geometry::median(offsets));
     for (std::size_t i = 0; i < use.size(); ++i)
       use[i] = angles[i] <= angle_limit && offsets[i] <= offset_limit;
-    axis = fit_axis(fixed_from_tool, use);
+    axis = fit_axis(fixed_from_tool, use, towards);
   }
 
   double squares = 0, wobble = 0;
@@ -152,6 +154,14 @@ SpinCalibrationSummary calibrate_spin(std::span<const RigidTransform> fixed_from
     refuse(summary, Outcome::AxisUncertain,
            files::format("the axis is uncertain by %.2f deg, at most %.2f deg allowed",
                          summary.direction_sigma_deg, options.max_direction_sigma_deg));
+  }
+  const double slope_deg = geometry::deg_from_rad(std::asin(std::min(1.0, axis.in_tool.dot(towards))));
+  if (slope_deg < options.least_slope_deg) {
+    refuse(summary, Outcome::DirectionUnknown,
+           options.declared_direction
+               ? files::format("the axis lies %.0f deg off the declared direction: another tool or marker?",
+                               90 - slope_deg)
+               : "which way along the axis is drilled cannot be told: declare axis_direction in tools.json");
   }
   summary.message = summary.is_usable() ? "The axis is known." : summary.reasons.front();
   return summary;

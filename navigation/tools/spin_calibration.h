@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +22,10 @@ struct SpinCalibrationOptions {
   double max_rms_mm = 0.5;   // distance of the turned axis point from the fixed axis, inliers
   double max_direction_sigma_deg = 0.2;
   double outlier_factor = 4.0;  // a pose is rejected when its error > factor * median error
+  // Turning tells the line, not which way along it is drilled. The way that is declared, in the tool's frame,
+  // where one is; else guides are taken to point along -y, and within this of across it there is no telling.
+  std::optional<Eigen::Vector3d> declared_direction;
+  double least_slope_deg = 20;
 };
 
 struct SpinCalibrationSummary {
@@ -30,13 +35,14 @@ struct SpinCalibrationSummary {
     TurnTooSmall,
     ResidualTooLarge,
     AxisUncertain,
+    DirectionUnknown,
     Ok
   } outcome = Outcome::NotRun;
   std::string message = "calibrate_spin was not called.";
   std::vector<std::string> reasons;
   Eigen::Vector3d axis_point_in_tool_mm = Eigen::Vector3d::Zero();
   Eigen::Vector3d axis_direction_in_tool =
-      Eigen::Vector3d::Zero();  // unit; its sign is that with the smaller angle to -y
+      Eigen::Vector3d::Zero();  // unit; its sign is that with the smaller angle to declared_direction, or -y
   double rms_mm = -1;
   double wobble_deg = -1;  // of the axis about its mean, RMS over the inliers
   double direction_sigma_deg = -1;

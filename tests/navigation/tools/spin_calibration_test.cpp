@@ -17,15 +17,15 @@ const Eigen::Vector3d kPoint(0.5, -24, -3.3);
 
 // A guide turned in a sleeve that stands at will, sliding along it a little.
 std::vector<RigidTransform> spin(double turn_deg, double noise_mm, double noise_deg, int count = 120,
-                                 unsigned seed = 11) {
+                                 unsigned seed = 11, const Eigen::Vector3d& direction = kDirection) {
   std::mt19937 random(seed);
   std::normal_distribution<double> gauss;
   const RigidTransform fixed_from_sleeve{Eigen::Quaterniond(0.6, 0.4, -0.5, 0.3).normalized(), {4, -9, 31}};
   std::vector<RigidTransform> poses;
   for (int i = 0; i < count; ++i) {
     const double angle = geometry::rad_from_deg(turn_deg) * i / (count - 1);
-    const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, kDirection));
-    RigidTransform sleeve_from_tool{turn, kPoint - turn * kPoint + kDirection * 2 * std::sin(angle)};
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, direction));
+    RigidTransform sleeve_from_tool{turn, kPoint - turn * kPoint + direction * 2 * std::sin(angle)};
     geometry::Vector6d error;
     for (int k = 0; k < 6; ++k)
       error[k] = gauss(random) * (k < 3 ? noise_mm : geometry::rad_from_deg(noise_deg));
@@ -44,6 +44,24 @@ TEST(SpinCalibration, IsExactWithoutNoise) {
   EXPECT_LT(distance_from_axis(summary.axis_point_in_tool_mm), 1e-6);
   EXPECT_NEAR(summary.axis_point_in_tool_mm.dot(kDirection), 0, 1e-4);
   EXPECT_NEAR(summary.turn_deg, 200, 1);
+}
+
+// Turning tells no more than the line: which way a guide drills along it is what was declared, and where
+// nothing is, and it does not point down the marker either, it is not told.
+TEST(SpinCalibration, PointsTheWayThatWasDeclared) {
+  for (const Eigen::Vector3d& direction : {Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()}) {
+    const std::vector<RigidTransform> poses = spin(200, 0.02, 0.02, 120, 11, direction);
+    const auto declared =
+        calibrate_spin(poses, {.declared_direction = direction + Eigen::Vector3d(0.2, 0, 0)});
+    ASSERT_TRUE(declared.is_usable()) << declared.message;
+    EXPECT_GT(declared.axis_direction_in_tool.dot(direction), 0.999);
+    const auto across = calibrate_spin(poses, {.declared_direction = Eigen::Vector3d::UnitX()});
+    EXPECT_EQ(across.outcome, SpinCalibrationSummary::Outcome::DirectionUnknown);
+    EXPECT_NE(across.message.find("off the declared direction"), std::string::npos) << across.message;
+  }
+  const auto unknown = calibrate_spin(spin(200, 0.02, 0.02, 120, 11, Eigen::Vector3d::UnitZ()));
+  EXPECT_EQ(unknown.outcome, SpinCalibrationSummary::Outcome::DirectionUnknown);
+  EXPECT_NE(unknown.message.find("declare axis_direction"), std::string::npos) << unknown.message;
 }
 
 // 0.2 deg of orientation noise over 120 poses leaves 0.03 deg of the axis; 4 sigma of that, and the lever of
