@@ -175,6 +175,10 @@ bool explain(NavigateDisplay& display, const theatre::LiveState& live) {
       if (const auto* tool = options.tools.find_tool(options.guide_name))
         display.detail = reason_of_marker(result, tool->marker_id);
       break;
+    case GuidanceState::PictureTorn:
+      display.headline = "Picture torn";
+      display.detail = "It holds parts of two moments";
+      break;
     case GuidanceState::LensStale:
       display.headline = "Lens angle unknown";
       display.detail = trouble_of(result.lens).advice;

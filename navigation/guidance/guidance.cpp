@@ -163,6 +163,8 @@ std::string_view to_text(GuidanceState state) {
       return "time-out not confirmed";
     case GuidanceState::GuideNotChecked:
       return "nominal drill guide not checked";
+    case GuidanceState::PictureTorn:
+      return "picture torn";
   }
   return "unknown";
 }

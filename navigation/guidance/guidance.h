@@ -30,7 +30,9 @@ enum class GuidanceState {
   WrongMedium,      // the pictures contradict the medium that is said to be before the lens
   NotConfirmed,     // the time-out of a live operation is still to be done
   GuideNotChecked,  // a live operation's guide is nominal and was not held against a known point yet
+  PictureTorn,      // it is of two moments: its parts are not to be set against each other
 };
+inline constexpr GuidanceState kLastGuidanceState = GuidanceState::PictureTorn;  // records keep the number
 [[nodiscard]] std::string_view to_text(GuidanceState state);
 
 struct GuidanceInput {

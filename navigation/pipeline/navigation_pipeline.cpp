@@ -231,10 +231,11 @@ struct NavigationPipeline::State {
     input.lens_is_stale = !is_outside() && !result.intrinsics_are_known;
     input.now_ns = result.timestamp_ns;
     result.guidance = guidance::compute_guidance(input);
-    // Whatever else is missing: a frozen picture is the first thing to say.
-    if (result.is_frozen) {
+    // Whatever else is missing: what is wrong with the picture itself is the first thing to say.
+    if (result.is_frozen || (result.is_torn && !is_outside())) {
       result.guidance = {};
-      result.guidance.state = guidance::GuidanceState::Stale;
+      result.guidance.state =
+          result.is_frozen ? guidance::GuidanceState::Stale : guidance::GuidanceState::PictureTorn;
     }
     result.guidance.timestamp_ns = result.timestamp_ns;
   }

@@ -74,7 +74,7 @@ std::optional<guidance::DrillDepth> drill_at(const Statement& row) {
 guidance::GuidanceNumbers guidance_at(const Statement& row, const RecordedFrame& frame) {
   guidance::GuidanceNumbers g;
   g.timestamp_ns = frame.timestamp_ns;
-  g.state = row.one_of(1, guidance::GuidanceState::GuideNotChecked);
+  g.state = row.one_of(1, guidance::kLastGuidanceState);
   g.drill = drill_at(row);  // seen without its guide, too
   if (!g.is_valid()) return g;
   g.guide_point_mm = vector_at(row, 2);

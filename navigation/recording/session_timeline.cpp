@@ -198,7 +198,7 @@ struct SessionTimeline::State {
     RowsAlong rows(database, "SELECT * FROM guidance");
     for (FrameGlance& glance : frames) {
       rows.visit(glance.index, [&](const Statement& row) {
-        glance.guidance = row.one_of(1, guidance::GuidanceState::GuideNotChecked);
+        glance.guidance = row.one_of(1, guidance::kLastGuidanceState);
         if (!glance.is_guided()) return;
         constexpr int kAngle = 10, kAnterior = 11, kProximal = 12, kLateral = 17;
         const double lateral_mm = row.column_count() > kLateral ? row.number(kLateral) : 0;

@@ -210,6 +210,7 @@ TEST_F(NavigationPipeline, Hazard3AMarkerInAPartThatStandsStillGuidesNobody) {
     } else if (i > 61 && i < 120) {
       EXPECT_FALSE(result_.guidance.is_valid()) << i;
       EXPECT_TRUE(result_.is_torn) << i;
+      EXPECT_EQ(result_.guidance.state, GuidanceState::PictureTorn) << i;
     }
   }
 }
