@@ -204,6 +204,18 @@ bool has_drill(const NavigateScreen& screen) {
                      [](const tools::Tool& tool) { return tool.kind == tools::ToolKind::Drill; });
 }
 
+// Nobody has touched a known place by the registration that these numbers are of: said under them, where what
+// is said of a drill leaves the room; the sign beside "Bone" says it everywhere.
+void draw_unverified(const widgets::Ui& ui, widgets::Rect& rest, const NavigateScreen& screen) {
+  constexpr const char* kWords = "Not verified";
+  const bool is_skipped = screen.display.is_unverified;
+  const float height = widgets::afar_height(ui, rest.width, kWords);
+  const float depth = (screen.display.drill ? 2 : 1) * (ui.theme.afar->FontSize + ui.theme.number->FontSize);
+  const bool is_said = is_skipped && rest.height >= height + depth;
+  ui.log.note_state("unverified", is_said ? "said" : is_skipped ? "no room" : "no");
+  if (is_said) widgets::draw_afar(ui, rest.cut_bottom(height), widgets::kCaution, kWords);
+}
+
 // For tests.
 std::string drill_state(const NavigateScreen& screen) {
   const auto& drill = screen.display.drill;
@@ -232,6 +244,7 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Naviga
   draw_number(ui, rest, "Angle", widgets::fixed(g.angle_deg, 1) + "\u00B0",
               widgets::plus_minus(g.sigma_angle_deg), guidance_severity::severity_of_angle(g));
   (void)rest.cut_top(ui.theme.px(8));
+  draw_unverified(ui, rest, screen);
   draw_depth(ui, rest, screen);
 }
 

@@ -285,6 +285,7 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   const bool may_guide =
       standing == operation::Standing::Stands && state.time_out != operation::TimeOut::Due && !is_slow;
   display.plan_is_valid = display.overlay_is_valid && may_guide;
+  display.is_unverified = may_guide && state.verification == operation::Verification::Skipped;
   // An outside tracker's numbers hang on no picture, and nothing of theirs lies over one.
   display.world_is_placed =
       display.overlay_is_valid || (result.tracker_from_world.is_valid && !result.is_frozen && !is_revoked);

@@ -19,6 +19,8 @@ struct NavigateDisplay {
   bool plan_is_valid = false;     // ... and the plan's lines belong to it: a registration stands
   bool tip_is_valid = false;      // ... and where the probe's tip is to the bone is known
   bool guidance_is_valid = false;
+  // A registration stands, and the step in which known places are touched by it was passed over.
+  bool is_unverified = false;
   double age_s = 0;              // of the picture, from its capture to now; with is_live or when it is late
   std::string headline, detail;  // why not; empty while guidance is valid
   guidance::GuidanceNumbers guidance;  // meaningful when guidance_is_valid

@@ -172,10 +172,10 @@ void draw_states(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
                  : pipeline::body_in(frame, tool->marker_id).camera_from_body.has_value());
     states.push_back({sign(is_seen, Severity::Caution), registers ? "Probe" : "Guide"});
     const auto standing = state.registration->in_force.standing;
-    states.push_back({waits_for_time_out(state)                 ? Severity::Caution
-                      : standing == operation::Standing::Stands ? Severity::Good
-                      : standing == operation::Standing::None   ? Severity::Quiet
-                                                                : Severity::Bad,
+    states.push_back({waits_for_time_out(state) || screen.display.is_unverified ? Severity::Caution
+                      : standing == operation::Standing::Stands                 ? Severity::Good
+                      : standing == operation::Standing::None                   ? Severity::Quiet
+                                                                                : Severity::Bad,
                       "Bone"});
     const bool is_kept = screen.live->record_trouble.empty() && !screen.live->session_folder.empty();
     states.push_back({!is_kept                     ? Severity::Bad

@@ -22,6 +22,18 @@ TEST(NavigateDisplay, ShowsWhatIsValid) {
   EXPECT_EQ(display.guidance.angle_deg, 1.5);
 }
 
+// What guides without a touch of a known place is told for as long as it guides.
+TEST(NavigateDisplay, TellsThatNobodyHasVerified) {
+  using operation::Verification;
+  for (const Verification verification :
+       {Verification::NotYet, Verification::ByTouches, Verification::Skipped}) {
+    const NavigateDisplay display =
+        display_after([&](Shown& shown) { shown.operation.verification = verification; });
+    EXPECT_TRUE(display.guidance_is_valid);
+    EXPECT_EQ(display.is_unverified, verification == Verification::Skipped);
+  }
+}
+
 // Whatever makes guidance invalid takes the numbers away in that very frame and says why.
 TEST(NavigateDisplay, EveryInvalidStateHidesTheNumbersAndSaysWhy) {
   for (const GuidanceState state :
