@@ -204,23 +204,27 @@ bool has_drill(const NavigateScreen& screen) {
                      [](const tools::Tool& tool) { return tool.kind == tools::ToolKind::Drill; });
 }
 
+// For tests.
+std::string drill_state(const NavigateScreen& screen) {
+  const auto& drill = screen.display.drill;
+  if (!drill) return has_drill(screen) ? "not seen" : "none";
+  return drill->is_at_plan() ? guidance_severity::drill_text(*drill).name : "beside the plan";
+}
+
 // Nobody has touched a known place by the registration that these numbers are of: said under them, where what
 // is said of a drill leaves the room; the sign beside "Bone" says it everywhere.
 void draw_unverified(const widgets::Ui& ui, widgets::Rect& rest, const NavigateScreen& screen) {
   constexpr const char* kWords = "Not verified";
   const bool is_skipped = screen.display.is_unverified;
   const float height = widgets::afar_height(ui, rest.width, kWords);
-  const float depth = (screen.display.drill ? 2 : 1) * (ui.theme.afar->FontSize + ui.theme.number->FontSize);
+  const float line = ui.theme.afar->FontSize, number = line + ui.theme.number->FontSize;
+  const float depth = screen.display.drill                    ? 2 * number
+                      : screen.live->operation->depth_stop_mm ? number
+                      : has_drill(screen)                     ? line
+                                                              : 0;
   const bool is_said = is_skipped && rest.height >= height + depth;
   ui.log.note_state("unverified", is_said ? "said" : is_skipped ? "no room" : "no");
   if (is_said) widgets::draw_afar(ui, rest.cut_bottom(height), widgets::kCaution, kWords);
-}
-
-// For tests.
-std::string drill_state(const NavigateScreen& screen) {
-  const auto& drill = screen.display.drill;
-  if (!drill) return has_drill(screen) ? "not seen" : "none";
-  return drill->is_at_plan() ? guidance_severity::drill_text(*drill).name : "beside the plan";
 }
 
 }  // namespace
