@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/operation/command.h"
@@ -49,5 +50,11 @@ struct JournalEntry {
   std::optional<PlannedTunnel> plan;  // with Plan
   std::optional<AchievedTunnel> achieved;
 };
+[[nodiscard]] inline JournalEntry entry_of(JournalKind kind, std::string text = "") {
+  JournalEntry entry;
+  entry.kind = kind;
+  entry.text = std::move(text);
+  return entry;
+}
 
 }  // namespace arthronaut::operation

@@ -1,6 +1,5 @@
 #include "navigation/operation/operation.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "navigation/operation/operation_parts.h"
@@ -45,29 +44,19 @@ void Operation::start_source(const SourceSetup& source) {
   auto pipeline = std::make_unique<pipeline::NavigationPipeline>(source.pipeline);
   const registration::Provenance now = provenance_of(p.setup, source, p.ledger.now().placement);
   // Nobody saw the marker between two sources, however long that was.
-  if (p.source != nullptr && source.kind == sources::SourceKind::Live) p.in_view.was_lost_for_long = true;
+  const bool may_have_moved = p.source != nullptr && source.kind == sources::SourceKind::Live;
   p.pipeline = std::move(pipeline);
   p.source = std::make_shared<const SourceSetup>(source);
   p.has_source = true;
-  p.medium.check.emplace(markers::declared_markers(source.pipeline.tools), source.pipeline.refractive_index,
-                         source.pipeline.calibration.refractive_index);
-  ++p.medium.source_number;
-  p.medium.request.reset();
-  p.medium.awaited.reset();
-  p.end_contour();
-  p.expect_pictures(source.pipeline.calibration.image_size_px);
+  p.medium.on_source(source.pipeline);
+  p.bone_watch.on_source(source.pipeline.calibration.image_size_px);
   p.frame = {};
   p.frame_count = 0;
   p.note(JournalKind::SourceStarted);
   p.tip.clear();
-  p.drilling.evidence = p.plan ? std::optional<guidance::DrillEvidence>(p.plan->tunnel) : std::nullopt;
-  p.drilling.drilled = {};
-  p.drilling.evidence_is_seen = false;
+  p.drilling.on_source(p.plan);
   p.touch.refusal = TouchRefusal::None;
-  p.in_view.world_was_seen = p.in_view.guide_was_seen = false;
-  p.in_view.guided_ns.reset();
-  p.in_view.control_touched_ns = 0;  // of another clock
-  p.in_view.control_set_ns = std::numeric_limits<std::int64_t>::min();
+  p.in_view.on_source(may_have_moved);
   p.pipeline->set_plan(p.plan ? std::optional(p.plan->tunnel) : std::nullopt, p.plan ? p.plan->length_mm : 0);
   // What differed from the plan of before the crash was offered by nobody who saw it: it is still asked for.
   if (p.offered && !p.resumed_plan_waits)
@@ -100,13 +89,12 @@ void Operation::end_source() {
   if (!p.has_source) return;
   p.take_drift();
   p.note(JournalKind::SourceEnded);
-  p.end_contour();
+  p.bone_watch.on_source_end();
   p.has_source = p.draws = false;
   p.tip.clear();
   p.guide_check.end_source();
   p.end_frame();
-  p.medium.request.reset();
-  p.medium.awaited.reset();
+  p.medium.on_source_end();
 }
 
 void Operation::process(const camera::Frame& frame, const tracker::TrackerPoses* outside) {
@@ -114,7 +102,7 @@ void Operation::process(const camera::Frame& frame, const tracker::TrackerPoses*
   parts_->pipeline->process(frame, parts_->frame, outside);
   parts_->check_medium();
   parts_->take_frame();
-  parts_->check_contour(frame);
+  parts_->watch_bone(frame);
 }
 
 void Operation::process_recorded(const pipeline::FrameResult& result) {
@@ -127,11 +115,8 @@ void Operation::apply(const Command& command) {
   p.take_drift();  // what the last picture showed comes before what is done about it
   p.note(JournalKind::CommandGiven, to_text(command));
   std::visit([&](const auto& c) { p.apply(c); }, command);
-  if (!p.ledger.touches().has_control_point()) {
-    p.guide_check.forget_point();
-    p.contour.doubt_has_control_point = false;  // one that is set anew was set in doubt
-  }
-  p.contour.touches_before_doubt = std::min(p.contour.touches_before_doubt, p.ledger.touches().count());
+  if (!p.ledger.touches().has_control_point()) p.guide_check.forget_point();
+  p.bone_watch.on_touches(p.ledger.touches());
   p.follow_ledger();
 }
 
@@ -144,7 +129,7 @@ void Operation::take_outcome(const OutcomePtr& outcome) {
   const bool has_become_ready = outcome->bone_is_ready && (before == nullptr || !before->bone_is_ready);
   // Nothing more may come: what was drawn while the bone was being made ready is judged, nobody asking.
   if (has_become_ready && !p.strokes.points().empty()) p.ask(JudgeAll{});
-  if (!outcome->failure.empty()) p.fitting.is_under_way = p.fitting.is_wanted = false;  // it will never come
+  if (!outcome->failure.empty()) p.fit.on_failure();
   const auto& online = outcome->online;
   if (online != nullptr && (before == nullptr || before->online != online)) {
     // What was found with strokes that are gone or excluded since, before the registration heard of it, must
@@ -158,28 +143,23 @@ void Operation::take_outcome(const OutcomePtr& outcome) {
     }
   }
   if (outcome->fit_number > (before != nullptr ? before->fit_number : 0) &&
-      outcome->fit_number == p.fitting.number) {
-    p.fitting.is_under_way = false;
-    if (std::exchange(p.fitting.is_wanted, false))
-      p.ledger.take_fit(outcome->fit, p.fitting.request, p.fitting.length_mm);
-  }
+      p.fit.has_come(outcome->fit_number))
+    p.ledger.take_fit(outcome->fit, p.fit.request(), p.fit.length_mm());
   p.follow_ledger();
 }
 
 void Operation::tell_bone_moved(const SeenDrift& drift) {
-  if (!parts_->contour.drift) parts_->contour.drift = drift;
+  parts_->bone_watch.tell(drift);
   parts_->take_drift();
 }
 
 void Operation::tell_bone_looks(const SeenLooks& looks) {
-  parts_->contour.looks = looks;
+  parts_->bone_watch.tell(looks);
   parts_->take_drift();
 }
 
 void Operation::take_look(const MediumLookPtr& look) { parts_->take_look(look); }
-std::optional<MediumLookRequest> Operation::take_look_request() {
-  return std::exchange(parts_->medium.request, std::nullopt);
-}
+std::optional<MediumLookRequest> Operation::take_look_request() { return parts_->medium.take_request(); }
 
 std::vector<RegistrationRequest> Operation::take_requests() { return std::exchange(parts_->requests, {}); }
 std::vector<JournalEntry> Operation::take_journal() { return std::exchange(parts_->journal, {}); }
@@ -209,11 +189,10 @@ OperationStatePtr Operation::state() {
   state->touch_asked_ns = p.touch.time_ns;
   state->plan = p.plan;
   state->plan_was_edited = p.offered.has_value();
-  state->depth_stop_mm = p.drilling.depth_stop_mm;
-  state->drilled = p.drilling.drilled;
-  state->drilled.has_evidence = p.drilling.evidence_is_seen;
-  state->medium = p.medium.check ? p.medium.check->verdict() : pipeline::MediumVerdict();
-  state->contour = p.contour.check ? p.contour.check->verdict() : contour::ContourVerdict();
+  state->depth_stop_mm = p.drilling.depth_stop_mm();
+  state->drilled = p.drilling.state();
+  state->medium = p.medium.verdict();
+  state->contour = p.bone_watch.verdict();
   state->next_action = next_action_of(*state);
   state->step = step_of(state->next_action);
   return state;

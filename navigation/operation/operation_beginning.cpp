@@ -25,17 +25,9 @@ std::string in_words(const SourceSetup& source, const registration::Provenance& 
 
 }  // namespace
 
-TimeOut Operation::Parts::time_out() const {
-  if (source == nullptr || source->kind != sources::SourceKind::Live) return TimeOut::NotAsked;
-  if (!confirmed || confirmed_plan != plan) return TimeOut::Due;
-  // A marker that is placed anew changes nothing of what was confirmed.
-  return registration::mismatch_but_placement(*confirmed, ledger.now()) ? TimeOut::Due : TimeOut::Confirmed;
-}
-
 void Operation::Parts::apply(const ConfirmTimeOut& time_out_of) {
   if (time_out() != TimeOut::Due) return;
-  confirmed = ledger.now();
-  confirmed_plan = plan;
+  confirmed.confirm(ledger.now(), plan);
   note(JournalKind::TimeOutConfirmed, in_words(*source, ledger.now(), plan, time_out_of.patient_was_shown));
 }
 
@@ -54,8 +46,7 @@ void Operation::Parts::apply(const CheckGuide&) {
            (state.may_guide() ? "" : files::format(", more than %.1f mm", setup.limits.max_guide_error_mm)));
   if (state.may_guide()) return;
   // What was seen of it was seen by wrong numbers.
-  if (drilling.evidence) drilling.evidence->clear();
-  drilling.evidence_is_seen = false;
+  drilling.forget_seen();
   if (frame.guidance.is_valid()) hide_guidance(guidance::GuidanceState::GuideNotChecked);
 }
 
@@ -84,7 +75,7 @@ void Operation::Parts::apply(const TrustGuide&) {
 void Operation::Parts::apply(const ResumeOperation& resume) {
   if (source != nullptr || resumed != nullptr) return;
   resumed = std::make_shared<const ResumeOperation>(resume);
-  drilling.depth_stop_mm = resume.depth_stop_mm;
+  drilling.read_depth_stop(resume.depth_stop_mm);
   ledger.bring_back(resume.of, resume.touches_mm, resume.control_point_mm);
   if (resume.plan && resume.plan != plan) {
     // The one that guided then guides on; the case's, which is another one by now, waits to be taken over.

@@ -1,32 +1,66 @@
 // Inner header: the state of an operation and what changes it, for operation.cpp (what comes in) and
 // operation_rules.cpp (what follows from it).
+//
+// What an operation knows is true of something: a picture, a source, a plan, a registration, the marker where
+// it sits. It ends with that, in the class that holds it and by a member that says so (on_source(),
+// on_plan(), ...). The whole of it, which what_ends_test.cpp walks over; x: it ends.
+//
+//   S  a source begins, of the same camera, tools, medium and kind    C  strokes are cleared, without an
+//   alarm O  the same of something else: another medium                     M  the marker is placed anew E
+//   the source ends                                                W  a picture is through the wrong medium
+//   P  another plan is taken over                                     L  the marker was out of sight for
+//   long: R  another registration comes into force                             the scope went to another port
+//
+//   what                              | S O E P R C M W L
+//   numbers of the newest picture     | x x x x x . x x x
+//   guidance a moment ago             | x x x x x . x . x
+//   what was seen of guide and drill  | x x . x x . x x .
+//   what the depth stop reads         | . . . x . . x . .
+//   the word that it is drilled       | x x . x . . x . .
+//   a registration that stands        | . x . . . . x . .
+//   that touches verified it          | . x . . . x x . .
+//   touches                           | . . . . . x x . .
+//   the control point                 | . . . . . x x . .
+//   that the bone looks otherwise     | x x x x x . x . .
+//   strokes                           | . x . . . x x . .
+//   which strokes were tried          | . x . . . x x . .
+//   what is found while drawing       | . x . . . x x . .
+//   the time-out's confirmation       | . x . . . . . . .
+//   the check of a nominal guide      | . x . . . . . . .
+//   why no touch was taken            | x x . . . . . . .
+//   that the probe draws              | x . x . . . . . .
+//
+// The probe draws again by itself where the source that begins says so and no registration stands. Another
+// registration is verified at once where the touches lie on the bone by it, too.
+// Of what a registration is of (another mesh, camera, probe, kind of source: as O), see
+// registration_ledger.h.
 #pragma once
 
-#include <limits>
-#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "navigation/contour/contour_check.h"
-#include "navigation/contour/covered.h"
-#include "navigation/guidance/drill_evidence.h"
-#include "navigation/guidance/registration_bias.h"
+#include "navigation/operation/bone_watch.h"
+#include "navigation/operation/confirmed_time_out.h"
+#include "navigation/operation/drilling.h"
 #include "navigation/operation/guide_check.h"
+#include "navigation/operation/in_view.h"
+#include "navigation/operation/medium_watch.h"
 #include "navigation/operation/operation.h"
-#include "navigation/pipeline/medium_check.h"
+#include "navigation/operation/stroke_bias.h"
+#include "navigation/operation/stroke_fit.h"
 #include "navigation/worker/recycler.h"
 
 namespace arthronaut::operation {
 
 struct Operation::Parts {
   explicit Parts(OperationSetup with)
-      : setup(std::move(with)), ledger(setup.surface, setup.cartilage, setup.limits), plan(setup.plan) {
-    if (setup.surface != nullptr) contour.check.emplace(setup.surface->mesh());
-  }
+      : setup(std::move(with)),
+        ledger(setup.surface, setup.cartilage, setup.limits),
+        plan(setup.plan),
+        bone_watch(setup.surface.get()) {}
 
   void note(JournalEntry entry) {
     entry.after_frame = frame_count > 0 ? frame.frame_index : -1;
@@ -35,12 +69,6 @@ struct Operation::Parts {
     changed = true;
   }
   void note(JournalKind kind, std::string text = "") { note(entry_of(kind, std::move(text))); }
-  static JournalEntry entry_of(JournalKind kind, std::string text) {
-    JournalEntry entry;
-    entry.kind = kind;
-    entry.text = std::move(text);
-    return entry;
-  }
   void ask(RegistrationRequest request) {
     requests.push_back(std::move(request));
     ++request_count;
@@ -50,7 +78,7 @@ struct Operation::Parts {
   void hand_registration();
   void note_in_force(bool is_given);
   void note_plan() {
-    JournalEntry entry = entry_of(JournalKind::Plan, "");
+    JournalEntry entry = entry_of(JournalKind::Plan);
     entry.plan = plan;
     note(std::move(entry));
   }
@@ -63,46 +91,43 @@ struct Operation::Parts {
   void take_look(const MediumLookPtr& look);
   void follow_medium(pipeline::MediumFit before);
   void take_frame();
-  void check_contour(const camera::Frame& picture);
+  void watch_bone(const camera::Frame& picture) {
+    bone_watch.look(picture, frame, source->pipeline.tools, ledger.in_force(), ledger.change_count(),
+                    setup.hears_of_drifts);
+  }
   void take_drift();
-  void end_contour();
-  void look_anew();
-  void expect_pictures(const Eigen::Vector2i& size_px);
   void draw_tip();
-  void watch_marker();
   void watch_guidance();
   void look_for_registration();
   void register_strokes();
-  void strokes_changed() { fitting.is_wanted = false; }
   void clear_strokes();
   void take_touch(bool is_control_point);
   [[nodiscard]] std::optional<std::size_t> guide_in_view() const;
   [[nodiscard]] std::optional<Eigen::Vector3d> control_point_of_now_mm() const;
   [[nodiscard]] ControlPointDue control_point_due() const;
-  [[nodiscard]] bool guided_lately() const;
+  [[nodiscard]] bool guided_lately() const { return has_source && in_view.guided_lately(frame.timestamp_ns); }
   [[nodiscard]] int places_in_doubt() const;
   [[nodiscard]] Verification verification() const;
-  [[nodiscard]] TimeOut time_out() const;
+  [[nodiscard]] TimeOut time_out() const { return confirmed.standing(source.get(), ledger.now(), plan); }
   void hide_guidance(guidance::GuidanceState reason);
   void end_frame();
-  [[nodiscard]] std::optional<guidance::RegistrationBias> bias() const;
   [[nodiscard]] RegistrationStatePtr registration_state();
 
   void apply(const Draw& draw) { draws = has_source && draw.on; }
   void apply(const TakeTouch&) { take_touch(false); }
   void apply(const TouchControlPoint&) { take_touch(true); }
   void apply(const ForgetTouches&) {
-    look_anew();
+    bone_watch.look_anew();
     ledger.forget_touches();
   }
   void apply(const TakeBackStroke&) {
     ask(StrokesTakenBack{strokes.take_back()});
-    strokes_changed();
+    fit.on_strokes_changed();
   }
   void apply(const ExcludeStroke& exclude) {
     strokes.exclude(exclude.curve, exclude.is_excluded);
     ask(StrokeExclusion{exclude.curve, exclude.is_excluded});
-    strokes_changed();
+    fit.on_strokes_changed();
   }
   void apply(const ClearStrokes&) {
     const bool marker_has_moved = static_cast<bool>(ledger.alarm());
@@ -117,18 +142,21 @@ struct Operation::Parts {
     if (!offered) return;
     take_offered();
     resumed_plan_waits = false;
-    confirmed_plan = plan;  // that it is the right one was just said
+    confirmed.on_plan_taken_over(plan);
   }
   void apply(const SkipVerification&) { skip_verification("asked for"); }
   void apply(const MarkerPlacedAnew&) {
     clear_strokes();
-    drilling.drilled = {};
-    drilling.depth_stop_mm.reset();
+    drilling.on_marker_placed_anew();
     ledger.marker_placed_anew();
   }
-  void apply(const ReadDepthStop& stop) { drilling.depth_stop_mm = stop.depth_mm; }
-  void apply(const TunnelDrilled&);
-  void apply(const TakeBackDrilled&);
+  void apply(const ReadDepthStop& stop) { drilling.read_depth_stop(stop.depth_mm); }
+  void apply(const TunnelDrilled&) {
+    if (auto entry = drilling.say_drilled(plan, setup.surface.get())) note(std::move(*entry));
+  }
+  void apply(const TakeBackDrilled&) {
+    if (auto entry = drilling.take_back(plan.has_value())) note(std::move(*entry));
+  }
   void apply(const GiveRegistration& give);
   void apply(const ConfirmTimeOut& time_out);
   void apply(const CheckGuide&);
@@ -152,18 +180,8 @@ struct Operation::Parts {
 
   OutcomePtr outcome;  // the newest that was taken in
   std::shared_ptr<const registration::OnlineResult> online;
-  // The registration of all strokes.
-  struct Fitting {
-    int number = 0;  // of the newest that was asked for
-    std::uint64_t request = 0;
-    double length_mm = 0;         // of the strokes it was asked of
-    std::size_t point_count = 0;  // that were drawn then, and the strokes that were not used
-    std::set<int> excluded;
-    bool is_under_way = false, is_wanted = false;
-    std::int64_t looked_ns = 0;
-  } fitting;
-  // How the registration that strokes give follows the errors of probe and camera; by stroke.
-  std::map<int, guidance::BiasSums> bias_of_stroke;
+  StrokeFit fit;
+  StrokeBias stroke_bias;
 
   std::optional<PlannedTunnel> plan;
   std::optional<OfferPlan> offered;
@@ -175,45 +193,11 @@ struct Operation::Parts {
     std::int64_t time_ns = 0;
   } touch;
   GuideCheck guide_check;
-  // What was in view, and when the control point was touched last; of the source.
-  struct InView {
-    std::int64_t world_ns = 0, control_touched_ns = 0;
-    // When the control point was touched first; of a source before this one: before all of its frames.
-    std::int64_t control_set_ns = std::numeric_limits<std::int64_t>::min();
-    std::optional<std::int64_t> guided_ns;  // the newest picture that guided, by the registration in force
-    bool world_was_seen = false, was_lost_for_long = false, guide_was_seen = false;
-  } in_view;
-  struct Medium {
-    std::optional<pipeline::MediumCheck> check;
-    std::uint64_t source_number = 0;
-    std::optional<MediumLookRequest> request;
-    std::optional<std::int64_t> awaited;  // the frame whose picture is being seen again
-  } medium;
-  struct Contour {
-    std::optional<contour::ContourCheck> check;  // empty: there is no surface to look for
-    std::uint64_t change = 0;                    // of the ledger, when it was begun
-    contour::CoveredPlaces covered;
-    std::vector<std::uint8_t> luma;  // of pictures that have none of their own
-    // Told by the newest picture: in force with the next one, between the two, as everything that a run from
-    // the record alone has to hear of.
-    std::optional<SeenDrift> drift;
-    std::optional<SeenLooks> looks;
-    // In force: it does not look as it did; whether a control point was set while it was seen to lie where it
-    // lay; and how many touches there were then.
-    bool is_in_doubt = false, doubt_has_control_point = false;
-    std::size_t touches_before_doubt = 0;
-    bool begins_anew = false;  // what it looks like now is how it looks
-  } contour;
-  struct Drilling {
-    std::optional<guidance::DrillEvidence> evidence;  // of the plan in force
-    bool evidence_is_seen = false;
-    std::int64_t looked_ns = 0;
-    std::optional<double> depth_stop_mm;
-    DrilledState drilled;
-  } drilling;
-  // What the time-out was confirmed of; empty: not yet.
-  std::optional<registration::Provenance> confirmed;
-  std::optional<PlannedTunnel> confirmed_plan;
+  InView in_view;
+  MediumWatch medium;
+  BoneWatch bone_watch;
+  Drilling drilling;
+  ConfirmedTimeOut confirmed;
   std::shared_ptr<const ResumeOperation> resumed;  // null: nothing was
 
   // The ledger as it was told of last.

@@ -4,26 +4,6 @@
 
 namespace arthronaut::operation {
 
-namespace {
-
-// Looking twice a second whether something new was drawn, or enough was seen of a drill, is enough.
-constexpr std::int64_t kBetweenLooks_ns = 500'000'000;
-// A marker that was out of sight for so long may have been hit meanwhile.
-constexpr std::int64_t kLongLoss_ns = 30'000'000'000;
-// A guide that is away for longer was put down: the hand is free for something else.
-constexpr std::int64_t kGuideAway_ns = 2'000'000'000;
-// A control point that was touched so lately need not be touched again before drilling.
-constexpr std::int64_t kControlHolds_ns = 300'000'000'000;
-
-// Another source has another clock.
-bool is_time_to_look(std::int64_t now_ns, std::int64_t& looked_ns) {
-  if (now_ns >= looked_ns && now_ns - looked_ns < kBetweenLooks_ns) return false;
-  looked_ns = now_ns;
-  return true;
-}
-
-}  // namespace
-
 void Operation::Parts::note_in_force(bool is_given) {
   JournalEntry entry;
   entry.kind = JournalKind::RegistrationInForce;
@@ -47,22 +27,21 @@ void Operation::Parts::hand_registration() {
   const RegistrationOrigin origin = (*ledger.entries())[*ledger.entry_in_force()].origin;
   const bool is_of_strokes =
       origin == RegistrationOrigin::WhileDrawing || origin == RegistrationOrigin::AllStrokes;
-  pipeline->set_registration(*in_force, is_of_strokes ? bias() : std::nullopt);
+  pipeline->set_registration(*in_force, is_of_strokes ? stroke_bias.bias(strokes) : std::nullopt);
 }
 
 // What is in force guides from the next frame on; what is not any more does not guide in it.
 void Operation::Parts::follow_ledger() {
   const RegistrationInForce& in_force = ledger.in_force();
   const bool is_another = ledger.change_count() != followed.change;
-  if (is_another || in_force.standing != Standing::Stands) contour.is_in_doubt = false;
+  if (is_another || in_force.standing != Standing::Stands) bone_watch.on_registration();
   if (is_another) {
     followed.change = ledger.change_count();
     if (pipeline != nullptr) hand_registration();
     // The picture's numbers, and what was seen of the guide, were by what is not in force any more.
     hide_guidance(guidance::GuidanceState::Stale);
-    if (drilling.evidence) drilling.evidence->clear();
-    drilling.evidence_is_seen = false;
-    in_view.guided_ns.reset();
+    drilling.on_registration();
+    in_view.on_registration();
     if (in_force.registration != nullptr) {
       const RegistrationOrigin origin = (*ledger.entries())[*ledger.entry_in_force()].origin;
       note_in_force(origin == RegistrationOrigin::Given || origin == RegistrationOrigin::Resumed);
@@ -106,10 +85,7 @@ void Operation::Parts::set_plan(const std::optional<PlannedTunnel>& next, bool m
     ask(plan ? AimAt{plan->tunnel.entry_mm, plan->tunnel.direction} : AimAt{std::nullopt, std::nullopt});
   }
   // What was seen, read and drilled was of another plan; the numbers of the last picture are too.
-  drilling.evidence = plan ? std::optional<guidance::DrillEvidence>(plan->tunnel) : std::nullopt;
-  drilling.evidence_is_seen = false;
-  drilling.drilled = {};
-  drilling.depth_stop_mm.reset();
+  drilling.on_plan(plan);
   hide_guidance(guidance::GuidanceState::Stale);
   if (pipeline != nullptr)
     pipeline->set_plan(plan ? std::optional(plan->tunnel) : std::nullopt, plan ? plan->length_mm : 0);
@@ -135,7 +111,6 @@ void Operation::Parts::take_frame() {
   guide_check.add(frame);
   tip.add(time_s, frame.tip_is_valid ? std::optional(frame.tip_in_world_mm) : std::nullopt);
   draw_tip();
-  watch_marker();
   watch_guidance();
   look_for_registration();
 }
@@ -148,53 +123,35 @@ void Operation::Parts::draw_tip() {
   const int curve_before = before != nullptr ? before->curve : -1;
   const Eigen::Vector3d at_before = before != nullptr ? before->position_mm : frame.tip_in_world_mm;
   const strokes::CurvePoint point = strokes.add(time_s, frame.tip_in_world_mm, frame.shaft_in_world);
-  // A point counts as much as the stroke that it stands for, as it does in the fit.
   const double step_mm = point.curve == curve_before ? (point.position_mm - at_before).norm() : 0;
-  if (step_mm > 0) bias_of_stroke[point.curve].add(frame.tip_sensitivity, step_mm);
+  stroke_bias.add(point.curve, frame.tip_sensitivity, step_mm);
   ask(DrawnPoint{point});
 }
 
-// Of the strokes in use now: what a registration found from them follows.
-std::optional<guidance::RegistrationBias> Operation::Parts::bias() const {
-  guidance::BiasSums sums;
-  for (const auto& [curve, of_stroke] : bias_of_stroke)
-    if (strokes.uses(curve)) sums += of_stroke;
-  return sums.empty() ? std::nullopt : std::optional(sums.bias());
-}
-
 void Operation::Parts::check_medium() {
-  if (!medium.check) return;
-  const pipeline::MediumFit before = medium.check->verdict().fit;
-  medium.check->look(frame);
-  if (medium.check->wants_second_look() && !medium.awaited) {
-    const pipeline::PipelineOptions& options = source->pipeline;
-    medium.awaited = frame.frame_index;
-    medium.request = MediumLookRequest{medium.source_number, frame, markers::declared_markers(options.tools),
-                                       medium.check->other_index(), options.calibration.refractive_index};
-  }
+  const pipeline::MediumFit before = medium.verdict().fit;
+  medium.look(frame, source->pipeline);
   follow_medium(before);
 }
 
 void Operation::Parts::take_look(const MediumLookPtr& look) {
-  if (look == nullptr || look->source_number != medium.source_number ||
-      medium.awaited != look->view.frame_index)
-    return;
-  medium.awaited.reset();
+  if (look == nullptr || !medium.awaits(*look)) return;
   note(JournalKind::LookTaken, std::to_string(look->view.frame_index));
-  const pipeline::MediumFit before = medium.check->verdict().fit;
-  medium.check->look_again(look->view, look->in_other_medium);
+  const pipeline::MediumFit before = medium.verdict().fit;
+  medium.take(*look);
   follow_medium(before);
 }
 
 // In the wrong medium nothing that is reckoned from the pictures stands; the reason is the medium, not the
 // markers.
 void Operation::Parts::follow_medium(pipeline::MediumFit before) {
-  if (medium.check->verdict().fit != before) {
+  const pipeline::MediumVerdict verdict = medium.verdict();
+  if (verdict.fit != before) {
     changed = true;
-    if (medium.check->verdict().fit == pipeline::MediumFit::Contradicts)
-      note(JournalKind::Note, pipeline::reason_text(medium.check->verdict()));
+    if (verdict.fit == pipeline::MediumFit::Contradicts)
+      note(JournalKind::Note, pipeline::reason_text(verdict));
   }
-  if (medium.check->verdict().fit != pipeline::MediumFit::Contradicts) return;
+  if (verdict.fit != pipeline::MediumFit::Contradicts) return;
   end_frame();
   hide_guidance(guidance::GuidanceState::WrongMedium);
 }
@@ -214,31 +171,11 @@ void Operation::Parts::end_frame() {
   hide_guidance(guidance::GuidanceState::Stale);
 }
 
-void Operation::Parts::watch_marker() {
-  if (frame.world_is_seen()) {
-    if (in_view.world_was_seen && frame.timestamp_ns - in_view.world_ns > kLongLoss_ns)
-      in_view.was_lost_for_long = changed = true;
-    in_view.world_was_seen = true;
-    in_view.world_ns = frame.timestamp_ns;
-  }
-}
-
 void Operation::Parts::watch_guidance() {
-  const bool guide_is_seen = guide_in_view().has_value();
-  if (guide_is_seen && !in_view.guide_was_seen) changed = true;
-  in_view.guide_was_seen = in_view.guide_was_seen || guide_is_seen;
-  if (drilling.evidence) drilling.evidence->add(frame.guidance);
-  // Through the wrong medium it was seen until now, too.
-  if (drilling.evidence && frame.guidance.state == guidance::GuidanceState::WrongMedium) {
-    drilling.evidence->clear();
-    drilling.evidence_is_seen = false;
-  }
-  // Summing it up costs more than a frame should.
-  if (is_time_to_look(frame.timestamp_ns, drilling.looked_ns)) {
-    drilling.evidence_is_seen = drilling.evidence && drilling.evidence->summary().is_usable();
-  }
+  if (in_view.add(frame.timestamp_ns, frame.world_is_seen(), guide_in_view().has_value())) changed = true;
+  drilling.add(frame.guidance, frame.timestamp_ns);
   if (!frame.guidance.is_valid()) return;
-  in_view.guided_ns = frame.timestamp_ns;
+  in_view.guided(frame.timestamp_ns);
   if (verification() == Verification::NotYet) skip_verification("guidance began without one");
 }
 
@@ -255,37 +192,31 @@ Verification Operation::Parts::verification() const {
 }
 
 void Operation::Parts::look_for_registration() {
-  if (!setup.registers_after_mm || !plan || !guide_in_view() ||
-      !is_time_to_look(frame.timestamp_ns, fitting.looked_ns))
+  if (!setup.registers_after_mm || !plan || !guide_in_view() || !fit.is_time_to_look(frame.timestamp_ns))
     return;
   const std::optional<std::size_t> entry = ledger.entry_in_force();
   const bool is_settled = entry && (*ledger.entries())[*entry].origin != RegistrationOrigin::WhileDrawing &&
                           ledger.in_force().standing == Standing::Stands;
-  if (is_settled || strokes::length_mm(strokes.in_use()) < fitting.length_mm + *setup.registers_after_mm)
+  if (is_settled || strokes::length_mm(strokes.in_use()) < fit.length_mm() + *setup.registers_after_mm)
     return;
   register_strokes();
 }
 
 void Operation::Parts::register_strokes() {
-  if (fitting.is_under_way || (outcome != nullptr && !outcome->failure.empty())) return;
-  auto curves = std::make_shared<const strokes::Curves>(strokes.in_use());
-  fitting.point_count = strokes.points().size();
-  fitting.excluded = strokes.excluded();
+  if (fit.is_under_way() || (outcome != nullptr && !outcome->failure.empty())) return;
   changed = true;
-  if (curves->empty()) return;  // none is long enough
-  fitting.length_mm = strokes::length_mm(*curves);
-  fitting.is_under_way = fitting.is_wanted = true;
-  ask(FitAll{++fitting.number, std::move(curves)});
-  fitting.request = request_count;
+  auto of_all = fit.ask(strokes);
+  if (!of_all) return;
+  ask(std::move(*of_all));
+  fit.asked_with(request_count);
 }
 
 void Operation::Parts::clear_strokes() {
   strokes.clear();
-  bias_of_stroke.clear();
+  stroke_bias.on_strokes_cleared();
+  fit.on_strokes_cleared();
   ask(StrokesCleared{});
-  strokes_changed();
   online.reset();
-  fitting.length_mm = 0;
   ledger.forget_strokes();
 }
 
@@ -303,14 +234,12 @@ void Operation::Parts::take_touch(bool is_control_point) {
     return note(JournalKind::Note,
                 is_set ? "control point not asked: it was set when the bone may have moved already"
                        : "control point not set: the picture shows that the bone has moved");
-  if (!is_set) in_view.control_set_ns = frame.timestamp_ns;
+  if (!is_set) in_view.control_point_set(frame.timestamp_ns);
   ledger.touch_control_point(*tip_mm);
   // What asked for it asks on: whether the marker has moved is not answered.
   if (ledger.touches().control_point_lies_off()) return;
-  in_view.control_touched_ns = frame.timestamp_ns;
-  in_view.was_lost_for_long = false;
-  if (!contour.is_in_doubt || !contour.doubt_has_control_point) return;
-  if (is_set) look_anew();  // it lies where it lay
+  in_view.control_point_held(frame.timestamp_ns);
+  if (is_set && bone_watch.control_point_ends_doubt()) bone_watch.look_anew();  // it lies where it lay
 }
 
 void Operation::Parts::apply(const OfferPlan& offer) {
@@ -335,25 +264,36 @@ void Operation::Parts::apply(const GiveRegistration& give) {
 // touched all the same. So they are asked for, shown, and then the operation goes on in doubt, as it is said
 // to be.
 int Operation::Parts::places_in_doubt() const {
-  if (!contour.is_in_doubt || contour.doubt_has_control_point) return 0;
-  return std::max(
-      setup.limits.touches_to_verify - ledger.touches().places_since(contour.touches_before_doubt), 0);
+  const auto before = bone_watch.touches_before_doubt();
+  return before ? std::max(setup.limits.touches_to_verify - ledger.touches().places_since(*before), 0) : 0;
 }
 
-bool Operation::Parts::guided_lately() const {
-  return has_source && in_view.guided_ns && frame.timestamp_ns - *in_view.guided_ns <= kGuideAway_ns;
+// It is told a second or more after the bone has moved. A control point that was set meanwhile says that the
+// bone lies where it lies now, and nothing of whether it moved.
+void Operation::Parts::take_drift() {
+  if (const auto looks = bone_watch.take_looks(); looks && ledger.in_force().standing == Standing::Stands) {
+    note(JournalKind::BoneLooks, to_text(*looks));
+    bone_watch.doubt(
+        looks->otherwise,
+        ledger.touches().has_control_point() && in_view.control_point_was_set_before(looks->held_until_ns),
+        ledger.touches().count());
+  }
+  const auto drift = bone_watch.take_drift();
+  if (!drift || ledger.in_force().standing != Standing::Stands) return;
+  note(JournalKind::BoneMoved, to_text(*drift));
+  ledger.bone_moved_in_picture(drift->drift_mm, in_view.control_point_was_set_before(drift->held_until_ns));
+  follow_ledger();
 }
 
 ControlPointDue Operation::Parts::control_point_due() const {
   if (!has_source || ledger.in_force().standing != Standing::Stands) return ControlPointDue::None;
   if (ledger.touches().control_point_lies_off()) return ControlPointDue::CheckShift;
-  if (contour.is_in_doubt && contour.doubt_has_control_point) return ControlPointDue::CheckLooks;
+  if (bone_watch.control_point_ends_doubt()) return ControlPointDue::CheckLooks;
   if (places_in_doubt() > 0) return ControlPointDue::CannotCheckLooks;
   if (!ledger.touches().has_control_point()) return ControlPointDue::Set;
-  if (in_view.was_lost_for_long) return ControlPointDue::CheckAfterLoss;
-  return in_view.guide_was_seen && frame.timestamp_ns - in_view.control_touched_ns > kControlHolds_ns
-             ? ControlPointDue::CheckBeforeDrilling
-             : ControlPointDue::None;
+  if (in_view.marker_was_lost_for_long()) return ControlPointDue::CheckAfterLoss;
+  return in_view.control_point_is_old(frame.timestamp_ns) ? ControlPointDue::CheckBeforeDrilling
+                                                          : ControlPointDue::None;
 }
 
 RegistrationStatePtr Operation::Parts::registration_state() {
@@ -365,8 +305,7 @@ RegistrationStatePtr Operation::Parts::registration_state() {
   state->drawn = strokes.trace();
   state->point_count = strokes.points().size();
   state->excluded = strokes.excluded();
-  state->strokes_were_tried = fitting.point_count > 0 && fitting.point_count == state->point_count &&
-                              fitting.excluded == state->excluded;
+  state->strokes_were_tried = fit.tried(strokes);
   state->online = online;
   state->in_force = ledger.in_force();
   state->change_count = ledger.change_count();
@@ -376,7 +315,7 @@ RegistrationStatePtr Operation::Parts::registration_state() {
   state->alarm = ledger.alarm();
   state->touches = ledger.touches();
   state->bone_is_ready = outcome != nullptr && outcome->bone_is_ready;
-  state->is_fitting = fitting.is_under_way;
+  state->is_fitting = fit.is_under_way();
   if (outcome != nullptr) state->bone_trouble = outcome->failure;
   state->set_aside_count = set_aside_count;
   published_registration = std::move(state);

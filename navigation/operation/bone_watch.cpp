@@ -1,0 +1,100 @@
+#include "navigation/operation/bone_watch.h"
+
+#include <algorithm>
+
+namespace arthronaut::operation {
+
+BoneWatch::BoneWatch(const geometry::Surface* surface) {
+  if (surface != nullptr) check_.emplace(surface->mesh());
+}
+
+void BoneWatch::on_source(const Eigen::Vector2i& image_size_px) {
+  on_source_end();
+  if (!check_) return;
+  check_->reserve_for(image_size_px);
+  luma_.reserve(static_cast<std::size_t>(image_size_px.prod()));
+}
+
+void BoneWatch::on_source_end() {
+  if (check_) check_->end();
+  drift_.reset();
+  looks_.reset();
+  is_in_doubt_ = false;
+}
+
+void BoneWatch::on_touches(const Touches& touches) {
+  if (!touches.has_control_point()) doubt_has_control_point_ = false;
+  touches_before_doubt_ = std::min(touches_before_doubt_, touches.count());
+}
+
+void BoneWatch::look_anew() {
+  looks_.reset();
+  is_in_doubt_ = false;
+  begins_anew_ = true;
+}
+
+void BoneWatch::look(const camera::Frame& picture, const pipeline::FrameResult& frame,
+                     const tools::ToolSet& tools, const RegistrationInForce& in_force,
+                     std::uint64_t change_count, bool hears_only) {
+  // Where an outside tracker has the markers, no picture tells where the lens is.
+  if (!check_ || tools.tracker) return;
+  if (in_force.standing != Standing::Stands) {
+    const bool told_it =
+        in_force.standing == Standing::Alarm && check_->verdict().state == contour::ContourState::Drifted;
+    if (!told_it) check_->end();
+    return;
+  }
+  if (!check_->has_begun() || change_ != change_count || begins_anew_) {
+    check_->begin(in_force.registration->marker_from_bone);
+    change_ = change_count;
+    begins_anew_ = false;
+  }
+  std::optional<geometry::RigidTransform> camera_from_world;
+  covered_.clear();
+  if (frame.camera_from_world.is_valid) {
+    camera_from_world = frame.camera_from_world.target_from_source;
+    const std::size_t worlds = tools.world_markers.size();
+    for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+      if (!frame.bodies[i].is_tracked()) continue;
+      const geometry::RigidTransform& camera_from_body = frame.bodies[i].camera_from_body;
+      if (i < worlds)
+        covered_.add_world_marker(frame.camera, camera_from_body, tools.world_markers[i]);
+      else
+        covered_.add_tool(frame.camera, camera_from_body, tools.tools[i - worlds]);
+    }
+  }
+  const contour::ContourVerdict& verdict =
+      check_->look(camera::luma_of(picture, luma_), frame.camera, camera_from_world, covered_.places(),
+                   frame.timestamp_ns);
+  if (hears_only) return;
+  if (verdict.state == contour::ContourState::Drifted) drift_ = {verdict.drift_mm, verdict.held_until_ns};
+  // Where nothing is checked, a doubt stays.
+  const bool looks_otherwise = verdict.state == contour::ContourState::LooksOtherwise;
+  if ((looks_otherwise || verdict.state == contour::ContourState::Holds) && looks_otherwise != is_in_doubt_)
+    looks_ = {looks_otherwise, verdict.held_until_ns};
+}
+
+void BoneWatch::tell(const SeenDrift& drift) {
+  if (!drift_) drift_ = drift;
+}
+
+std::optional<SeenLooks> BoneWatch::take_looks() {
+  auto looks = std::exchange(looks_, std::nullopt);
+  return looks && looks->otherwise != is_in_doubt_ ? looks : std::nullopt;
+}
+
+void BoneWatch::doubt(bool is_in_doubt, bool has_control_point, std::size_t touch_count) {
+  is_in_doubt_ = is_in_doubt;
+  doubt_has_control_point_ = has_control_point;
+  touches_before_doubt_ = touch_count;
+}
+
+std::optional<std::size_t> BoneWatch::touches_before_doubt() const {
+  return is_in_doubt_ && !doubt_has_control_point_ ? std::optional(touches_before_doubt_) : std::nullopt;
+}
+
+contour::ContourVerdict BoneWatch::verdict() const {
+  return check_ ? check_->verdict() : contour::ContourVerdict();
+}
+
+}  // namespace arthronaut::operation

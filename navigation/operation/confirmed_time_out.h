@@ -1,0 +1,34 @@
+// What the time-out of a live operation was confirmed of: patient, side, camera, tools and medium, as the
+// provenance says them, and the plan. It holds for these alone: with another one of them it is due again.
+#pragma once
+
+#include <optional>
+
+#include "navigation/operation/operation_state.h"
+
+namespace arthronaut::operation {
+
+class ConfirmedTimeOut {
+ public:
+  void confirm(const registration::Provenance& now, const std::optional<PlannedTunnel>& plan) {
+    of_ = now;
+    plan_ = plan;
+  }
+  // The surgeon took it over: that it is the right one was just said.
+  void on_plan_taken_over(const std::optional<PlannedTunnel>& plan) { plan_ = plan; }
+
+  // source: that runs, or ran last; null: none yet. Only a live one asks. A marker that is placed anew
+  // changes nothing of what was confirmed.
+  [[nodiscard]] TimeOut standing(const SourceSetup* source, const registration::Provenance& now,
+                                 const std::optional<PlannedTunnel>& plan) const {
+    if (source == nullptr || source->kind != sources::SourceKind::Live) return TimeOut::NotAsked;
+    if (!of_ || plan_ != plan) return TimeOut::Due;
+    return registration::mismatch_but_placement(*of_, now) ? TimeOut::Due : TimeOut::Confirmed;
+  }
+
+ private:
+  std::optional<registration::Provenance> of_;  // empty: not yet
+  std::optional<PlannedTunnel> plan_;
+};
+
+}  // namespace arthronaut::operation

@@ -1,0 +1,71 @@
+// What an operation heeds of the bone in the picture, and what ends it. watched_bone_test.cpp has the
+// pictures.
+#include "navigation/operation/bone_watch.h"
+
+#include <gtest/gtest.h>
+
+namespace arthronaut::operation {
+namespace {
+
+Touches touched(bool control_point, int count) {
+  Touches touches;
+  for (int i = 0; i < count; ++i) touches.add_touch({5.0 * i, 0, 0}, {});
+  if (control_point) touches.touch_control_point({1, 2, 3}, {});
+  return touches;
+}
+
+TEST(BoneWatch, WhatWasToldTakesEffectOnce) {
+  BoneWatch watch(nullptr);
+  watch.tell(SeenDrift{1.5, 7});
+  watch.tell(SeenDrift{2.5, 8});
+  const auto drift = watch.take_drift();
+  ASSERT_TRUE(drift);
+  EXPECT_EQ(drift->drift_mm, 1.5) << "the first one stands";
+  EXPECT_FALSE(watch.take_drift());
+  watch.tell(SeenLooks{false});
+  EXPECT_FALSE(watch.take_looks()) << "it looks as it did, as before";
+  watch.tell(SeenLooks{true});
+  EXPECT_TRUE(watch.take_looks());
+  EXPECT_FALSE(watch.take_looks());
+}
+
+TEST(BoneWatch, ADoubtIsOfOneRegistrationAndOneSource) {
+  BoneWatch watch(nullptr);
+  const auto doubt = [&] {
+    watch.doubt(true, true, 0);
+    return watch.is_in_doubt() && watch.control_point_ends_doubt();
+  };
+  ASSERT_TRUE(doubt());
+  watch.on_registration();
+  EXPECT_FALSE(watch.is_in_doubt());
+  ASSERT_TRUE(doubt());
+  watch.on_source({640, 480});
+  EXPECT_FALSE(watch.is_in_doubt());
+  ASSERT_TRUE(doubt());
+  watch.tell(SeenDrift{1.5, 7});
+  watch.tell(SeenLooks{false});
+  watch.on_source_end();
+  EXPECT_FALSE(watch.is_in_doubt());
+  EXPECT_FALSE(watch.take_drift()) << "what waited goes with it";
+  EXPECT_FALSE(watch.take_looks());
+  ASSERT_TRUE(doubt());
+  watch.look_anew();
+  EXPECT_FALSE(watch.is_in_doubt());
+}
+
+// One that is set anew was set in doubt: it learns where the bone lies since.
+TEST(BoneWatch, AControlPointThatIsGoneEndsNoDoubt) {
+  BoneWatch watch(nullptr);
+  watch.doubt(true, true, 2);
+  watch.on_touches(touched(true, 2));
+  EXPECT_TRUE(watch.control_point_ends_doubt());
+  EXPECT_FALSE(watch.touches_before_doubt());
+  watch.on_touches(touched(false, 0));
+  watch.on_touches(touched(true, 1));
+  EXPECT_TRUE(watch.is_in_doubt());
+  EXPECT_FALSE(watch.control_point_ends_doubt());
+  EXPECT_EQ(watch.touches_before_doubt(), 0U) << "those that were there then are gone";
+}
+
+}  // namespace
+}  // namespace arthronaut::operation
