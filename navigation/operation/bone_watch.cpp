@@ -22,6 +22,19 @@ void BoneWatch::on_source_end() {
   is_in_doubt_ = false;
 }
 
+void BoneWatch::on_registration(const RegistrationInForce& in_force) {
+  const bool stands = in_force.standing == Standing::Stands;
+  const auto is_there = [&](const geometry::RigidTransform& now) {
+    return marker_from_bone_->translation_mm == now.translation_mm &&
+           marker_from_bone_->rotation.coeffs() == now.rotation.coeffs();
+  };
+  if (stands && marker_from_bone_ && is_there(in_force.registration->marker_from_bone)) return;
+  marker_from_bone_.reset();
+  if (stands) marker_from_bone_ = in_force.registration->marker_from_bone;
+  is_in_doubt_ = false;
+  begins_anew_ = true;
+}
+
 void BoneWatch::on_touches(const Touches& touches) {
   if (!touches.has_control_point()) doubt_has_control_point_ = false;
   touches_before_doubt_ = std::min(touches_before_doubt_, touches.count());
@@ -34,8 +47,7 @@ void BoneWatch::look_anew() {
 }
 
 void BoneWatch::look(const camera::Frame& picture, const pipeline::FrameResult& frame,
-                     const tools::ToolSet& tools, const RegistrationInForce& in_force,
-                     std::uint64_t change_count, bool hears_only) {
+                     const tools::ToolSet& tools, const RegistrationInForce& in_force, bool hears_only) {
   // Where an outside tracker has the markers, no picture tells where the lens is.
   if (!check_ || tools.tracker) return;
   if (in_force.standing != Standing::Stands) {
@@ -44,9 +56,8 @@ void BoneWatch::look(const camera::Frame& picture, const pipeline::FrameResult& 
     if (!told_it) check_->end();
     return;
   }
-  if (!check_->has_begun() || change_ != change_count || begins_anew_) {
+  if (!check_->has_begun() || begins_anew_) {
     check_->begin(in_force.registration->marker_from_bone);
-    change_ = change_count;
     begins_anew_ = false;
   }
   std::optional<geometry::RigidTransform> camera_from_world;

@@ -1,9 +1,10 @@
 // The registered bone against the picture (contour/contour_check.h), and what of it an operation heeds: a
 // bone that has moved under its marker is an alarm, one that does not look as it did is a doubt.
 //
-// It is of one registration, seen through one source: with another of either everything that was seen is
-// forgotten, and a doubt is over. What a picture tells is in force with the next one; between the two it
-// waits here, as everything that a run from the record alone has to hear of.
+// It is of one place of the bone under its marker, seen through one source: with another of either everything
+// that was seen is forgotten, and a doubt is over. Another plan moves no bone. What a picture tells is in
+// force with the next one; between the two it waits here, as everything that a run from the record alone has
+// to hear of.
 //
 // Thread-free, deterministic. In the frames it allocates nothing once on_source() was told how large they
 // are.
@@ -30,8 +31,9 @@ class BoneWatch {
   // Pictures of that size come, or none any more.
   void on_source(const Eigen::Vector2i& image_size_px);
   void on_source_end();
-  // Another registration is in force, or the one of before does not stand.
-  void on_registration() { is_in_doubt_ = false; }
+  // After whatever may have changed it. One that has the bone elsewhere, or does not stand, ends a doubt; and
+  // the next one that stands is watched anew.
+  void on_registration(const RegistrationInForce& in_force);
   // After whatever may have changed them. A control point that is gone can't end a doubt: one that is set
   // anew was set in doubt.
   void on_touches(const Touches& touches);
@@ -39,11 +41,10 @@ class BoneWatch {
   // looks.
   void look_anew();
 
-  // The newest picture, with what was seen in it. From the moment on that a registration stands, and anew
-  // with every other one (change_count: the ledger's). While an alarm holds, what told it stays as it was.
-  // hears_only: that it moved is told from elsewhere.
+  // The newest picture, with what was seen in it. Precondition: on_registration() was told of in_force. While
+  // an alarm holds, what told it stays as it was. hears_only: that it moved is told from elsewhere.
   void look(const camera::Frame& picture, const pipeline::FrameResult& frame, const tools::ToolSet& tools,
-            const RegistrationInForce& in_force, std::uint64_t change_count, bool hears_only);
+            const RegistrationInForce& in_force, bool hears_only);
   // What another run saw. Where a picture has just told a drift, that one stands.
   void tell(const SeenDrift& drift);
   void tell(const SeenLooks& looks) { looks_ = looks; }
@@ -63,8 +64,8 @@ class BoneWatch {
   [[nodiscard]] contour::ContourVerdict verdict() const;
 
  private:
-  std::optional<contour::ContourCheck> check_;  // empty: there is no surface to look for
-  std::uint64_t change_ = 0;                    // of the ledger, when it was begun
+  std::optional<contour::ContourCheck> check_;                // empty: there is no surface to look for
+  std::optional<geometry::RigidTransform> marker_from_bone_;  // of the registration that stands
   bool begins_anew_ = false;
   contour::CoveredPlaces covered_;
   std::vector<std::uint8_t> luma_;  // of pictures that have none of their own

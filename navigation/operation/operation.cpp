@@ -44,7 +44,8 @@ void Operation::start_source(const SourceSetup& source) {
   auto pipeline = std::make_unique<pipeline::NavigationPipeline>(source.pipeline);
   const registration::Provenance now = provenance_of(p.setup, source, p.ledger.now().placement);
   // Nobody saw the marker between two sources, however long that was.
-  const bool may_have_moved = p.source != nullptr && source.kind == sources::SourceKind::Live;
+  const bool is_first = p.source == nullptr && p.resumed == nullptr;
+  const bool may_have_moved = !is_first && source.kind == sources::SourceKind::Live;
   p.pipeline = std::move(pipeline);
   p.source = std::make_shared<const SourceSetup>(source);
   p.has_source = true;
@@ -63,6 +64,7 @@ void Operation::start_source(const SourceSetup& source) {
     p.take_offered();
   else
     p.note_plan();
+  if (registration::mismatch_but_placement(p.ledger.now(), now)) p.stroke_bias.on_other_source();
   p.ledger.set_now(now);
   p.guide_check.begin(source.pipeline, now, source.kind == sources::SourceKind::Live);
   p.note_guide_check();

@@ -21,9 +21,9 @@
 //   that touches verified it          | . x . . . x x . .
 //   touches                           | . . . . . x x . .
 //   the control point                 | . . . . . x x . .
-//   that the bone looks otherwise     | x x x x x . x . .
+//   that the bone looks otherwise     | x x x . x . x . .
 //   strokes                           | . x . . . x x . .
-//   which strokes were tried          | . x . . . x x . .
+//   which strokes were tried          | . x . x . x x . .
 //   what is found while drawing       | . x . . . x x . .
 //   the time-out's confirmation       | . x . . . . . . .
 //   the check of a nominal guide      | . x . . . . . . .
@@ -92,8 +92,7 @@ struct Operation::Parts {
   void follow_medium(pipeline::MediumFit before);
   void take_frame();
   void watch_bone(const camera::Frame& picture) {
-    bone_watch.look(picture, frame, source->pipeline.tools, ledger.in_force(), ledger.change_count(),
-                    setup.hears_of_drifts);
+    bone_watch.look(picture, frame, source->pipeline.tools, ledger.in_force(), setup.hears_of_drifts);
   }
   void take_drift();
   void draw_tip();
@@ -122,12 +121,12 @@ struct Operation::Parts {
   }
   void apply(const TakeBackStroke&) {
     ask(StrokesTakenBack{strokes.take_back()});
-    fit.on_strokes_changed();
+    fit.on_strokes_gone();
   }
   void apply(const ExcludeStroke& exclude) {
     strokes.exclude(exclude.curve, exclude.is_excluded);
     ask(StrokeExclusion{exclude.curve, exclude.is_excluded});
-    fit.on_strokes_changed();
+    fit.on_strokes_excluded();
   }
   void apply(const ClearStrokes&) {
     const bool marker_has_moved = static_cast<bool>(ledger.alarm());

@@ -27,14 +27,16 @@ void Operation::Parts::hand_registration() {
   const RegistrationOrigin origin = (*ledger.entries())[*ledger.entry_in_force()].origin;
   const bool is_of_strokes =
       origin == RegistrationOrigin::WhileDrawing || origin == RegistrationOrigin::AllStrokes;
-  pipeline->set_registration(*in_force, is_of_strokes ? stroke_bias.bias(strokes) : std::nullopt);
+  pipeline->set_registration(
+      *in_force, is_of_strokes ? stroke_bias.of_registration(*ledger.entry_in_force()) : std::nullopt);
 }
 
 // What is in force guides from the next frame on; what is not any more does not guide in it.
 void Operation::Parts::follow_ledger() {
   const RegistrationInForce& in_force = ledger.in_force();
   const bool is_another = ledger.change_count() != followed.change;
-  if (is_another || in_force.standing != Standing::Stands) bone_watch.on_registration();
+  bone_watch.on_registration(in_force);
+  stroke_bias.on_registrations(ledger.entries()->size(), strokes);
   if (is_another) {
     followed.change = ledger.change_count();
     if (pipeline != nullptr) hand_registration();
@@ -83,6 +85,7 @@ void Operation::Parts::set_plan(const std::optional<PlannedTunnel>& next, bool m
   if (moves_target) {
     ledger.aim_at(plan ? std::optional(plan->tunnel.entry_mm) : std::nullopt);
     ask(plan ? AimAt{plan->tunnel.entry_mm, plan->tunnel.direction} : AimAt{std::nullopt, std::nullopt});
+    fit.on_aim();
   }
   // What was seen, read and drilled was of another plan; the numbers of the last picture are too.
   drilling.on_plan(plan);

@@ -4,8 +4,18 @@
 
 namespace arthronaut::operation {
 
+void StrokeFit::on_strokes_gone() {
+  is_wanted_ = false;
+  tried_points_ = 0;
+}
+
+void StrokeFit::on_strokes_excluded() {
+  // What comes of it will not be taken in: nothing was tried.
+  if (std::exchange(is_wanted_, false)) tried_points_ = 0;
+}
+
 void StrokeFit::on_strokes_cleared() {
-  on_strokes_changed();
+  on_strokes_gone();
   length_mm_ = 0;
 }
 

@@ -2,7 +2,7 @@
 //
 // One is of the strokes in use when it was asked for. When these change it is not waited for any more, though
 // it is still under way: the next one has to wait for its end. Which strokes were tried is known so that the
-// same are not asked of again: the same again gives the same.
+// same are not asked of again: the same again gives the same, at the same plan.
 //
 // Thread-free, deterministic. Lengths in mm.
 #pragma once
@@ -18,10 +18,14 @@ namespace arthronaut::operation {
 
 class StrokeFit {
  public:
-  // Strokes are gone, excluded or taken in again: what was asked of them is not wanted any more.
-  void on_strokes_changed() { is_wanted_ = false; }
+  // Points that were drawn are gone: what was tried is not what is drawn now.
+  void on_strokes_gone();
+  // Strokes were excluded, or taken in again.
+  void on_strokes_excluded();
   // All of them are gone: the next ones are as long as they are.
   void on_strokes_cleared();
+  // It is judged at another place: the same strokes may give another verdict.
+  void on_aim() { tried_points_ = 0; }
   // Nothing can be registered to this bone: what was asked for will never come.
   void on_failure() { is_under_way_ = is_wanted_ = false; }
 

@@ -175,6 +175,24 @@ TEST(Resumed, Hazard12BringsAllBackAndGuidesAfterOneTouch) {
   EXPECT_EQ(shown(run), guidance::GuidanceState::Valid);
 }
 
+// Nobody saw the marker between the two: the control point of before is to be touched, as between two live
+// sources of one operation.
+TEST(Resumed, Hazard25AsksForTheControlPointOfBefore) {
+  for (const sources::SourceKind kind : {sources::SourceKind::Live, sources::SourceKind::Recording}) {
+    PhantomOperation run;
+    const SourceSetup source = test::scripted_source(kind);
+    run.apply(left_behind(run, source));
+    run.start(source);
+    run.touch(test::on_bone(trial(), 0));
+    ASSERT_EQ(run.in_force().standing, Standing::Stands);
+    const bool is_live = kind == sources::SourceKind::Live;
+    EXPECT_EQ(run.state()->control_point_due,
+              is_live ? ControlPointDue::CheckAfterLoss : ControlPointDue::None);
+    run.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+    EXPECT_EQ(run.state()->control_point_due, ControlPointDue::None);
+  }
+}
+
 // Another registration in its place stands for itself: the journal tells of no touch that confirmed anything.
 // One void registration after another is told each time.
 TEST(Resumed, AnotherRegistrationInItsPlaceIsNoConfirmation) {

@@ -31,13 +31,29 @@ TEST(BoneWatch, WhatWasToldTakesEffectOnce) {
 
 TEST(BoneWatch, ADoubtIsOfOneRegistrationAndOneSource) {
   BoneWatch watch(nullptr);
+  int judged = 0;
   const auto doubt = [&] {
     watch.doubt(true, true, 0);
     return watch.is_in_doubt() && watch.control_point_ends_doubt();
   };
+  RegistrationInForce in_force{Standing::Stands, {}, {}, false, false};
+  const auto lies_at = [&](double x_mm) {
+    registration::RegistrationSummary found;
+    found.marker_from_bone.translation_mm = {x_mm, 0, 0};
+    found.predicted_tre_mm = ++judged;
+    in_force.registration = std::make_shared<const registration::RegistrationSummary>(found);
+    watch.on_registration(in_force);
+  };
+  lies_at(1);
   ASSERT_TRUE(doubt());
-  watch.on_registration();
+  lies_at(1);
+  EXPECT_TRUE(watch.is_in_doubt()) << "judged at another plan it has the bone where it had it";
+  lies_at(2);
   EXPECT_FALSE(watch.is_in_doubt());
+  ASSERT_TRUE(doubt());
+  in_force.standing = Standing::InDoubt;
+  watch.on_registration(in_force);
+  EXPECT_FALSE(watch.is_in_doubt()) << "one that does not stand guides nobody";
   ASSERT_TRUE(doubt());
   watch.on_source({640, 480});
   EXPECT_FALSE(watch.is_in_doubt());

@@ -22,25 +22,49 @@ void draw_turned(StrokeBook& strokes, StrokeBias& bias, double from_s, double tu
 TEST(StrokeBias, IsOfTheStrokesThatAreUsed) {
   StrokeBook strokes, second_alone;
   StrokeBias bias, bias_of_second;
-  EXPECT_FALSE(bias.bias(strokes));
+  const auto found_now = [](StrokeBias& by, const StrokeBook& drawn, std::size_t number) {
+    by.on_registrations(number + 1, drawn);
+    return by.of_registration(number);
+  };
+  EXPECT_FALSE(found_now(bias, strokes, 0));
   draw_turned(strokes, bias, 0, 0);
   draw_turned(strokes, bias, 10, 1.5);
   draw_turned(second_alone, bias_of_second, 10, 1.5);
-  const auto of_second = bias_of_second.bias(second_alone);
+  const auto of_second = found_now(bias_of_second, second_alone, 0);
   ASSERT_TRUE(of_second);
-  EXPECT_FALSE(bias.bias(strokes)->per_tip_error.isApprox(of_second->per_tip_error, 1e-3));
+  EXPECT_FALSE(found_now(bias, strokes, 1)->per_tip_error.isApprox(of_second->per_tip_error, 1e-3));
   strokes.exclude(strokes.points().front().curve, true);
-  EXPECT_TRUE(bias.bias(strokes)->per_tip_error.isApprox(of_second->per_tip_error, 1e-12));
+  EXPECT_TRUE(found_now(bias, strokes, 2)->per_tip_error.isApprox(of_second->per_tip_error, 1e-12));
   (void)strokes.take_back();
-  EXPECT_FALSE(bias.bias(strokes)) << "the one is excluded, the other was taken back";
+  EXPECT_FALSE(found_now(bias, strokes, 3)) << "the one is excluded, the other was taken back";
 }
 
-TEST(StrokeBias, WithStrokesThatWereClearedNothingIsLeft) {
+// One that is taken again, or confirmed, after other strokes were drawn: it was found by those of its own.
+TEST(StrokeBias, ARegistrationKeepsThatOfTheStrokesItWasFoundBy) {
   StrokeBook strokes;
   StrokeBias bias;
   draw_turned(strokes, bias, 0, 0);
+  bias.on_registrations(1, strokes);
+  ASSERT_TRUE(bias.of_registration(0));
+  const guidance::RegistrationBias first = *bias.of_registration(0);
+  strokes.clear();
   bias.on_strokes_cleared();
-  EXPECT_FALSE(bias.bias(strokes));
+  bias.on_registrations(1, strokes);
+  EXPECT_EQ(bias.of_registration(0)->per_tip_error, first.per_tip_error);
+  draw_turned(strokes, bias, 10, 1.5);
+  bias.on_registrations(2, strokes);
+  EXPECT_EQ(bias.of_registration(0)->per_tip_error, first.per_tip_error);
+  EXPECT_NE(bias.of_registration(1)->per_tip_error, first.per_tip_error);
+}
+
+// Another camera or probe has errors of its own.
+TEST(StrokeBias, WithAnotherSourceNoneIsLeft) {
+  StrokeBook strokes;
+  StrokeBias bias;
+  draw_turned(strokes, bias, 0, 0);
+  bias.on_registrations(1, strokes);
+  bias.on_other_source();
+  EXPECT_FALSE(bias.of_registration(0));
 }
 
 }  // namespace

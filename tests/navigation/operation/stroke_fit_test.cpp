@@ -46,6 +46,47 @@ TEST(StrokeFit, OneOfOtherStrokesIsWaitedForAndNotTaken) {
   EXPECT_FALSE(fit.is_under_way());
 }
 
+// As many points as before are not the strokes of before.
+TEST(StrokeFit, OtherStrokesOfTheSameLengthWereNotTried) {
+  StrokeBook strokes;
+  StrokeFit fit;
+  draw_on(strokes, 100);
+  ASSERT_TRUE(fit.ask(strokes));
+  strokes.clear();
+  fit.on_strokes_cleared();
+  draw_on(strokes, 100, 10);
+  EXPECT_FALSE(fit.tried(strokes));
+  const auto asked = fit.ask(strokes);
+  ASSERT_TRUE(asked && fit.has_come(asked->number));
+  (void)strokes.take_back();
+  fit.on_strokes_gone();
+  draw_on(strokes, 100, 20);
+  EXPECT_FALSE(fit.tried(strokes));
+}
+
+// What was excluded and taken in again while it was under way is not waited for: nobody knows what it gave.
+TEST(StrokeFit, WhatWasNotTakenInWasNotTried) {
+  StrokeBook strokes;
+  StrokeFit fit;
+  draw_on(strokes, 100);
+  const auto exclude_and_take_in = [&] {
+    for (const bool is_excluded : {true, false}) {
+      strokes.exclude(0, is_excluded);
+      fit.on_strokes_excluded();
+    }
+  };
+  auto asked = fit.ask(strokes);
+  exclude_and_take_in();
+  EXPECT_FALSE(fit.has_come(asked->number));
+  EXPECT_FALSE(fit.tried(strokes));
+  asked = fit.ask(strokes);
+  EXPECT_TRUE(fit.has_come(asked->number));
+  exclude_and_take_in();
+  EXPECT_TRUE(fit.tried(strokes)) << "the same again gives the same";
+  fit.on_aim();
+  EXPECT_FALSE(fit.tried(strokes)) << "at another plan another verdict may come of them";
+}
+
 TEST(StrokeFit, WhereTheBoneFailsNoneWillCome) {
   StrokeBook strokes;
   StrokeFit fit;
