@@ -9,11 +9,6 @@ namespace {
 
 using widgets::Severity;
 
-Severity severity_of(double value, double sigma, double good) {
-  if (!(sigma <= 2 * good) || !(value < 2 * good)) return Severity::Bad;
-  return value < good && sigma < good ? Severity::Good : Severity::Caution;
-}
-
 std::string part(const guidance::GuidanceNumbers& guidance, landmarks::AnatomicalDirection direction) {
   const double value = guidance.offset_in_mm(direction);
   return widgets::fixed(std::abs(value), 1) + " " + std::string(landmarks::to_text(direction, value >= 0));
@@ -27,12 +22,26 @@ OffsetParts offset_parts(const guidance::GuidanceNumbers& guidance) {
   return {part(guidance, guidance.across_plan.side_is), part(guidance, guidance.across_plan.up_is)};
 }
 
+Severity severity_of(operation::Grade grade) {
+  switch (grade) {
+    case operation::Grade::None:
+      return Severity::Quiet;
+    case operation::Grade::Good:
+      return Severity::Good;
+    case operation::Grade::Caution:
+      return Severity::Caution;
+    case operation::Grade::Bad:
+      return Severity::Bad;
+  }
+  return Severity::Bad;
+}
+
 Severity severity_of_offset(const guidance::GuidanceNumbers& guidance) {
-  return severity_of(guidance.offset_mm, guidance.sigma_offset_mm, 1);
+  return severity_of(operation::grades_of(guidance).offset);
 }
 
 Severity severity_of_angle(const guidance::GuidanceNumbers& guidance) {
-  return severity_of(guidance.angle_deg, guidance.sigma_angle_deg, 2);
+  return severity_of(operation::grades_of(guidance).angle);
 }
 
 Severity severity_of_drill(const guidance::DrillDepth& drill) {

@@ -6,13 +6,14 @@
 
 #include "app/widgets/controls.h"
 #include "navigation/guidance/guidance.h"
+#include "navigation/operation/guidance_grades.h"
 #include "navigation/tools/tool_set.h"
 
 namespace arthronaut::guidance_severity {
 
-// Good: offset under 1 mm, angle under 2 degrees, each with a predicted error (one sigma) under the same
-// number. Caution: under 2 mm and 4 degrees. Bad: anything else, and whatever is known to no better than
-// that. The program's own thresholds.
+// As operation/guidance_grades.h says it. Quiet where no number is valid.
+[[nodiscard]] widgets::Severity severity_of(operation::Grade grade);
+// Of these numbers alone, which must be valid.
 [[nodiscard]] widgets::Severity severity_of_offset(const guidance::GuidanceNumbers& guidance);
 [[nodiscard]] widgets::Severity severity_of_angle(const guidance::GuidanceNumbers& guidance);
 // Bad where less than 2 mm of the planned length remain or the drill is about to break out of the bone's far

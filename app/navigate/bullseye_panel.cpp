@@ -164,8 +164,8 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   ui.log.note_state("reached", screen.reached_for_s ? "yes" : "no");
   draw_directions(draw, area, center, layout, point);
   draw_guide(ui, draw, center, radius, point,
-             worse(guidance_severity::severity_of_offset(screen.display.guidance),
-                   guidance_severity::severity_of_angle(screen.display.guidance)));
+             worse(guidance_severity::severity_of(screen.display.grades.offset),
+                   guidance_severity::severity_of(screen.display.grades.angle)));
 }
 
 namespace {
@@ -240,13 +240,15 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Naviga
   widgets::Rect rest{area.x + side, area.y + above, area.width - 2 * side, area.height - 2 * above};
   const guidance::GuidanceNumbers& g = screen.display.guidance;
   draw_number(ui, rest, "Offset", widgets::fixed(guidance_severity::offset_mm(g), 1),
-              "mm " + widgets::plus_minus(g.sigma_offset_mm), guidance_severity::severity_of_offset(g));
+              "mm " + widgets::plus_minus(g.sigma_offset_mm),
+              guidance_severity::severity_of(screen.display.grades.offset));
   const guidance_severity::OffsetParts parts = guidance_severity::offset_parts(g);
   for (const std::string& part : {parts.side, parts.up})
     (void)rest.cut_top(widgets::draw_afar(ui, rest, widgets::kText, part));
   (void)rest.cut_top(ui.theme.px(8));
   draw_number(ui, rest, "Angle", widgets::fixed(g.angle_deg, 1) + "\u00B0",
-              widgets::plus_minus(g.sigma_angle_deg), guidance_severity::severity_of_angle(g));
+              widgets::plus_minus(g.sigma_angle_deg),
+              guidance_severity::severity_of(screen.display.grades.angle));
   (void)rest.cut_top(ui.theme.px(8));
   draw_unverified(ui, rest, screen);
   draw_depth(ui, rest, screen);

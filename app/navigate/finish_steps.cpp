@@ -9,9 +9,7 @@ void NavigateView::finish_step(FinishAction action) {
   switch (action) {
     case FinishAction::TakeMarkerOut:
       log::info("world marker said to be out: " + std::string(bones::to_text(choices_.bone)));
-      choices_.markers_out.insert({live_->operation->source->kind, choices_.bone});
-      // From now on nothing may guide by where it sat.
-      return ask(operation::MarkerPlacedAnew{});
+      return ask(operation::MarkerOut{});
     case FinishAction::OtherBone:
       choices_.goes_to_other_bone = true;
       if (is_under_way(*live_)) end_source();

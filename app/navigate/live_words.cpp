@@ -147,6 +147,8 @@ std::string why_no_touch(const operation::OperationState& state) {
       return state.touch_is_of_guide ? "guide's tip not seen" : "probe's tip not seen";
     case operation::TouchRefusal::TipMoves:
       return state.touch_is_of_guide ? "the guide moves" : "the probe moves";
+    case operation::TouchRefusal::MarkerIsSeen:
+      return "";  // no touch was asked for
   }
   return "";
 }
@@ -156,6 +158,8 @@ std::string refusal_notice(const theatre::LiveState& live, double now_s) {
   constexpr double kReadable_s = 8;
   if (now_s - live.refused_s > kReadable_s) return "";
   if (!live.refusal.words.empty()) return live.refusal.words;
+  if (live.operation->has_source && live.operation->touch_refusal == operation::TouchRefusal::MarkerIsSeen)
+    return "marker not out: it is still seen";
   const std::string why = why_no_touch(*live.operation);
   return why.empty() ? "" : "no touch: " + why;
 }

@@ -70,13 +70,15 @@ struct NavigateChoices {
     using Outcome = operation::DrilledState::Outcome;
     if (state.plan && state.source != nullptr && state.drilled.outcome != Outcome::NotSaid)
       drilled.insert_or_assign({state.source->kind, state.plan->tunnel.key()}, *state.plan);
+    // The operation's word: one that is seen again is not out.
+    if (state.source != nullptr && state.marker_is_out) markers_out.insert({state.source->kind, state.bone});
+    if (state.source != nullptr && !state.marker_is_out) markers_out.erase({state.source->kind, state.bone});
     if (!state.plan || state.source == nullptr) return;
     const std::pair of(state.source->kind, state.plan->tunnel.key());
     if (state.drilled.was_taken_back) {
       drilled.erase(of);
       measured.erase(of);
       verified.erase(of);
-      markers_out.erase({of.first, of.second.bone});  // it is wanted again
       return;
     }
     if (!state.drilled.tunnel) return;

@@ -295,10 +295,12 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
       result.guidance.state == GuidanceState::GuideLost || result.guidance.state == GuidanceState::NoGuide;
   if (display.guidance_is_valid || (display.world_is_placed && may_guide && lacks_guide_alone))
     display.drill = result.guidance.drill;
-  if (display.guidance_is_valid)
+  if (display.guidance_is_valid) {
     display.guidance = result.guidance;
-  else if (!explain(display, *live) && is_slow && standing == operation::Standing::Stands)
+    display.grades = state.grades;
+  } else if (!explain(display, *live) && is_slow && standing == operation::Standing::Stands) {
     tell(display, {headline_of(live->trouble), live->trouble_words});
+  }
   return display;
 }
 

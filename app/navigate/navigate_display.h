@@ -24,6 +24,7 @@ struct NavigateDisplay {
   double age_s = 0;              // of the picture, from its capture to now; with is_live or when it is late
   std::string headline, detail;  // why not; empty while guidance is valid
   guidance::GuidanceNumbers guidance;  // meaningful when guidance_is_valid
+  operation::GuidanceGrades grades;    // likewise: how good they are
   // Of a drill that is seen by its own marker, also while the guide is not: over a wire there is none.
   std::optional<guidance::DrillDepth> drill;
 };

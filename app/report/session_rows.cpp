@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "navigation/recording/counting_registration.h"
 #include "navigation/recording/cut_short.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/files/format.h"
@@ -45,21 +46,17 @@ std::string guided_bundles(const recording::RecordedSession& session) {
 
 std::optional<registration::RegistrationSummary> registration_that_counts(
     const recording::RecordedSession& session) {
-  const recording::SessionEvent *newest = nullptr, *drilled_by = nullptr;
-  for (const recording::SessionEvent& event : session.events()) {
-    if (event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent)
-      newest = &event;
-    if (event.kind == recording::kDrilledEvent) drilled_by = newest;
-    if (event.kind == recording::kDrilledTakenBackEvent) drilled_by = nullptr;
-  }
-  if (drilled_by == nullptr || drilled_by == newest || drilled_by->text.empty())
-    return session.registration();
-  return session.registration_of(*drilled_by);
+  recording::CountingRegistration registration;
+  for (const recording::SessionEvent& event : session.events()) registration.follow(event);
+  if (!registration.is_of_before()) return session.registration();
+  recording::SessionEvent of_file;
+  of_file.text = registration.counts().file;
+  return session.registration_of(of_file);
 }
 
 std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session) {
   bool is_verified = false, is_lost = false, was_verified = false, was_skipped = false, is_confirmed = false;
-  std::optional<bool> was_verified_at_drilling;
+  recording::CountingRegistration registration;
   std::string alarms, guide;
   for (const recording::SessionEvent& event : session.events()) {
     const bool ends = event.kind == recording::kRegistrationEvent ||
@@ -68,15 +65,14 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
     is_lost = event.kind == recording::kVerificationLostEvent || (is_lost && !ends);
     is_verified = event.kind == recording::kVerifiedEvent || (is_verified && !ends);
     was_verified = was_verified || is_verified;
-    if (event.kind == recording::kDrilledEvent) was_verified_at_drilling = is_verified;
-    if (event.kind == recording::kDrilledTakenBackEvent) was_verified_at_drilling.reset();
+    registration.follow(event);
     was_skipped = was_skipped || event.kind == recording::kVerificationSkippedEvent;
     is_confirmed = is_confirmed || event.kind == recording::kTimeOutConfirmedEvent;
     if (event.kind == recording::kGuideCheckedEvent) guide = event.text;
     if (event.kind == recording::kAlarmEvent || event.kind == recording::kVoidEvent)
       alarms += (alarms.empty() ? "" : "; ") + (event.text.empty() ? "over" : event.text);
   }
-  is_verified = was_verified_at_drilling.value_or(is_verified);
+  is_verified = registration.counts().was_verified;
   const std::string verified =
       is_verified    ? "verified by touches"
       : is_lost      ? "verified by touches that did not hold"

@@ -39,7 +39,8 @@ constexpr std::array<std::string_view, std::variant_size_v<Command>> kNames{"dra
                                                                             "check guide",
                                                                             "trust guide",
                                                                             "resume operation",
-                                                                            "take back drilled"};
+                                                                            "take back drilled",
+                                                                            "marker out"};
 
 void add(Json& json, const Draw& draw) { json["on"] = draw.on; }
 void add(Json& json, const ExcludeStroke& exclude) {

@@ -66,6 +66,9 @@ struct ReadDepthStop {
 struct TunnelDrilled {};
 // It is not drilled after all: said too early. What was recorded of it is taken back, and that is recorded.
 struct TakeBackDrilled {};
+// The world marker is out of the bone, at the end: nothing that was found by it holds. Not believed while a
+// live source still shows it.
+struct MarkerOut {};
 // A registration from a file, or from before a crash.
 struct GiveRegistration {
   registration::RegistrationSummary registration;
@@ -105,7 +108,7 @@ using Command =
     std::variant<Draw, TakeTouch, TouchControlPoint, ForgetTouches, TakeBackStroke, ExcludeStroke,
                  ClearStrokes, RegisterStrokes, ChooseRegistration, OfferPlan, TakePlanOver, SkipVerification,
                  MarkerPlacedAnew, ReadDepthStop, TunnelDrilled, GiveRegistration, ConfirmTimeOut, CheckGuide,
-                 TrustGuide, ResumeOperation, TakeBackDrilled>;
+                 TrustGuide, ResumeOperation, TakeBackDrilled, MarkerOut>;
 
 // "exclude stroke", ...: what the journal calls it.
 [[nodiscard]] std::string_view name_of(const Command& command);

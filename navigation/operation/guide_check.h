@@ -18,8 +18,15 @@
 
 namespace arthronaut::operation {
 
-// Why a touch or a check that was asked for was not taken.
-enum class TouchRefusal { None, NoSource, TipUnknown, TipMoves, NoControlPoint };
+// Why a touch, a check or the word that the marker is out was not taken.
+enum class TouchRefusal {
+  None,
+  NoSource,
+  TipUnknown,
+  TipMoves,
+  NoControlPoint,
+  MarkerIsSeen,  // said to be out
+};
 [[nodiscard]] TouchRefusal refusal_of(SteadyTip::Reason reason);
 
 enum class GuideStanding {

@@ -11,6 +11,9 @@ constexpr std::int64_t kGuideAway_ns = 2'000'000'000;
 // A control point that was touched so lately need not be touched again before drilling.
 constexpr std::int64_t kControlHolds_ns = 300'000'000'000;
 
+// A marker that blur or a tool hides for a moment comes back within this time.
+constexpr std::int64_t kStillThere_ns = 500'000'000;
+
 }  // namespace
 
 void InView::on_source(bool may_have_moved) {
@@ -30,6 +33,10 @@ bool InView::add(std::int64_t now_ns, bool world_is_seen, bool guide_is_seen) {
 
 bool InView::control_point_is_old(std::int64_t now_ns) const {
   return guide_was_seen_ && now_ns - control_held_ns_ > kControlHolds_ns;
+}
+
+bool InView::marker_is_seen(std::int64_t now_ns) const {
+  return world_ns_ && now_ns - *world_ns_ <= kStillThere_ns;
 }
 
 bool InView::guided_lately(std::int64_t now_ns) const {

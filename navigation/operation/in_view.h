@@ -39,6 +39,8 @@ class InView {
   [[nodiscard]] bool control_point_was_set_before(std::int64_t time_ns) const {
     return control_set_ns_ < time_ns;
   }
+  // In the newest pictures: a marker that one of them lost is still there.
+  [[nodiscard]] bool marker_is_seen(std::int64_t now_ns) const;
   // By the registration in force, so lately that the guide is still in the hand.
   [[nodiscard]] bool guided_lately(std::int64_t now_ns) const;
 

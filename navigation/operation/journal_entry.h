@@ -19,6 +19,7 @@ enum class JournalKind {
   CommandGiven,   // text: to_text(Command)
   OutcomeTaken,   // text: its request count
   LookTaken,      // text: index of the frame whose picture was seen in the other medium
+  LookFailed,     // text: the same, then ": " and why
   BoneMoved,      // in the picture, against its marker; text: see seen_drift.h
   BoneLooks,      // in the picture; text: see seen_drift.h. A doubt ends without it, too: by the control
                   // point, and with its registration

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "navigation/camera/frame.h"
@@ -26,13 +27,15 @@ struct MediumLook {
   std::uint64_t source_number = 0;
   pipeline::PictureObservation view;
   std::vector<markers::MarkerObservation> in_other_medium;  // in the order of view.markers
+  std::string failure;                                      // why it could not be seen again; empty: it was
 };
 using MediumLookPtr = std::shared_ptr<const MediumLook>;
 
 // Thread-free. Keeps its search between the looks of a source; what it finds depends on the picture alone.
 class MediumLookWork {
  public:
-  // `picture` is that of the request's view. Throws InvalidInput when its size is not the camera's.
+  // `picture` is that of the request's view. Never throws: what goes wrong is the look's failure, and the
+  // next one begins anew.
   [[nodiscard]] MediumLookPtr look(MediumLookRequest request, const camera::Frame& picture);
 
  private:

@@ -35,7 +35,7 @@ class MediumWatch {
   [[nodiscard]] bool awaits(const MediumLook& look) const {
     return look.source_number == source_number_ && awaited_ == look.view.frame_index;
   }
-  // Precondition: it is awaited.
+  // Precondition: it is awaited. One that failed has seen nothing, and another one is asked for as after any.
   void take(const MediumLook& look);
 
   // Of a source that runs or ran last; unknown before the first.

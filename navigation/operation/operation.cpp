@@ -58,6 +58,8 @@ void Operation::start_source(const SourceSetup& source) {
   p.drilling.on_source(p.plan);
   p.touch.refusal = TouchRefusal::None;
   p.in_view.on_source(may_have_moved);
+  p.grades.on_other_numbers();
+  p.marker_is_out = false;
   p.pipeline->set_plan(p.plan ? std::optional(p.plan->tunnel) : std::nullopt, p.plan ? p.plan->length_mm : 0);
   // What differed from the plan of before the crash was offered by nobody who saw it: it is still asked for.
   if (p.offered && !p.resumed_plan_waits)
@@ -181,6 +183,8 @@ OperationStatePtr Operation::state() {
   state->verification = p.verification();
   state->time_out = p.time_out();
   state->guided_lately = p.guided_lately();
+  state->grades = p.frame.guidance.is_valid() ? p.grades.grades() : GuidanceGrades();
+  state->marker_is_out = p.marker_is_out;
   state->resumed = p.resumed;
   state->control_point_due = p.control_point_due();
   state->places_in_doubt = p.places_in_doubt();

@@ -14,6 +14,7 @@
 //   what                              | S O E P R C M W L
 //   numbers of the newest picture     | x x x x x . x x x
 //   guidance a moment ago             | x x x x x . x . x
+//   how good the numbers are          | x x x x x . x x x
 //   what was seen of guide and drill  | x x . x x . x x .
 //   what the depth stop reads         | . . . x . . x . .
 //   the word that it is drilled       | x x . x . . x . .
@@ -32,6 +33,8 @@
 //
 // The probe draws again by itself where the source that begins says so and no registration stands. Another
 // registration is verified at once where the touches lie on the bone by it, too.
+// The word that the marker is out stands without a registration: it ends with S, O and M, where a live source
+// shows the marker, and where the tunnel is said not to be drilled (marker_out_test.cpp).
 // Of what a registration is of (another mesh, camera, probe, kind of source: as O), see
 // registration_ledger.h.
 #pragma once
@@ -45,6 +48,7 @@
 #include "navigation/operation/bone_watch.h"
 #include "navigation/operation/confirmed_time_out.h"
 #include "navigation/operation/drilling.h"
+#include "navigation/operation/guidance_grades.h"
 #include "navigation/operation/guide_check.h"
 #include "navigation/operation/in_view.h"
 #include "navigation/operation/medium_watch.h"
@@ -108,6 +112,7 @@ struct Operation::Parts {
   [[nodiscard]] int places_in_doubt() const;
   [[nodiscard]] Verification verification() const;
   [[nodiscard]] TimeOut time_out() const { return confirmed.standing(source.get(), ledger.now(), plan); }
+  [[nodiscard]] bool is_live() const { return has_source && source->kind == sources::SourceKind::Live; }
   void hide_guidance(guidance::GuidanceState reason);
   void end_frame();
   [[nodiscard]] RegistrationStatePtr registration_state();
@@ -148,12 +153,15 @@ struct Operation::Parts {
     clear_strokes();
     drilling.on_marker_placed_anew();
     ledger.marker_placed_anew();
+    marker_is_out = false;
   }
+  void apply(const MarkerOut&);
   void apply(const ReadDepthStop& stop) { drilling.read_depth_stop(stop.depth_mm); }
   void apply(const TunnelDrilled&) {
     if (auto entry = drilling.say_drilled(plan, setup.surface.get())) note(std::move(*entry));
   }
   void apply(const TakeBackDrilled&) {
+    marker_is_out = false;  // it is wanted again
     if (auto entry = drilling.take_back(plan.has_value())) note(std::move(*entry));
   }
   void apply(const GiveRegistration& give);
@@ -181,18 +189,20 @@ struct Operation::Parts {
   std::shared_ptr<const registration::OnlineResult> online;
   StrokeFit fit;
   StrokeBias stroke_bias;
+  bool marker_is_out = false;  // by the surgeon's word, and no live source has shown it since
 
   std::optional<PlannedTunnel> plan;
   std::optional<OfferPlan> offered;
   bool resumed_plan_waits = false;  // what is offered is the case's, asked for even when a source starts
   std::optional<std::size_t> skipped_entry;  // of the ledger: it guided without a touch
-  struct Asked {                             // the last touch, or check of the guide
+  struct Asked {  // the last touch, check of the guide, or word that the marker is out
     TouchRefusal refusal = TouchRefusal::None;
     bool is_of_guide = false;
     std::int64_t time_ns = 0;
   } touch;
   GuideCheck guide_check;
   InView in_view;
+  HeldGrades grades;
   MediumWatch medium;
   BoneWatch bone_watch;
   Drilling drilling;

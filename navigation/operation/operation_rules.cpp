@@ -44,6 +44,7 @@ void Operation::Parts::follow_ledger() {
     hide_guidance(guidance::GuidanceState::Stale);
     drilling.on_registration();
     in_view.on_registration();
+    grades.on_other_numbers();
     if (in_force.registration != nullptr) {
       const RegistrationOrigin origin = (*ledger.entries())[*ledger.entry_in_force()].origin;
       note_in_force(origin == RegistrationOrigin::Given || origin == RegistrationOrigin::Resumed);
@@ -89,6 +90,7 @@ void Operation::Parts::set_plan(const std::optional<PlannedTunnel>& next, bool m
   }
   // What was seen, read and drilled was of another plan; the numbers of the last picture are too.
   drilling.on_plan(plan);
+  grades.on_other_numbers();
   hide_guidance(guidance::GuidanceState::Stale);
   if (pipeline != nullptr)
     pipeline->set_plan(plan ? std::optional(plan->tunnel) : std::nullopt, plan ? plan->length_mm : 0);
@@ -139,7 +141,11 @@ void Operation::Parts::check_medium() {
 
 void Operation::Parts::take_look(const MediumLookPtr& look) {
   if (look == nullptr || !medium.awaits(*look)) return;
-  note(JournalKind::LookTaken, std::to_string(look->view.frame_index));
+  const std::string frame_index = std::to_string(look->view.frame_index);
+  if (look->failure.empty())
+    note(JournalKind::LookTaken, frame_index);
+  else
+    note(JournalKind::LookFailed, frame_index + ": " + look->failure);
   const pipeline::MediumFit before = medium.verdict().fit;
   medium.take(*look);
   follow_medium(before);
@@ -176,6 +182,11 @@ void Operation::Parts::end_frame() {
 
 void Operation::Parts::watch_guidance() {
   if (in_view.add(frame.timestamp_ns, frame.world_is_seen(), guide_in_view().has_value())) changed = true;
+  if (marker_is_out && is_live() && frame.world_is_seen()) {
+    marker_is_out = false;
+    note(JournalKind::Note, "the world marker is seen again: it is not out");
+  }
+  grades.add(frame.guidance, frame.timestamp_ns);
   drilling.add(frame.guidance, frame.timestamp_ns);
   if (!frame.guidance.is_valid()) return;
   in_view.guided(frame.timestamp_ns);
@@ -243,6 +254,17 @@ void Operation::Parts::take_touch(bool is_control_point) {
   if (ledger.touches().control_point_lies_off()) return;
   in_view.control_point_held(frame.timestamp_ns);
   if (is_set && bone_watch.control_point_ends_doubt()) bone_watch.look_anew();  // it lies where it lay
+}
+
+// In a recording and in a simulation no hand takes out what their pictures show.
+void Operation::Parts::apply(const MarkerOut&) {
+  touch = {TouchRefusal::None, false, frame.timestamp_ns};
+  if (is_live() && in_view.marker_is_seen(frame.timestamp_ns)) {
+    touch.refusal = TouchRefusal::MarkerIsSeen;
+    return;
+  }
+  apply(MarkerPlacedAnew{});
+  marker_is_out = true;
 }
 
 void Operation::Parts::apply(const OfferPlan& offer) {

@@ -289,6 +289,11 @@ std::uint64_t digest_of_decisions(const OperationState& state) {
   }
   // Where nothing was, nothing: records of before there was this stay as they were.
   if (state.drilled.was_taken_back) digest.add(state.drilled.was_taken_back);
+  if (state.marker_is_out) digest.add(state.marker_is_out);
+  if (state.grades.offset != Grade::None) {
+    digest.add(state.grades.offset);
+    digest.add(state.grades.angle);
+  }
   digest.add(state.next_action);
   return digest.value();
 }

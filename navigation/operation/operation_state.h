@@ -13,6 +13,7 @@
 #include "navigation/guidance/drill_evidence.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/operation/command.h"
+#include "navigation/operation/guidance_grades.h"
 #include "navigation/operation/guide_check.h"
 #include "navigation/operation/registration_ledger.h"
 #include "navigation/operation/stroke_book.h"
@@ -133,11 +134,14 @@ struct OperationState {
   Verification verification = Verification::NotYet;
   TimeOut time_out = TimeOut::NotAsked;
   bool guided_lately = false;  // it guides, or did so a moment ago: the guide is in the surgeon's hand
+  GuidanceGrades grades;       // of the newest picture's numbers, without a flicker
+  bool marker_is_out = false;  // by the surgeon's word, as long as no live source shows it
   ControlPointDue control_point_due = ControlPointDue::None;
-  int places_in_doubt = 0;                          // still to be touched, with CannotCheckLooks
-  TouchRefusal touch_refusal = TouchRefusal::None;  // of the last touch, or check of the guide, asked for
-  bool touch_is_of_guide = false;                   // a check of it
-  std::int64_t touch_asked_ns = 0;                  // in the source's time
+  int places_in_doubt = 0;  // still to be touched, with CannotCheckLooks
+  // Of the last touch, check of the guide or word that the marker is out.
+  TouchRefusal touch_refusal = TouchRefusal::None;
+  bool touch_is_of_guide = false;   // a check of it
+  std::int64_t touch_asked_ns = 0;  // in the source's time
   GuideCheckState guide_check;
   std::optional<PlannedTunnel> plan;               // in force
   bool plan_was_edited = false;                    // another one is offered and not taken over

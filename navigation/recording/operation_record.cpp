@@ -45,6 +45,8 @@ std::string_view kind_of(JournalKind kind) {
       return kOutcomeEvent;
     case JournalKind::LookTaken:
       return kLookEvent;
+    case JournalKind::LookFailed:
+      return kLookFailedEvent;
     case JournalKind::BoneMoved:
       return kBoneMovedEvent;
     case JournalKind::BoneLooks:

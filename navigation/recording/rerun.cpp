@@ -171,6 +171,8 @@ void Rerun::play(const SessionEvent& event) {
   } else if (event.kind == kLookEvent) {
     const auto look = looks_.find(number_of(event));
     if (look != looks_.end()) operation_.take_look(look->second);
+  } else if (event.kind == kLookFailedEvent) {
+    play_failed_look(event);
   } else if (event.kind == kBoneMovedEvent) {
     operation_.tell_bone_moved(
         operation::seen_drift_from_text(event.text, database_file(session_->folder()).string()));
@@ -189,6 +191,18 @@ void Rerun::play(const SessionEvent& event) {
     play_registration(event);
   }
   pass_on();
+}
+
+// It failed there, whatever is seen here.
+void Rerun::play_failed_look(const SessionEvent& event) {
+  SessionEvent of_frame = event;
+  of_frame.text.resize(std::min(event.text.find(':'), event.text.size()));
+  const auto look = looks_.find(number_of(of_frame));
+  if (look == looks_.end()) return;
+  auto failed = std::make_shared<operation::MediumLook>(*look->second);
+  failed->in_other_medium.clear();
+  failed->failure = event.text;
+  operation_.take_look(failed);
 }
 
 // Which of the registrations is in force says the record itself, where they are taken from it.

@@ -46,6 +46,7 @@ class Rerun {
   [[nodiscard]] std::int64_t number_of(const SessionEvent& event) const;
   void play_command(const operation::Command& command);
   void play_registration(const SessionEvent& event);
+  void play_failed_look(const SessionEvent& event);
   void pass_on();
 
   Registrations registrations_;

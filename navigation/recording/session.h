@@ -76,7 +76,9 @@ inline constexpr std::string_view kGivenRegistrationEvent =
 inline constexpr std::string_view kCommandEvent = "command";   // text: operation::Command as JSON
 inline constexpr std::string_view kOutcomeEvent = "outcome";   // text: request count of what was taken in
 inline constexpr std::string_view kLookEvent = "second look";  // text: index of the frame that was seen again
-inline constexpr std::string_view kAlarmEvent = "alarm";       // text: what it says; empty: it is over
+inline constexpr std::string_view kLookFailedEvent =
+    "second look failed";                                            // text: the same, then ": " and why
+inline constexpr std::string_view kAlarmEvent = "alarm";             // text: what it says; empty: it is over
 inline constexpr std::string_view kVoidEvent = "registration void";  // text: why
 inline constexpr std::string_view kVerifiedEvent = "registration verified";
 inline constexpr std::string_view kVerificationLostEvent = "verification lost";        // text: why

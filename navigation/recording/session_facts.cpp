@@ -6,6 +6,7 @@
 
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
+#include "navigation/recording/counting_registration.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_database.h"
 #include "navigation/recording/session_files.h"
@@ -97,34 +98,16 @@ void read_record(const fs::path& folder, SessionFacts& facts) {
   Statement events = database.prepare(
       "SELECT timestamp_ns, kind, text FROM events WHERE kind NOT IN ('command', 'outcome', 'plan') ORDER BY "
       "id");
-  // What stands for a tunnel is what it was drilled by: once the marker is out, nothing is registered any
-  // more.
-  struct Trust {
-    std::string registration;  // its file
-    bool is_void = false, was_verified = false;
-  };
-  Trust now;
-  std::optional<Trust> drilled_by;
+  CountingRegistration registration;
   while (events.step()) {
     const SessionEvent event{events.integer(0), events.text(1), events.text(2)};
     steps.follow(event);
+    registration.follow(event);
     if (event.kind == kAlarmEvent && !event.text.empty()) ++facts.alarm_count;
-    if (event.kind == kVerifiedEvent) now.was_verified = true;
-    if (event.kind == kVerificationLostEvent) now.was_verified = false;
-    if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent)
-      now = {event.text};  // what verified the one before says nothing of this one
-    if (event.kind == kVoidEvent) {
-      now.is_void = true;
-      now.was_verified = false;
-    }
-    if (event.kind == kDrilledEvent) drilled_by = now;
-    if (event.kind == kDrilledTakenBackEvent) drilled_by.reset();
   }
-  const Trust& counts = drilled_by ? *drilled_by : now;
-  facts.was_verified = counts.was_verified;
-  if (counts.registration != now.registration && !counts.registration.empty())
-    read_registration_file(folder / counts.registration, facts);
-  if (counts.is_void && facts.registration_is_reliable) facts.registration_is_reliable = false;
+  facts.was_verified = registration.counts().was_verified;
+  if (registration.is_of_before()) read_registration_file(folder / registration.counts().file, facts);
+  if (registration.counts().is_void && facts.registration_is_reliable) facts.registration_is_reliable = false;
   steps.fill(facts);
   facts.was_finished = database.prepare("SELECT finished FROM ending").step();
 }

@@ -31,6 +31,8 @@ std::string what_of(const JournalEntry& entry) {
     case JournalKind::OutcomeTaken:
     case JournalKind::LookTaken:
       return "";  // the journal has them all
+    case JournalKind::LookFailed:
+      return "the medium could not be looked at again";
     case JournalKind::BoneMoved:
       return "bone moved in the picture, mm";
     case JournalKind::BoneLooks:

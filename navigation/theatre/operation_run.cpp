@@ -238,8 +238,8 @@ void OperationRun::apply(const operation::Command& command) {
   const bool had_resumed = resume != nullptr && operation_.state()->resumed != nullptr;
   operation_.apply(command);
   if (is_of_this_moment(command)) refusal_.words.clear();
-  if (is_touch(command) && operation_.state()->touch_refusal != operation::TouchRefusal::None)
-    ++refusal_.count;
+  const bool may_be_refused = is_touch(command) || std::holds_alternative<operation::MarkerOut>(command);
+  if (may_be_refused && operation_.state()->touch_refusal != operation::TouchRefusal::None) ++refusal_.count;
   if (resume != nullptr && !had_resumed && operation_.state()->resumed != nullptr)
     continues_ = resume->session;
   pass_on();

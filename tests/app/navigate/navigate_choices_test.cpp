@@ -86,5 +86,20 @@ TEST(NavigateChoices, WhatWasVerifiedIsRememberedWithTheTunnel) {
   EXPECT_TRUE(choices.verified.empty()) << "the operation begins afresh";
 }
 
+// The operation says whether the marker is out: seen again it is not.
+TEST(NavigateChoices, AMarkerIsOutAsLongAsTheOperationSaysSo) {
+  NavigateChoices choices;
+  operation::SourceSetup source;
+  source.kind = sources::SourceKind::Live;
+  operation::OperationState state;
+  state.source = std::make_shared<const operation::SourceSetup>(source);
+  state.marker_is_out = true;
+  choices.follow(state);
+  EXPECT_TRUE(choices.markers_out.contains({source.kind, state.bone}));
+  state.marker_is_out = false;
+  choices.follow(state);
+  EXPECT_TRUE(choices.markers_out.empty());
+}
+
 }  // namespace
 }  // namespace arthronaut::navigate

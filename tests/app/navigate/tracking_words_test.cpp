@@ -300,6 +300,8 @@ TEST(RefusalNotice, SaysWhatWasNotDoneAndWhy) {
   state.has_source = true;
   state.touch_refusal = operation::TouchRefusal::TipMoves;
   EXPECT_EQ(notice(kNow_s + 1), "no touch: the probe moves");
+  state.touch_refusal = operation::TouchRefusal::MarkerIsSeen;
+  EXPECT_EQ(notice(kNow_s + 1), "marker not out: it is still seen");
   EXPECT_EQ(notice(kNow_s + 9), "");
   // The newest reason is the one of now.
   live.refusal.words = "no touch: picture 0.6 s old";

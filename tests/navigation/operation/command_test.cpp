@@ -70,6 +70,7 @@ const std::vector<Command>& all_commands() {
                                              ReadDepthStop{1.0 / 3},
                                              TunnelDrilled{},
                                              TakeBackDrilled{},
+                                             MarkerOut{},
                                              given(),
                                              ConfirmTimeOut{true},
                                              CheckGuide{},

@@ -19,6 +19,7 @@ class MediumWatchTest : public ::testing::Test {
       frame.frame_index = index_++;
       frame.timestamp_ns = frame.frame_index * 1'000'000'000 / 60;
       frame.intrinsics_are_known = true;
+      frame.camera = camera::CameraModel(options_.calibration, 0, options_.refractive_index);
       for (const auto& declared : markers::declared_markers(options_.tools))
         frame.markers.push_back(test::lost(declared.id, markers::MarkerState::Covered));
       medium_.look(frame, options_);
@@ -64,6 +65,43 @@ TEST_F(MediumWatchTest, WithItsSourceALookIsAwaitedNoMore) {
   medium_.on_source_end();
   EXPECT_FALSE(medium_.awaits(look_of(*second)));
   EXPECT_FALSE(medium_.take_request());
+}
+
+// One that could not be taken is not waited for, and asked for again as after any other: not in every
+// picture.
+TEST_F(MediumWatchTest, AfterALookThatFailedAnotherOneIsAskedFor) {
+  show(2);
+  const auto first = medium_.take_request();
+  ASSERT_TRUE(first);
+  MediumLook failed = look_of(*first);
+  failed.in_other_medium.clear();
+  failed.failure = "no memory";
+  failed.view.timestamp_ns = index_ * 1'000'000'000 / 60;  // it was asked for just now
+  ASSERT_TRUE(medium_.awaits(failed));
+  medium_.take(failed);
+  EXPECT_EQ(medium_.verdict().fit, pipeline::MediumFit::Unknown);
+  show(0.3);
+  EXPECT_FALSE(medium_.take_request());
+  show(0.4);
+  EXPECT_TRUE(medium_.take_request());
+}
+
+// What is thrown while a picture is seen again ends nobody's thread: it is what came of that look.
+TEST_F(MediumWatchTest, ALookThatThrowsIsAFailureAndTheNextOneBeginsAnew) {
+  show(2);
+  const auto request = medium_.take_request();
+  ASSERT_TRUE(request);
+  MediumLookWork work;
+  camera::Frame small = test::plain_frame(request->view.frame_index, 90);
+  small.width = 80;
+  small.bgr.resize(static_cast<std::size_t>(3 * small.width * small.height));
+  const MediumLookPtr failed = work.look(*request, small);
+  EXPECT_FALSE(failed->failure.empty());
+  EXPECT_TRUE(failed->in_other_medium.empty());
+  EXPECT_TRUE(medium_.awaits(*failed));
+  const MediumLookPtr seen = work.look(*request, test::plain_frame(request->view.frame_index, 90));
+  EXPECT_EQ(seen->failure, "");
+  EXPECT_EQ(seen->in_other_medium.size(), request->declared.size());
 }
 
 TEST_F(MediumWatchTest, KnowsNothingBeforeTheFirstSource) {

@@ -71,6 +71,7 @@ const std::vector<std::pair<std::string, Holds>>& rows() {
   static const std::vector<std::pair<std::string, Holds>> kRows{
       {"numbers of the newest picture", [](const auto& s) { return s.frame.guidance.is_valid(); }},
       {"guidance a moment ago", [](const auto& s) { return s.guided_lately; }},
+      {"how good the numbers are", [](const auto& s) { return s.grades.offset != Grade::None; }},
       {"what was seen of guide and drill", [](const auto& s) { return s.drilled.has_evidence; }},
       {"what the depth stop reads", [](const auto& s) { return s.depth_stop_mm.has_value(); }},
       {"the word that it is drilled",

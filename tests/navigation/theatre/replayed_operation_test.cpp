@@ -270,9 +270,16 @@ TEST_F(ReplayedOperation, TheSimulatorsPicturesGiveTheSameStates) {
 // asked for.
 class LateLooks : public MediumLookService {
  public:
-  explicit LateLooks(int frames_late) : frames_late_(frames_late) {}
+  explicit LateLooks(int frames_late, bool first_fails = false)
+      : frames_late_(frames_late), fails_(first_fails) {}
   void post(operation::MediumLookRequest request, const camera::FramePtr& picture) override {
     coming_ = work_.look(std::move(request), *picture);
+    if (std::exchange(fails_, false)) {
+      auto failed = std::make_shared<operation::MediumLook>(*coming_);
+      failed->in_other_medium.clear();
+      failed->failure = "no memory";
+      coming_ = failed;
+    }
     asked_for_ = 0;
   }
   [[nodiscard]] operation::MediumLookPtr latest() const override {
@@ -282,6 +289,7 @@ class LateLooks : public MediumLookService {
 
  private:
   int frames_late_;
+  bool fails_;
   operation::MediumLookWork work_;
   operation::MediumLookPtr coming_;
   mutable operation::MediumLookPtr there_;
@@ -289,7 +297,8 @@ class LateLooks : public MediumLookService {
 };
 
 // The wrong medium is found by second looks, whenever they come: run again from the record, every state is
-// the same, since the record says after which frame each was taken in.
+// the same, since the record says after which frame each was taken in; also that one failed, whatever is seen
+// when it runs again.
 TEST_F(ReplayedOperation, SecondLooksThatComeLateGiveTheSameStates) {
   constexpr int kFrames = 45;  // in which the latest look, too, is followed by another
   simulator::SimulationOptions options = simulator::phantom_options();
@@ -303,19 +312,24 @@ TEST_F(ReplayedOperation, SecondLooksThatComeLateGiveTheSameStates) {
     return std::make_unique<simulator::SimulatedOperation>(options, simulator::Phase::Scratch);
   };
   int session = 0;
-  for (const int frames_late : {0, 2, 5}) {
+  for (const auto& [frames_late, first_fails] :
+       {std::pair(0, false), std::pair(2, false), std::pair(5, false), std::pair(2, true)}) {
     {
-      OperationRun run(setup_, test::at_once(setup_), folders(), std::make_unique<LateLooks>(frames_late));
+      OperationRun run(setup_, test::at_once(setup_), folders(),
+                       std::make_unique<LateLooks>(frames_late, first_fails));
       run.start(source);
       run.keep_video(true);
       for (int i = 0; i < kFrames; ++i) ASSERT_TRUE(run.step().picture);
       run.end_source();
     }
     const std::string name = "session" + std::to_string(++session);
-    int looks = 0;
-    for (const recording::SessionEvent& event : recording::RecordedSession(folder_ / name).events())
+    int looks = 0, failed = 0;
+    for (const recording::SessionEvent& event : recording::RecordedSession(folder_ / name).events()) {
       looks += event.kind == recording::kLookEvent ? 1 : 0;
-    EXPECT_GT(looks, 1) << frames_late << " frames late";
+      failed += event.kind == recording::kLookFailedEvent ? 1 : 0;
+    }
+    EXPECT_GT(looks, first_fails ? 0 : 1) << frames_late << " frames late";
+    EXPECT_EQ(failed, first_fails ? 1 : 0);
     expect_replays(name, kFrames);
   }
 }

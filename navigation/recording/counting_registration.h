@@ -1,0 +1,31 @@
+// Which registration counts for a session, from its events in order. What stands for a tunnel is what it was
+// drilled by: once the marker is out, nothing is registered any more. Of a session in which nothing is
+// drilled it is the newest one.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "navigation/recording/session.h"
+
+namespace arthronaut::recording {
+
+class CountingRegistration {
+ public:
+  struct Trust {
+    std::string file;           // in the session's folder; empty: none was recorded
+    bool is_void = false;       // since it came into force
+    bool was_verified = false;  // by touches, and that was not lost
+  };
+
+  void follow(const SessionEvent& event);
+  [[nodiscard]] const Trust& counts() const { return drilled_by_ ? *drilled_by_ : newest_; }
+  // It is not the newest: registration.json holds another one.
+  [[nodiscard]] bool is_of_before() const { return counts().file != newest_.file && !counts().file.empty(); }
+
+ private:
+  Trust newest_;
+  std::optional<Trust> drilled_by_;
+};
+
+}  // namespace arthronaut::recording
