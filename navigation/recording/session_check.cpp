@@ -85,7 +85,8 @@ class Checker {
       const std::int64_t there = is_of_rows(of) ? end : size_of(file_of(folder_, of));
       if (there > end) add(of, end, there, kAdded);
     }
-    for (const char* const rows : {kFrameRows, kEventRows, kPictureRows})
+    const char* const frames = ends_.contains(kFrameRowsOfBefore) ? kFrameRowsOfBefore : kFrameRows;
+    for (const char* const rows : {frames, kEventRows, kPictureRows})
       if (database_ && !open_.contains(rows)) look_beyond_rows(rows);
     look_at_database_bytes();
     // Without its last lines the chain says nothing of a video that was copied at the session's end.
@@ -186,7 +187,9 @@ std::string CheckFinding::text() const {
   const std::size_t colon = of.find(':');
   std::string words = colon == std::string::npos ? of + ": " : of.substr(0, colon) + ": ";
   if (from == 0 && to == 0) return words + "is " + what;
-  const std::string unit = colon == std::string::npos ? "bytes" : of.substr(colon + 1);
+  // "session.sqlite:frames.2": frames.
+  const std::string unit =
+      colon == std::string::npos ? "bytes" : of.substr(colon + 1, of.find('.', colon) - colon - 1);
   return words + unit + " " + std::to_string(from) + " to " + std::to_string(to - 1) + " are " + what;
 }
 

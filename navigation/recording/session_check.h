@@ -16,7 +16,7 @@
 namespace arthronaut::recording {
 
 struct CheckFinding {
-  std::string of;                 // "video.mkv", "session.sqlite:frames", "chain.csv"
+  std::string of;                 // "video.mkv", "session.sqlite:frames.2", "chain.csv"
   std::int64_t from = 0, to = 0;  // bytes, or numbers of rows, [from, to); both 0: as a whole
   std::string what;               // "not what was recorded", "missing", "not in the chain", ...
 

@@ -27,12 +27,15 @@ struct NumberedTable {
 constexpr std::array kFrameTables = {
     NumberedTable{"frames", "frame", "1"},    NumberedTable{"markers", "frame", "1, 2"},
     NumberedTable{"bodies", "frame", "1, 2"}, NumberedTable{"guidance", "frame", "1"},
-    NumberedTable{"digests", "frame", "1"},   NumberedTable{"latency", "frame", "1"}};
+    NumberedTable{"digests", "frame", "1"},   NumberedTable{"latency", "frame", "1"},
+    NumberedTable{"outside", "frame", "1, 2"}};
+constexpr std::size_t kFrameTablesOfBefore = 6;
 constexpr std::array kEventTables = {NumberedTable{"events", "id", "1"}};
 constexpr std::array kPictureTables = {NumberedTable{"pictures", "picture", "1"}};
 
 std::span<const NumberedTable> tables_of(const std::string& of) {
   if (of == kFrameRows) return kFrameTables;
+  if (of == kFrameRowsOfBefore) return std::span(kFrameTables).first(kFrameTablesOfBefore);
   if (of == kEventRows) return kEventTables;
   return kPictureTables;
 }
@@ -46,7 +49,9 @@ void sync_file(const fs::path& file) {
 
 }  // namespace
 
-bool is_of_rows(const std::string& of) { return of == kFrameRows || of == kEventRows || of == kPictureRows; }
+bool is_of_rows(const std::string& of) {
+  return of == kFrameRows || of == kFrameRowsOfBefore || of == kEventRows || of == kPictureRows;
+}
 
 std::string sha256_of_rows(SessionDatabase& database, const std::string& of, std::int64_t from,
                            std::int64_t to) {

@@ -3,7 +3,7 @@
 //   session.json, camera.json, tools.json, registration_N.json, achieved*.json, curves.csv    whole files
 //   poses.csv, guidance.csv, the encoded video     as they grow, each stretch of bytes by itself
 //   a copied video, every copied still             at the end, 64 MiB a record
-//   session.sqlite:frames, :events, :pictures      rows of the database by their numbers, as they are read
+//   session.sqlite:frames.2, :events, :pictures    rows of the database by their numbers, as they are read
 //                                                  back: while it is recorded its bytes change all the time
 //   session.sqlite                                 its bytes, once it is sealed: what no row holds, too
 //   end                                            nothing: that all before it was said when the session was
@@ -22,7 +22,10 @@
 namespace arthronaut::recording {
 
 // Tables whose rows have the same number.
-inline constexpr const char* kFrameRows = "session.sqlite:frames";
+inline constexpr const char* kFrameRows = "session.sqlite:frames.2";
+// What records of before say, whose hashes leave out the poses of an outside tracker. The chain itself tells
+// the one from the other, so that nobody can make a newer record pass for an older one.
+inline constexpr const char* kFrameRowsOfBefore = "session.sqlite:frames";
 inline constexpr const char* kEventRows = "session.sqlite:events";
 inline constexpr const char* kPictureRows = "session.sqlite:pictures";
 [[nodiscard]] bool is_of_rows(const std::string& of);

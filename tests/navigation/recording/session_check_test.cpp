@@ -19,7 +19,9 @@
 #include <random>
 #include <thread>
 
+#include "navigation/recording/hash_chain.h"
 #include "navigation/recording/operation_record.h"
+#include "navigation/recording/session_hashes.h"
 #include "planning/geometry/error.h"
 #include "tests/navigation/recording/recorded_frames.h"
 #include "tests/temporary_folder.h"
@@ -173,15 +175,34 @@ TEST_F(SessionCheckTest, SaysWhichFramesAndEventsWereChanged) {
   const std::string whole = text_of(folder_ / "session.sqlite");
   for (const char* const change : {"UPDATE guidance SET angle_deg = angle_deg + 1 WHERE frame = 60",
                                    "UPDATE latency SET tracking_ms = 4 WHERE frame = 60",
-                                   "INSERT INTO bodies(frame, body_id) VALUES(60, 0)"}) {
+                                   "INSERT INTO bodies(frame, body_id) VALUES(60, 0)",
+                                   "INSERT INTO outside(frame, place, body_id) VALUES(60, 0, 0)"}) {
     SCOPED_TRACE(change);
     change_database(change);
-    expect_one_finding("session.sqlite:frames", 60, "session.sqlite: frames ");
+    expect_one_finding("session.sqlite:frames.2", 60, "session.sqlite: frames ");
     put_text(folder_ / "session.sqlite", whole);
   }
   EXPECT_TRUE(check_session(folder_).is_unbroken());
   change_database("UPDATE events SET text = 'another note' WHERE id = 2");
   expect_one_finding("session.sqlite:events", 2, "are not what was recorded");
+}
+
+// A record of before the outside tracker's poses were hashed: its chain says so, and is followed as it is.
+TEST_F(SessionCheckTest, FollowsAChainOfBefore) {
+  record(false);
+  const ReadChain newer = read_chain(folder_);
+  fs::remove(folder_ / "chain.csv");
+  SessionDatabase database = SessionDatabase::open(folder_ / "session.sqlite");
+  HashChain chain(folder_);
+  for (const ChainRecord& line : newer.records) {
+    const bool is_of_frames = line.of == kFrameRows;
+    const std::string of = is_of_frames ? kFrameRowsOfBefore : line.of;
+    chain.append(of, line.from, line.to,
+                 is_of_frames ? sha256_of_rows(database, of, line.from, line.to) : line.sha256);
+  }
+  EXPECT_TRUE(check_session(folder_).is_unbroken()) << check_words(check_session(folder_));
+  change_database("UPDATE guidance SET angle_deg = angle_deg + 1 WHERE frame = 60");
+  expect_one_finding("session.sqlite:frames", 60, "session.sqlite: frames ");
 }
 
 // Bytes that no number is read from, too: beside the rows of a page, in its header, in a table that is empty.
