@@ -292,7 +292,7 @@ void navigate(Context& context, const NavigateArguments& arguments,
   context.say("session: " + session.folder().string());
   std::vector<std::string> reasons = std::move(doubts);
   reasons.insert(reasons.end(), summary.reasons.begin(), summary.reasons.end());
-  if (!summary.record_trouble.empty()) reasons.push_back("the record ended early: " + summary.record_trouble);
+  for (std::string& reason : record_reasons(summary)) reasons.push_back(std::move(reason));
   if (!reasons.empty()) context.say_unreliable("the navigation", reasons);
 }
 

@@ -43,4 +43,12 @@ void say_statistics(const Context& context, const pipeline::ViewStatistics& stat
   }
 }
 
+std::vector<std::string> record_reasons(const theatre::NavigationSummary& summary) {
+  std::vector<std::string> reasons;
+  if (!summary.record_trouble.empty()) reasons.push_back("the record ended early: " + summary.record_trouble);
+  if (!summary.video_trouble.empty())
+    reasons.push_back("the video is not kept to its end: " + summary.video_trouble);
+  return reasons;
+}
+
 }  // namespace arthronaut::command_line

@@ -8,6 +8,7 @@
 
 #include "app/command_line/command.h"
 #include "navigation/pipeline/track_video.h"
+#include "navigation/theatre/navigate_source.h"
 #include "planning/files/format.h"
 
 namespace arthronaut::command_line {
@@ -16,6 +17,9 @@ namespace arthronaut::command_line {
 // what was seen by it.
 [[nodiscard]] std::vector<std::string> camera_doubts(const std::filesystem::path& camera_file);
 void say_statistics(const Context& context, const pipeline::ViewStatistics& statistics);
+
+// Why what was recorded is not all there was to record; empty where it is.
+[[nodiscard]] std::vector<std::string> record_reasons(const theatre::NavigationSummary& summary);
 
 using files::format;
 

@@ -35,8 +35,8 @@ std::string range_text(const theatre::StageLatency& stage) {
 std::string record_notice(const theatre::LiveState& live, bool wants_video) {
   if (live.phase != theatre::LiveState::Phase::Running) return "";
   if (!live.record_trouble.empty()) return "Nothing is recorded: " + record_trouble_of(live);
-  if (wants_video && !live.keeps_video && !live.session_folder.empty())
-    return "The video is not recorded any more, poses and decisions are: the disk is nearly full";
+  if (wants_video && !live.video_trouble.empty())
+    return "The video is not recorded any more, poses and decisions are: " + live.video_trouble;
   return "";
 }
 

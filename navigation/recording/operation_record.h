@@ -1,6 +1,6 @@
 // The journal of an operation in a session, from its first frame, whether or not video is kept: commands,
 // outcomes of the registration, frames, what guided and why not. A disk that fails ends the record, never the
-// operation.
+// operation; a video that fails ends alone.
 //
 // Thread-free; the recorder behind it writes on a thread of its own and commits twice a second.
 #pragma once
@@ -44,6 +44,7 @@ class OperationRecord {
   // See SessionRecorder.
   void never_wait() { recorder_->never_wait(); }
   [[nodiscard]] bool is_stuck() const { return recorder_->is_stuck(); }
+  [[nodiscard]] std::string video_trouble() const { return recorder_->video_trouble(); }
   // Throws IoError. The strokes are those that count.
   void finish(const strokes::Curves& strokes);
 

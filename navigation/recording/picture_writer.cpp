@@ -46,6 +46,19 @@ class VideoParts {
     copy_.reset();
     encoder_.reset();
   }
+  // After a failure: what the file holds is all that it will hold.
+  void leave_part() {
+    const bool had_part = copy_ != nullptr || encoder_;
+    try {
+      if (copy_ != nullptr) copy_->finish();
+      if (encoder_) encoder_->finish();
+    } catch (const std::runtime_error&) {
+      // As it was to be expected: the first failure is the one that is told.
+    }
+    copy_.reset();
+    encoder_.reset();
+    if (had_part && news_.ended) news_.ended(part_);
+  }
   // Packets that came before the next picture are not wanted.
   void forget_what_came() { may_reach_back_ = false; }
 
@@ -167,6 +180,7 @@ struct PictureWriter::State {
       parts.end_part();
     } catch (...) {
       error = std::current_exception();
+      parts.leave_part();  // before anybody waits for this thread
       failed = true;
       queue.close();
       while (queue.pop()) {

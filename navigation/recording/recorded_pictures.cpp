@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "navigation/recording/cut_short.h"
 #include "navigation/recording/kept_pictures.h"
 #include "navigation/sources/source_files.h"
 #include "navigation/sources/still_images.h"
@@ -46,12 +47,12 @@ sources::OnTheWay renamed(const sources::OnTheWay& on_the_way, const Rename& ren
 }  // namespace
 
 struct RecordedPictures::State {
-  // False: a crash has left the part behind before it held anything.
+  // False: a crash or a full disk has left the part behind before it held anything.
   bool open_if_begun(std::size_t wanted) {
     try {
       open(wanted);
     } catch (const InvalidInput&) {
-      if (was_finished) throw;
+      if (!is_cut_short) throw;
       return false;
     }
     return true;
@@ -132,7 +133,7 @@ struct RecordedPictures::State {
   std::filesystem::path folder;
   std::vector<VideoPart> parts;       // empty: the source's own video
   std::vector<KeptPicture> pictures;  // by rising frames
-  bool was_finished = true;
+  bool is_cut_short = false;
   std::size_t part = 0;
   // Of the part in hand, or the source's own. `before`: the same file, at what lies before; null: nobody went
   // back.
@@ -147,7 +148,7 @@ RecordedPictures::RecordedPictures(const SessionOverview& session) : state_(std:
   s.folder = session.folder;
   s.parts = parts_of(session.header);
   s.pictures = session.pictures;
-  s.was_finished = session.was_finished;
+  s.is_cut_short = !cut_short_in_words(session.was_finished, session.events).empty();
   if (!s.parts.empty()) {
     s.open(0);
     return;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "navigation/recording/cut_short.h"
 #include "navigation/recording/kept_pictures.h"
 #include "navigation/recording/session.h"
 #include "planning/geometry/error.h"
@@ -65,7 +66,7 @@ class RecordedVideo final : public sources::FrameSource {
   explicit RecordedVideo(const RecordedSession& session)
       : folder_(session.folder()),
         parts_(parts_of(session.header())),
-        may_break_off_(!session.was_finished()),
+        may_break_off_(!cut_short_in_words(session.was_finished(), session.events()).empty()),
         pictures_(session.pictures()),
         frames_(session) {
     open(0);
@@ -105,7 +106,7 @@ class RecordedVideo final : public sources::FrameSource {
       frame_of_packet_[picture.packet] = picture.frame;
   }
 
-  // A crash may have left a part behind that was announced and holds nothing yet.
+  // A crash or a full disk may have left a part behind that was announced and holds nothing yet.
   bool open_next() {
     if (part_ + 1 == parts_.size()) return false;
     try {
@@ -117,7 +118,7 @@ class RecordedVideo final : public sources::FrameSource {
     return true;
   }
 
-  // A crash may cut our own video off in the middle of a picture: what is before it is what there is.
+  // They may cut our own video off in the middle of a picture: what is before it is what there is.
   camera::FramePtr next_picture() {
     if (!may_break_off_) return video_->next();
     try {

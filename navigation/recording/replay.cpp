@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "navigation/pipeline/prefetched_source.h"
+#include "navigation/recording/cut_short.h"
 #include "navigation/recording/rerun.h"
 #include "navigation/recording/session_overview.h"
 #include "planning/cases/case.h"
@@ -123,7 +124,13 @@ class Pictures {
  public:
   explicit Pictures(const RecordedSession& session) {
     if (session.video().empty()) return;
-    video_ = open_recorded_video(session);
+    try {
+      video_ = open_recorded_video(session);
+    } catch (const InvalidInput&) {
+      // The record itself says that the video ended early: before its first picture, as it seems.
+      if (cut_short_in_words(session.was_finished(), session.events()).empty()) throw;
+      return;
+    }
     prefetched_ = std::make_unique<pipeline::PrefetchedSource>(*video_);
     next_ = prefetched_->next();
   }

@@ -117,11 +117,12 @@ struct DiskLimits {
 // minute of frames at 60 a second); a disk that hangs for longer makes a call wait, or ends the record, as
 // never_wait() says; the writer commits at least twice a second. Pictures go through a queue and a thread of
 // their own. An error of the disk reaches the next call, or finish(), as IoError; such a session is never
-// finished, and where the video alone could not be written it says so (kVideoStoppedEvent).
+// finished. Where the video alone cannot be written the video ends, and nothing else: video_trouble() and the
+// session say why (kVideoStoppedEvent), and no call throws.
 //
-// Free space is looked at with every commit. When it runs short the video ends (kVideoStoppedEvent; pictures
-// are then left out and counted), and before the disk is full the whole record: what was made is committed,
-// and the next call says so as IoError. finish() then still completes the session.
+// Free space is looked at with every commit. When it runs short the video ends likewise, and before the disk
+// is full the whole record: what was made is committed, and the next call says so as IoError. finish() then
+// still completes the session. Pictures that come after the end of the video are left out and counted.
 //
 // Threads: one thread at a time calls the recorder. States: writing -> finished.
 class SessionRecorder {
@@ -134,7 +135,7 @@ class SessionRecorder {
   SessionRecorder& operator=(const SessionRecorder&) = delete;
 
   // Keeps the video of a file source: copies it (or every still of a printf pattern) as it is. Waits for the
-  // disk.
+  // disk; where it takes no copy that is video_trouble(), and what was said of the video before stands.
   void copy_video(const std::filesystem::path& video_or_pattern);
   // Keeps only where the video is.
   void refer_to_video(const std::filesystem::path& video_or_pattern);
@@ -152,8 +153,10 @@ class SessionRecorder {
   // The same for a live source: never waits; false when the encoder cannot keep up and the picture is left
   // out. How many were left out is an event of the session.
   bool try_append_picture(const camera::FramePtr& frame);
-  // Whether pictures are not taken any more: the disk is nearly full, or they could not be written.
+  // Whether pictures are not taken any more, and why: the disk is nearly full, or they could not be written.
+  // Empty: they are.
   [[nodiscard]] bool has_stopped_video() const;
+  [[nodiscard]] std::string video_trouble() const;
   // Of what comes between the last picture and the next one nothing is kept, also where a stream is kept as
   // it came.
   void interrupt_pictures();

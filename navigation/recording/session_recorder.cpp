@@ -14,6 +14,7 @@
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/recording/video_files.h"
+#include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
@@ -66,29 +67,37 @@ struct SessionRecorder::State {
   // In the writer's thread. False when nothing more may be written.
   bool watch_disk(RecordWriter& writer) {
     const std::uintmax_t free = limits.free_bytes(folder);
-    if (free < limits.video_stops_below_bytes && !video_stopped.exchange(true))
-      writer.write_event(kVideoStoppedEvent, "only " + size_text(free) + " are free on the disk");
+    const std::string few = "only " + size_text(free) + " are free on the disk";
+    if (free < limits.video_stops_below_bytes && stop_video(few)) writer.write_event(kVideoStoppedEvent, few);
     if (free >= limits.all_stops_below_bytes) return true;
-    writer.write_event(kRecordingStoppedEvent, "only " + size_text(free) + " are free on the disk");
-    error = std::make_exception_ptr(IoError(folder, "recording stopped: only " + size_text(free) +
-                                                        " are free on the disk; what was recorded is kept"));
+    writer.write_event(kRecordingStoppedEvent, few);
+    error =
+        std::make_exception_ptr(IoError(folder, "recording stopped: " + few + "; what was recorded is kept"));
     out_of_space = true;
     queue.close();
     return false;
   }
 
-  // What the pictures' thread could not write is in the record, too, as far as that can still be written:
-  // whoever reads it would take the rest for all there was.
+  // Of the video alone, in any thread. False when it had stopped before: the first reason counts.
+  bool stop_video(const std::string& why) {
+    const std::lock_guard lock(trouble_mutex);
+    if (video_stopped) return false;
+    video_trouble = why;
+    video_stopped = true;
+    return true;
+  }
+
+  // A video that cannot be written ends, and nothing else does: that is in the record, since whoever reads it
+  // would take the rest for all there was.
   template <typename What>
-  auto with_pictures(const What& what) {
+  void with_video(const What& what) {
     try {
-      return what(picture_writer());
-    } catch (const IoError& failure) {
-      video_failed = true;
-      if (!video_stopped.exchange(true))
-        (void)queue.push(
-            SessionEvent{last_timestamp_ns, std::string(kVideoStoppedEvent), failure.what(), last_frame});
-      throw;
+      what();
+    } catch (const std::runtime_error& failure) {
+      const std::string why = files::within_folder(folder, failure.what());
+      if (!stop_video(why)) return;
+      SessionEvent event{last_timestamp_ns, std::string(kVideoStoppedEvent), why, last_frame};
+      (void)(waits ? queue.push(std::move(event)) : queue.try_push(std::move(event)));
     }
   }
 
@@ -179,8 +188,9 @@ struct SessionRecorder::State {
   pipeline::BoundedQueue<Message> queue;
   std::thread worker;
   std::exception_ptr error;
+  std::mutex trouble_mutex;
+  std::string video_trouble;  // why video_stopped
   std::atomic<bool> video_stopped = false;
-  bool video_failed = false;            // the disk did not take it; said to the caller
   bool waits = true, is_stuck = false;  // for the disk
   bool out_of_space = false;  // why there is an error: all was kept; the writer thread's until it has ended
   PictureWriterOptions keeping;
@@ -214,9 +224,11 @@ SessionRecorder::~SessionRecorder() {
 }
 
 void SessionRecorder::copy_video(const std::filesystem::path& video_or_pattern) {
-  const std::string name = copy_video_into(state_->folder, video_or_pattern);
-  state_->copied = video_files(state_->folder, name);
-  state_->rewrite_header([&](SessionHeader& header) { header.video = name; });
+  state_->with_video([&] {
+    const std::string name = copy_video_into(state_->folder, video_or_pattern);
+    state_->copied = video_files(state_->folder, name);
+    state_->rewrite_header([&](SessionHeader& header) { header.video = name; });
+  });
 }
 
 void SessionRecorder::refer_to_video(const std::filesystem::path& video_or_pattern) {
@@ -236,21 +248,27 @@ void SessionRecorder::keep_pictures(PicturesAs as, const sources::SourceInfo& so
 
 void SessionRecorder::append_picture(const camera::FramePtr& frame) {
   if (!state_->takes_pictures()) return;
-  state_->with_pictures([&](PictureWriter& writer) { writer.write(frame); });
+  state_->with_video([&] { state_->picture_writer().write(frame); });
 }
 
 bool SessionRecorder::try_append_picture(const camera::FramePtr& frame) {
   if (!state_->takes_pictures()) return false;
-  const bool is_taken = state_->with_pictures([&](PictureWriter& writer) { return writer.try_write(frame); });
+  bool is_taken = false;
+  state_->with_video([&] { is_taken = state_->picture_writer().try_write(frame); });
   state_->dropped_count += is_taken ? 0 : 1;
   return is_taken;
 }
 
 bool SessionRecorder::has_stopped_video() const { return state_->video_stopped; }
 
+std::string SessionRecorder::video_trouble() const {
+  const std::lock_guard lock(state_->trouble_mutex);
+  return state_->video_trouble;
+}
+
 void SessionRecorder::interrupt_pictures() {
-  if (!state_->pictures || state_->video_failed) return;
-  state_->with_pictures([](PictureWriter& writer) { writer.end_part(); });
+  if (!state_->pictures) return;
+  state_->with_video([this] { state_->pictures->end_part(); });
 }
 
 void SessionRecorder::append(const pipeline::FrameResult& result) {
@@ -291,12 +309,7 @@ void SessionRecorder::finish() {
   if (s.finished) return;
   s.waits = true;
   // What pictures still wait is told to the writer of the record, which ends after them.
-  std::exception_ptr video_error;
-  try {
-    if (s.pictures) s.with_pictures([](PictureWriter& writer) { writer.finish(); });
-  } catch (const std::runtime_error&) {
-    video_error = std::current_exception();
-  }
+  if (s.pictures) s.with_video([&s] { s.pictures->finish(); });
   try {
     if (s.dropped_count > 0) s.send_event(kDroppedPicturesEvent, std::to_string(s.dropped_count));
     s.join_and_report();
@@ -313,8 +326,7 @@ void SessionRecorder::finish() {
     throw IoError(s.folder,
                   "was moved or deleted while it was being recorded; the end of the record is missing");
   s.formats.finish();
-  if (video_error) std::rethrow_exception(video_error);
-  if (s.video_failed || s.is_stuck) return;  // said at the call that met it; such a record is not finished
+  if (s.is_stuck) return;  // said at the call that met it; such a record is not finished
   s.cover_to_end();
   s.database.execute("INSERT INTO ending VALUES(1)");
   s.database.seal();

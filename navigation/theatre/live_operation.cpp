@@ -238,6 +238,7 @@ class Loop {
     live_.session_folder = run_.session_folder();
     live_.keeps_video = run_.keeps_video();
     live_.record_trouble = run_.record_trouble();
+    live_.video_trouble = run_.video_trouble();
     if (run_.refusal().count != live_.refusal.count) live_.refused_s = seconds_of(Clock::now());
     live_.refusal = run_.refusal();
     live_.tracker_trouble = run_.tracker_trouble();

@@ -47,7 +47,8 @@ struct LiveState {
   std::string tracker_trouble;  // why the outside tracker gives nothing; empty while it does, and without one
   std::filesystem::path session_folder;  // of the record that is written, or was written last
   bool keeps_video = false;
-  std::string record_trouble;  // why nothing is recorded; empty while all is well
+  std::string record_trouble;   // why nothing is recorded; empty while all is well
+  std::string video_trouble{};  // why the video is not recorded any more, where the rest is
 };
 using LiveStatePtr = std::shared_ptr<const LiveState>;
 

@@ -114,6 +114,7 @@ class Navigation {
     const operation::OperationStatePtr state = run_.state();
     run_.end_source();
     summary_.record_trouble = run_.record_trouble();
+    summary_.video_trouble = run_.video_trouble();
     summary_.latency = run_.latency().report();
     summary_.curves = run_.operation().strokes_in_use();
     summary_.drawn_length_mm = strokes::length_mm(summary_.curves);

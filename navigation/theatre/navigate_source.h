@@ -67,6 +67,7 @@ struct NavigationSummary {
   std::vector<std::string> troubles;  // what was wrong with a live source, in order, each when it began
   std::vector<std::string> tracker_troubles{};  // likewise with the outside tracker
   std::string record_trouble;        // why the record ended before the source; empty when it did not
+  std::string video_trouble{};       // the same of its video alone
   std::vector<std::string> reasons;  // why the result is not reliable; empty when it is
 };
 

@@ -60,6 +60,7 @@ void OperationRun::start(const TheatreSource& source) {
   refusal_.words.clear();
   if (source.setup.pipeline.tools.tracker) outside_.tracker = source.tracker();
   record_trouble_.clear();
+  video_trouble_.clear();
   record_is_due_ = static_cast<bool>(make_session_folder_);
   begin_record();
 }
@@ -87,6 +88,7 @@ void OperationRun::write(const What& what) {
   if (record_ == nullptr) return;
   try {
     what(*record_);
+    if (video_trouble_.empty()) video_trouble_ = record_->video_trouble();
   } catch (const std::runtime_error& error) {
     record_trouble_ = error.what();
     if (record_->is_stuck()) stuck_.take(std::move(record_));

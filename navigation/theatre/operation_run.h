@@ -108,6 +108,8 @@ class OperationRun {
   [[nodiscard]] LatencyMeter& latency() { return live_.meter; }
   // Why nothing is recorded any more; empty while all is well.
   [[nodiscard]] const std::string& record_trouble() const { return record_trouble_; }
+  // Why the video that was to be kept ended before its source, though the rest is recorded; else empty.
+  [[nodiscard]] const std::string& video_trouble() const { return video_trouble_; }
 
  private:
   void begin_record();
@@ -132,7 +134,7 @@ class OperationRun {
   std::unique_ptr<recording::OperationRecord> record_;
   std::filesystem::path session_folder_;
   std::vector<operation::JournalEntry> early_;  // from before the first source
-  std::string continues_, record_trouble_;
+  std::string continues_, record_trouble_, video_trouble_;
   recording::PicturesAs pictures_as_ = recording::PicturesAs::AsTheyCame;
   bool record_is_due_ = false;
   operation::OperationStatePtr frame_state_;  // after the newest frame

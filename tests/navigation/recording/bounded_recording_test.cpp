@@ -99,6 +99,7 @@ TEST_F(BoundedRecording, StopsBeforeTheDiskIsFullAndKeepsWhatWasMade) {
     return !recorder.try_append_picture(picture(frame++));
   }));
   EXPECT_TRUE(recorder.has_stopped_video());
+  EXPECT_EQ(recorder.video_trouble(), "only 1.0 GiB are free on the disk");
   const int with_video = frame;
   for (; frame < with_video + 10; ++frame) recorder.append(test::frame_result(frame));
 

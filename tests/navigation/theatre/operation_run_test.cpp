@@ -1,10 +1,17 @@
 #include "navigation/theatre/operation_run.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
+#include <random>
 
 #include "navigation/recording/session.h"
+#include "navigation/recording/session_check.h"
 #include "navigation/recording/session_database.h"
 #include "navigation/sources/capture_time.h"
 #include "tests/navigation/theatre/theatre_sources.h"
@@ -53,6 +60,22 @@ class AgedSource : public test::PlainSource {
 
  private:
   std::int64_t age_ns_, sixth_ns_;
+};
+
+// Pictures of which none is like another: they make a large file.
+class NoisySource : public test::PlainSource {
+ public:
+  explicit NoisySource(std::int64_t count) : PlainSource(count, false) {}
+  [[nodiscard]] camera::FramePtr next() override {
+    const camera::FramePtr plain = PlainSource::next();
+    if (plain == nullptr) return nullptr;
+    auto frame = std::make_shared<camera::Frame>(*plain);
+    for (std::uint8_t& value : frame->bgr) value = static_cast<std::uint8_t>(random_());
+    return frame;
+  }
+
+ private:
+  std::mt19937 random_{1};
 };
 
 // A pedal is pressed for where the probe is now; what comes two seconds late shows where it was.
@@ -187,6 +210,68 @@ TEST_F(OperationRunTest, ARecordThatFailsMidwayIsToldAndNothingEnds) {
   EXPECT_EQ(run_to_end(run), 30);
   EXPECT_NE(run.record_trouble(), "");
   EXPECT_EQ(run.state()->registration->in_force.standing, Standing::Stands);
+}
+
+// A file system that takes no larger file of video ends the video and nothing else: the journal goes on to
+// its end and beyond, and the reason is told beside it.
+TEST_F(OperationRunTest, Hazard12AVideoThatCannotBeWrittenLeavesTheJournal) {
+  const fs::path session = folder_ / "session";
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    int exit_code = 1;
+    try {
+      fs::create_directory(session);
+      OperationRun run(setup_, test::at_once(setup_), [&] { return session; });
+      TheatreSource source = test::plain_source(300);
+      source.open = [] { return std::make_unique<NoisySource>(300); };
+      run.start(source);
+      run.keep_video(true);
+      const rlimit limit{1'500'000, 1'500'000};
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+      for (int i = 0; i < 250; ++i) (void)run.step();
+      give(run);
+      const bool kept = run.keeps_video();
+      (void)run_to_end(run);
+      run.apply(operation::SkipVerification{});  // after the end of the source
+      const bool is_told = run.video_trouble().find("video.mkv: cannot write") == 0;
+      exit_code = !run.record_trouble().empty() ? 2 : !is_told ? 3 : kept ? 4 : 0;
+    } catch (const std::exception&) {
+      exit_code = 5;
+    }
+    ::_exit(exit_code);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  const recording::RecordedSession recorded(session);
+  EXPECT_TRUE(recorded.was_finished());
+  EXPECT_EQ(recorded.frames().size(), 300U);
+  EXPECT_TRUE(recorded.registration());
+  const auto has = [&](std::string_view kind) {
+    return std::ranges::count(recorded.events(), kind, &recording::SessionEvent::kind) == 1;
+  };
+  EXPECT_TRUE(has(recording::kVideoStoppedEvent));
+  EXPECT_TRUE(has(recording::kVerificationSkippedEvent));
+  const recording::SessionCheck check = recording::check_session(session);
+  EXPECT_TRUE(check.is_unbroken()) << recording::check_words(check);
+}
+
+// A copy of the video that the disk does not take leaves the record whole, too.
+TEST_F(OperationRunTest, Hazard12AVideoThatCannotBeCopiedLeavesTheJournal) {
+  const fs::path session = folder_ / "session";
+  OperationRun run(setup_, test::at_once(setup_), [&] {
+    fs::create_directory(session);
+    return session;
+  });
+  run.start(test::plain_source(5));
+  run.keep_video(recording::KeepVideo::Copy, folder_ / "gone.mkv");
+  EXPECT_EQ(run_to_end(run), 5);
+  EXPECT_EQ(run.record_trouble(), "");
+  EXPECT_NE(run.video_trouble().find("no such video"), std::string::npos) << run.video_trouble();
+  EXPECT_TRUE(recording::RecordedSession(session).was_finished());
 }
 
 // A source that fails is ended with its record, whole; what was made stays in force, and its kind is what it
