@@ -1,9 +1,12 @@
 #include "navigation/recording/quick_pictures.h"
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -40,6 +43,17 @@ std::string mark_of(const fs::path& folder, const std::vector<fs::path>& files) 
             "\n" + std::to_string(fs::last_write_time(file, error).time_since_epoch().count()) + "\n";
   }
   return files::sha256_of(text).substr(0, 16);
+}
+
+// By a program that lives.
+std::string unfinished_name(pid_t process) {
+  return files::format("unfinished_%d.mkv", static_cast<int>(process));
+}
+bool another_makes(const std::string& name) {
+  int process = 0;
+  if (std::sscanf(name.c_str(), "unfinished_%d", &process) != 1 || process <= 0) return false;
+  if (process == ::getpid() || name != unfinished_name(process)) return false;
+  return ::kill(process, 0) == 0 || errno == EPERM;
 }
 
 // Half as wide and half as high.
@@ -84,11 +98,13 @@ struct QuickPictures::State {
     return folder / files::format("%s_%05zu.mkv", mark.c_str(), stretch);
   }
 
-  // What is of another video, or was left unfinished.
+  // What is of another video, or was left unfinished; not what another window is just making.
   void remove_strangers() const {
     std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-      if (entry.path().filename().string().rfind(mark, 0) != 0) fs::remove(entry.path(), error);
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+      const std::string name = entry.path().filename().string();
+      if (name.rfind(mark, 0) != 0 && !another_makes(name)) fs::remove(entry.path(), error);
+    }
   }
 
   [[nodiscard]] std::vector<Name>::const_iterator find(std::int64_t frame) const {
@@ -174,7 +190,7 @@ bool QuickPictures::make_next(std::int64_t near_frame, const std::function<bool(
   const auto stretch = s.next_near(near_frame);
   if (!stretch || !goes_on() || files::free_bytes_at(s.session.folder) < kLeftFree) return false;
   files::create_private_folder(s.folder);
-  const fs::path unfinished = s.folder / files::format("unfinished_%d.mkv", static_cast<int>(::getpid()));
+  const fs::path unfinished = s.folder / unfinished_name(::getpid());
   s.remove_strangers();
   bool is_made = false;
   try {

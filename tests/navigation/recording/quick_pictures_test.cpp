@@ -1,8 +1,11 @@
 #include "navigation/recording/quick_pictures.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <fstream>
 
 #include "tests/navigation/recording/numbered_pictures.h"
 #include "tests/temporary_folder.h"
@@ -53,6 +56,29 @@ TEST(QuickPictures, AreEachOfItsOwnPicture) {
   EXPECT_TRUE(of_another.make_next(5, [] { return true; }));
   EXPECT_NE(of_another.picture(5), nullptr);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "session/quick"), fs::directory_iterator()), 1);
+}
+
+// Two windows may look at one session: what the other one is making stays, what a program that is gone has
+// left does not.
+TEST(QuickPictures, LeaveWhatAnotherWindowIsMaking) {
+  const test::TemporaryFolder folder;
+  ASSERT_NO_FATAL_FAILURE(copy_numbered_video(folder / "a.mp4", "mp4v", folder / "session"));
+  const pid_t gone = ::fork();
+  if (gone == 0) ::_exit(0);
+  ::waitpid(gone, nullptr, 0);
+  const fs::path quick = folder / "session/quick";
+  fs::create_directory(quick);
+  const auto unfinished = [&](pid_t process) {
+    return quick / ("unfinished_" + std::to_string(process) + ".mkv");
+  };
+  for (const pid_t process : {::getppid(), gone}) std::ofstream(unfinished(process)) << "x";
+  const SessionOverview session = read_overview(folder / "session");
+  std::vector<QuickPictures::Name> names;
+  for (int i = 0; i < kFrames; ++i) names.push_back({i, test::frame_result(i).timestamp_ns});
+  QuickPictures copies(session, names);
+  EXPECT_TRUE(copies.make_next(5, [] { return true; }));
+  EXPECT_TRUE(fs::exists(unfinished(::getppid())));
+  EXPECT_FALSE(fs::exists(unfinished(gone)));
 }
 
 // What cannot be read has no copy, and is not tried for ever.
