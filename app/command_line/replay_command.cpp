@@ -87,7 +87,8 @@ void replay(Context& context, const ReplayArguments& arguments) {
                        *summary.registration_mm));
   }
   for (const recording::Difference& difference : summary.differences) context.say(line_of(difference));
-  if (summary.is_same()) context.say("the same");
+  if (summary.is_same())
+    context.say(summary.states_equal == summary.states_compared ? "the same" : "the same within the limits");
   std::vector<std::string> reasons;
   if (!is_as_recorded)
     reasons.push_back("the record is not as it was recorded: " + recording::check_words(check));

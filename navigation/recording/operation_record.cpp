@@ -85,14 +85,6 @@ std::string_view kind_of(JournalKind kind) {
   return "note";
 }
 
-// nullopt for those that have a place of their own in a session.
-std::optional<SessionEvent> event_of(const JournalEntry& entry) {
-  if (entry.kind == JournalKind::RegistrationInForce || entry.kind == JournalKind::Plan) return std::nullopt;
-  SessionEvent event{entry.timestamp_ns, std::string(kind_of(entry.kind)), entry.text, entry.after_frame};
-  if (entry.achieved) event.text = operation::achieved_file_name(entry.achieved->planned.key());
-  return event;
-}
-
 // The tunnel as drilled, or that it was taken back.
 void write_achieved(const std::filesystem::path& folder, const JournalEntry& entry) {
   operation::AchievedTunnel achieved = *entry.achieved;
@@ -108,6 +100,13 @@ std::string next_registration_name(const std::filesystem::path& session_folder) 
 }
 
 }  // namespace
+
+std::optional<SessionEvent> event_of(const JournalEntry& entry) {
+  if (entry.kind == JournalKind::RegistrationInForce || entry.kind == JournalKind::Plan) return std::nullopt;
+  SessionEvent event{entry.timestamp_ns, std::string(kind_of(entry.kind)), entry.text, entry.after_frame};
+  if (entry.achieved) event.text = operation::achieved_file_name(entry.achieved->planned.key());
+  return event;
+}
 
 void append_entries(const std::filesystem::path& session_folder, const std::vector<JournalEntry>& entries) {
   FinishedSession session(session_folder);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,9 @@ class OperationRecord {
   KeepVideo keep_ = KeepVideo::No;
   std::unique_ptr<SessionRecorder> recorder_;
 };
+
+// How an entry stands among a session's events; nullopt for those that have a place of their own there.
+[[nodiscard]] std::optional<SessionEvent> event_of(const operation::JournalEntry& entry);
 
 // The same of an operation whose session is finished already: the surgeon decides after the source has ended,
 // too. Throws IoError or InvalidInput; what came before is written then.

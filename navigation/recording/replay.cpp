@@ -1,10 +1,12 @@
 #include "navigation/recording/replay.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "navigation/pipeline/prefetched_source.h"
 #include "navigation/recording/cut_short.h"
+#include "navigation/recording/event_comparison.h"
 #include "navigation/recording/rerun.h"
 #include "navigation/recording/session_overview.h"
 #include "planning/cases/case.h"
@@ -15,6 +17,31 @@
 namespace arthronaut::recording {
 
 namespace {
+
+// What guidance says in a frame, each by its name; limits are those of the summary's tolerances.
+template <typename Of>
+struct Number {
+  const char* name;
+  double Of::*value;
+  const char* unit;
+};
+constexpr std::array kGuideNumbers = {
+    Number{"guidance offset", &guidance::GuidanceNumbers::axis_to_entry_mm, "mm"},
+    Number{"guidance offset, anterior", &guidance::GuidanceNumbers::offset_anterior_mm, "mm"},
+    Number{"guidance offset, proximal", &guidance::GuidanceNumbers::offset_proximal_mm, "mm"},
+    Number{"guidance tip to entry", &guidance::GuidanceNumbers::tip_to_entry_mm, "mm"},
+    Number{"guidance depth", &guidance::GuidanceNumbers::depth_mm, "mm"},
+    Number{"guidance angle", &guidance::GuidanceNumbers::angle_deg, "deg"},
+    Number{"guidance sigma of offset", &guidance::GuidanceNumbers::sigma_offset_mm, "mm"},
+    Number{"guidance sigma of angle", &guidance::GuidanceNumbers::sigma_angle_deg, "deg"}};
+constexpr std::array kDrillNumbers = {Number{"drill depth", &guidance::DrillDepth::depth_mm, "mm"},
+                                      Number{"drill remaining", &guidance::DrillDepth::remaining_mm, "mm"},
+                                      Number{"drill to exit", &guidance::DrillDepth::to_exit_mm, "mm"},
+                                      Number{"drill sigma of depth", &guidance::DrillDepth::sigma_mm, "mm"}};
+constexpr std::array kDrillPlaceNumbers = {
+    Number{"drill lateral", &guidance::DrillDepth::lateral_mm, "mm"},
+    Number{"drill sigma of offset", &guidance::DrillDepth::sigma_offset_mm, "mm"},
+    Number{"drill sigma of angle", &guidance::DrillDepth::sigma_angle_deg, "deg"}};
 
 // Compares what a frame said then with what it says now.
 class FrameComparison {
@@ -71,11 +98,47 @@ class FrameComparison {
       differs("guidance", "was \"" + std::string(guidance::to_text(then.state)) + "\" and is \"" +
                               std::string(guidance::to_text(now.state)) + "\" now");
     } else if (then.is_valid()) {
-      amount("guidance offset", std::abs(then.axis_to_entry_mm - now.axis_to_entry_mm), "mm",
-             summary_.worst_offset_mm);
-      amount("guidance depth", std::abs(then.depth_mm - now.depth_mm), "mm", summary_.worst_offset_mm);
-      amount("guidance angle", std::abs(then.angle_deg - now.angle_deg), "deg", summary_.worst_angle_deg);
+      for (const Number<guidance::GuidanceNumbers>& number : kGuideNumbers) compare_number(number, then, now);
+      compare_axis("guide", then.guide_point_mm, then.guide_direction, now.guide_point_mm,
+                   now.guide_direction);
+      // What was recorded before there was this third component holds none.
+      if (then.offset_lateral_mm != 0)
+        compare_number({"guidance offset, lateral", &guidance::GuidanceNumbers::offset_lateral_mm, "mm"},
+                       then, now);
     }
+    compare_drill(then.drill, now.drill);
+  }
+
+  void compare_drill(const std::optional<guidance::DrillDepth>& then,
+                     const std::optional<guidance::DrillDepth>& now) {
+    if (then.has_value() != now.has_value()) {
+      differs("drill", now ? "is seen now and was not" : "was seen and is not now");
+    } else if (then) {
+      for (const Number<guidance::DrillDepth>& number : kDrillNumbers) compare_number(number, *then, *now);
+      // Older records hold nothing of where the drill was.
+      if (!std::isfinite(then->lateral_mm)) return;
+      for (const Number<guidance::DrillDepth>& number : kDrillPlaceNumbers)
+        compare_number(number, *then, *now);
+      compare_axis("drill", then->tip_mm, then->direction, now->tip_mm, now->direction);
+    }
+  }
+
+  template <typename Of>
+  void compare_number(const Number<Of>& number, const Of& then, const Of& now) {
+    const double a = then.*number.value, b = now.*number.value;
+    if (std::isnan(a) && std::isnan(b)) return;  // not known, then and now
+    amount(number.name, std::abs(a - b), number.unit,
+           number.unit[0] == 'm' ? summary_.worst_offset_mm : summary_.worst_angle_deg);
+  }
+
+  void compare_axis(const std::string& of, const Eigen::Vector3d& point_then,
+                    const Eigen::Vector3d& direction_then, const Eigen::Vector3d& point_now,
+                    const Eigen::Vector3d& direction_now) {
+    amount(of + "'s point", (point_then - point_now).norm(), "mm", summary_.worst_offset_mm);
+    amount(
+        of + "'s direction",
+        geometry::deg_from_rad(2 * std::asin(std::min(0.5 * (direction_then - direction_now).norm(), 1.0))),
+        "deg", summary_.worst_angle_deg);
   }
 
   void amount(const std::string& what, double value, const char* unit, double& worst) {
@@ -308,6 +371,10 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   }
   seen.add_to(summary);
   states.add_to(summary);
+  // Without its bone no registration is found again, and nothing that follows from one; records of before the
+  // journal hold no decisions.
+  if (options.bone != nullptr && !session.header().source_kind.empty())
+    compare_events(session, rerun.journal(), summary);
   compare_registration(session, *rerun.state(), options, summary);
   return summary;
 }

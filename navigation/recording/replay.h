@@ -1,6 +1,8 @@
 // Runs a recorded session again: the same operation, with the pictures, commands and outcomes of the record,
 // and says what differs. On the build that recorded it every state must come out the same to the last bit,
-// registrations and alarms included; on another one, differences beyond the tolerances below are told.
+// registrations and alarms included; on another one, differences beyond the tolerances below are told. In
+// either case so are decisions (alarms, what verified or voided a registration, tunnels that were drilled)
+// that come out otherwise.
 //
 // A session that goes on with the strokes and registrations of earlier ones takes those in first, from their
 // records. Frames whose picture was not kept are taken from the record too: what was decided on them is run

@@ -92,6 +92,7 @@ void Rerun::start(const RecordedSession& session) {
   pipeline_ = session.pipeline_options();
   next_event_ = 0;
   looks_.clear();
+  journal_.clear();
   const SessionHeader& header = session.header();
   has_journal_ = !header.source_kind.empty();
   play_before_source();
@@ -228,7 +229,7 @@ void Rerun::play_registration(const SessionEvent& event) {
 }
 
 void Rerun::pass_on() {
-  (void)operation_.take_journal();
+  for (operation::JournalEntry& entry : operation_.take_journal()) journal_.push_back(std::move(entry));
   for (const operation::RegistrationRequest& request : operation_.take_requests())
     if (work_ && work_->work_in(request)) outcomes_[work_->outcome()->request_count] = work_->outcome();
 }

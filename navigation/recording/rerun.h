@@ -39,6 +39,8 @@ class Rerun {
 
   [[nodiscard]] operation::OperationStatePtr state() { return operation_.state(); }
   [[nodiscard]] const operation::Operation& operation() const { return operation_; }
+  // What the operation has said of itself since the session's start.
+  [[nodiscard]] const std::vector<operation::JournalEntry>& journal() const { return journal_; }
 
  private:
   void play_before_source();
@@ -60,6 +62,7 @@ class Rerun {
   pipeline::PipelineOptions pipeline_;  // of the session
   std::size_t next_event_ = 0;
   bool has_journal_ = false;
+  std::vector<operation::JournalEntry> journal_;
 };
 
 // The sessions before it in the same operation, oldest first. What goes on from one that was cut off holds

@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 
 #include "navigation/recording/recorded_pictures.h"
 #include "navigation/recording/replay.h"
@@ -264,6 +265,80 @@ TEST_F(ReplayedOperation, TheSimulatorsPicturesGiveTheSameStates) {
   EXPECT_NE(cut.differences[0].detail.find("video.mkv: frame " + std::to_string(cut.replayed_frames)),
             std::string::npos)
       << cut.differences[0].detail;
+}
+
+// On another build no state is asked to be the same to the last bit: every number of guidance and every
+// decision is compared by itself.
+TEST_F(ReplayedOperation, EveryNumberAndDecisionThatDiffersIsToldOnAnotherBuild) {
+  constexpr int kFrames = 16;
+  simulator::SimulationOptions options = simulator::phantom_options();
+  options.frame_count = kFrames;
+  TheatreSource source;
+  source.setup.kind = sources::SourceKind::Simulation;
+  source.setup.pipeline.calibration = options.camera;
+  source.setup.pipeline.tools = options.tools;
+  source.setup.pipeline.refractive_index = options.refractive_index;
+  source.open = [=] {
+    return std::make_unique<simulator::SimulatedOperation>(options, simulator::Phase::Drill);
+  };
+  {
+    OperationRun run(setup_, test::at_once(setup_), folders());
+    run.start(source);
+    run.keep_video(true);
+    operation::GiveRegistration known =
+        test::true_registration(trial_, operation::provenance_of(setup_, source.setup));
+    known.registration.marker_from_bone =
+        simulator::SimulatedOperation(options, simulator::Phase::Drill).marker_from_bone();
+    run.apply(known);
+    run.apply(operation::SkipVerification{});
+    for (int i = 0; i < kFrames; ++i) ASSERT_TRUE(run.step().picture);
+    run.end_source();
+  }
+  const auto folder = folder_ / "session1";
+  std::string header = files::read_text(folder / "session.json");
+  const std::string build = recording::build_identity();
+  header.replace(header.find(build), build.size(), std::string(build.size(), '0'));
+  files::write_atomically(folder / "session.json", header);
+  recording::ReplayOptions with_bone;
+  with_bone.bone = registration::phantom_bone().prepared;
+  with_bone.surface = std::make_shared<geometry::Surface>(registration::phantom_bone().mesh);
+  const auto whats_of = [&] {
+    std::set<std::string> whats;
+    const auto summary = recording::replay_session(recording::RecordedSession(folder), with_bone);
+    EXPECT_FALSE(summary.is_same_build);
+    for (const auto& difference : summary.differences) whats.insert(difference.what);
+    return whats;
+  };
+  EXPECT_EQ(whats_of(), std::set<std::string>{});
+
+  std::string frame;
+  for (const recording::RecordedFrame& recorded : recording::RecordedSession(folder).frames())
+    if (recorded.guidance.is_valid()) frame = std::to_string(recorded.index);
+  ASSERT_FALSE(frame.empty()) << "the test must see guidance";
+  std::set<std::string> changed{"drill", "alarm", "verification skipped"};
+  auto database = recording::SessionDatabase::open(folder / "session.sqlite");
+  for (const auto& [column, what] : {std::pair{"tip_to_entry_mm", "guidance tip to entry"},
+                                     {"depth_mm", "guidance depth"},
+                                     {"offset_anterior_mm", "guidance offset, anterior"},
+                                     {"offset_lateral_mm", "guidance offset, lateral"},
+                                     {"offset_proximal_mm", "guidance offset, proximal"},
+                                     {"sigma_offset_mm", "guidance sigma of offset"},
+                                     {"sigma_angle_deg", "guidance sigma of angle"},
+                                     {"point_x_mm", "guide's point"},
+                                     {"direction_y", "guide's direction"}}) {
+    database.execute(
+        ("UPDATE guidance SET " + std::string(column) + " = " + column + " + 0.01 WHERE frame = " + frame)
+            .c_str());
+    changed.insert(what);
+  }
+  database.execute(("UPDATE guidance SET drill_depth_mm = 3, drill_to_exit_mm = 2, drill_sigma_mm = 1 "
+                    "WHERE frame = " +
+                    frame)
+                       .c_str());
+  database.execute("DELETE FROM events WHERE kind = 'verification skipped'");
+  database.execute(
+      "INSERT INTO events(after_frame, timestamp_ns, kind, text) VALUES(3, 0, 'alarm', 'moved')");
+  EXPECT_EQ(whats_of(), changed);
 }
 
 // Second looks that come when they come, as from a thread: each is handed out so many frames after it was

@@ -1,0 +1,127 @@
+#include "navigation/recording/event_comparison.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "navigation/recording/operation_record.h"
+#include "navigation/recording/session_files.h"
+
+namespace arthronaut::recording {
+
+namespace {
+
+// Commands and whatever else the second run is given come back by themselves.
+constexpr std::array kDecisions = {kAlarmEvent,
+                                   kVoidEvent,
+                                   kConfirmedEvent,
+                                   kVerifiedEvent,
+                                   kVerificationLostEvent,
+                                   kVerificationSkippedEvent,
+                                   kTimeOutConfirmedEvent,
+                                   kGuideCheckedEvent,
+                                   kPlanEvent,
+                                   kRegistrationEvent,
+                                   kGivenRegistrationEvent,
+                                   kDrilledEvent,
+                                   kDrilledTakenBackEvent};
+
+struct Decision {
+  std::int64_t frame = -1;
+  std::string kind, text;
+};
+
+bool names_a_registration(const std::string& kind) {
+  return kind == kRegistrationEvent || kind == kGivenRegistrationEvent;
+}
+
+std::vector<Decision> decisions_of(const std::vector<SessionEvent>& events) {
+  std::vector<Decision> decisions;
+  for (const SessionEvent& event : events)
+    if (std::ranges::find(kDecisions, event.kind) != kDecisions.end())
+      decisions.push_back(
+          {event.after_frame, event.kind, names_a_registration(event.kind) ? std::string() : event.text});
+  return decisions;
+}
+
+std::vector<Decision> decisions_of(const std::vector<operation::JournalEntry>& entries) {
+  using operation::JournalKind;
+  std::vector<SessionEvent> events;
+  for (const operation::JournalEntry& entry : entries) {
+    if (const auto event = event_of(entry)) {
+      events.push_back(*event);
+    } else if (entry.kind == JournalKind::Plan) {
+      events.push_back(
+          {entry.timestamp_ns, std::string(kPlanEvent),
+           entry.plan ? plan_to_text(entry.plan->tunnel, entry.plan->length_mm) : std::string()});
+    } else {
+      events.push_back(
+          {entry.timestamp_ns,
+           std::string(entry.registration_was_given ? kGivenRegistrationEvent : kRegistrationEvent), ""});
+    }
+    events.back().after_frame = entry.after_frame;
+  }
+  return decisions_of(events);
+}
+
+// Takes out of both what `is_same` finds in both.
+template <typename IsSame, typename Tell>
+void take_out(std::vector<Decision>& then, std::vector<Decision>& now, const IsSame& is_same,
+              const Tell& tell) {
+  std::erase_if(then, [&](const Decision& one) {
+    const auto other = std::ranges::find_if(now, [&](const Decision& it) { return is_same(one, it); });
+    if (other == now.end()) return false;
+    tell(one, *other);
+    now.erase(other);
+    return true;
+  });
+}
+
+std::string said(const Decision& decision) {
+  return decision.text.empty() ? std::string() : " (" + decision.text + ")";
+}
+
+// The journal of a record that was cut off ends anywhere within its last frame.
+std::int64_t first_frame_that_may_lack(const RecordedSession& session) {
+  const bool was_stopped = std::ranges::any_of(
+      session.events(), [](const SessionEvent& event) { return event.kind == kRecordingStoppedEvent; });
+  if (session.was_finished() && !was_stopped) return std::numeric_limits<std::int64_t>::max();
+  return session.frames().empty() ? -1 : session.frames().back().index;
+}
+
+}  // namespace
+
+void compare_events(const RecordedSession& session, const std::vector<operation::JournalEntry>& entries,
+                    ReplaySummary& summary) {
+  std::vector<Decision> then = decisions_of(session.events()), now = decisions_of(entries);
+  const auto nothing = [](const Decision&, const Decision&) {};
+  const auto differs = [&](const Decision& decision, const std::string& detail) {
+    summary.differences.push_back({decision.frame, decision.kind, 0, "", detail});
+  };
+  if (summary.is_lossy) {
+    take_out(
+        then, now, [](const Decision& a, const Decision& b) { return a.kind == b.kind; }, nothing);
+  } else {
+    take_out(
+        then, now,
+        [](const Decision& a, const Decision& b) {
+          return a.kind == b.kind && a.frame == b.frame && a.text == b.text;
+        },
+        nothing);
+    take_out(
+        then, now,
+        [](const Decision& a, const Decision& b) { return a.kind == b.kind && a.frame == b.frame; },
+        [&](const Decision& was, const Decision& is) {
+          differs(was, "said \"" + was.text + "\" and says \"" + is.text + "\" now");
+        });
+  }
+  for (const Decision& decision : then)
+    differs(decision, "was recorded and does not come now" + said(decision));
+  const std::int64_t may_lack = first_frame_that_may_lack(session);
+  for (const Decision& decision : now)
+    if (decision.frame < may_lack) differs(decision, "comes now and was not recorded" + said(decision));
+}
+
+}  // namespace arthronaut::recording
