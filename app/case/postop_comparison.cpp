@@ -4,7 +4,6 @@
 #include "planning/geometry/error.h"
 #include "planning/plan_review/plan_review.h"
 #include "planning/plan_review/proposed_landmarks.h"
-#include "planning/postop/postop_source.h"
 
 namespace arthronaut::open_case {
 
@@ -96,7 +95,7 @@ PostopAnswer compare_with_postop(const PostopQuestion& question) {
   options.on_progress = [&](double share) {
     if (question.on_progress) question.on_progress("Reading the images", share);
   };
-  answer.images = postop::read_postop(question.source, options);
+  answer.images = question.read ? question.read(options) : postop::read_postop(question.source, options);
   if ((answer.was_stopped = question.stops && question.stops())) return answer;
   try {
     compare_all(knee, plan, question, answer);

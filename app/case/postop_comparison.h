@@ -13,6 +13,7 @@
 #include "planning/images/volume.h"
 #include "planning/postop/achieved_place.h"
 #include "planning/postop/comparison.h"
+#include "planning/postop/postop_source.h"
 
 namespace arthronaut::open_case {
 
@@ -22,6 +23,8 @@ struct PostopQuestion {
   std::string bone = {};         // "femur" or "tibia"; empty: every bone with planned tunnels
   std::string series = {};       // DICOM: number or UID, where there are several
   std::set<int> labels = {};     // label maps: those that are bone; empty: all but 0
+  // Reads the images, where that is not to be done in this process; empty: postop::read_postop().
+  std::function<images::Volume(const postop::PostopSourceOptions& options)> read = {};
   // What goes on, and how much of it is done, 0 to 1. May be empty.
   std::function<void(const std::string& what, double share)> on_progress = {};
   // Asked between two steps, of 3 to 10 s each; true ends it. May be empty.

@@ -1,5 +1,10 @@
 #include "app/review/postop_run.h"
 
+#include "planning/geometry/error.h"
+#include "planning/images/volume_decoder.h"
+#include "planning/images/volume_file.h"
+#include "planning/import/import_process.h"
+#include "planning/import/series_process.h"
 #include "planning/postop/achieved_file.h"
 #include "planning/postop/postop_source.h"
 
@@ -9,11 +14,66 @@ std::filesystem::path achieved_file(const std::filesystem::path& case_folder) {
   return case_folder / "achieved.json";
 }
 
+namespace {
+
+constexpr double kAsks_s = 0.1;
+// What reading may take, and room to hand it over.
+constexpr double kMemory_gib = 4;
+
+// Until the process has ended; false: it was stopped. Throws InvalidInput, why it failed.
+template <typename Process, typename Follow>
+bool wait_for(Process& process, const Follow& follow, const std::function<bool()>& stops) {
+  using State = importing::ChildProcess::State;
+  while (process.wait_for(kAsks_s) == State::Running) {
+    follow();
+    if (stops()) return false;
+  }
+  if (process.state() != State::Done) throw InvalidInput(process.message());
+  return true;
+}
+
+// What may be compared; none where that is no folder or disc of series, or it was stopped.
+std::vector<images::ImageSeries> series_in(const std::filesystem::path& source,
+                                           const std::filesystem::path& program,
+                                           const std::function<void(double)>& tell,
+                                           const std::function<bool()>& stops) {
+  if (!images::is_volume_source(source)) return {};
+  importing::SeriesProcess process({.source = source, .program = program});
+  if (!wait_for(
+          process, [&] { tell(process.looked_fraction()); }, stops))
+    return {};
+  return postop::comparable_series(process.list()->series);
+}
+
+// Empty when it was stopped.
+images::Volume read_beside(const std::filesystem::path& source, const std::filesystem::path& program,
+                           const postop::PostopSourceOptions& options, const std::function<bool()>& stops) {
+  importing::ImportRequest request{.source = source,
+                                   .options = {},
+                                   .memory_limit_gib = kMemory_gib,
+                                   .is_postop = true,
+                                   .program = program};
+  request.options.series = options.series;
+  importing::ImportProcess process(std::move(request));
+  const auto tell = [&] {
+    if (process.progress().fraction >= 0) options.on_progress(process.progress().fraction);
+  };
+  if (!wait_for(process, tell, stops)) return {};
+  const importing::BoneImport read = process.take_result();
+  if (!read.image) throw InvalidInput(source, "", "could not be handed over by the process that read it");
+  images::Volume volume = images::volume_of(read.image->volume);
+  volume.patient = {read.identity.patient_name, read.identity.patient_id, read.identity.birth_date};
+  return volume;
+}
+
+}  // namespace
+
 PostopRun::PostopRun(const std::filesystem::path& case_folder, const std::filesystem::path& source,
-                     const std::string& series, bool writes, std::function<void()> on_news)
+                     const std::string& series, bool writes, std::function<void()> on_news,
+                     const std::filesystem::path& program)
     : worker_(
           worker::Backlog::Lossless,
-          [case_folder, source, series, writes](auto& inbox) {
+          [case_folder, source, series, writes, program](auto& inbox) {
             PostopProgress progress;
             open_case::PostopQuestion question{
                 .case_folder = case_folder, .source = source, .series = series};
@@ -23,9 +83,13 @@ PostopRun::PostopRun(const std::filesystem::path& case_folder, const std::filesy
               inbox.publish(progress);
             };
             question.stops = [&] { return inbox.stops(); };
+            question.read = [&](const postop::PostopSourceOptions& options) {
+              return read_beside(source, program, options, question.stops);
+            };
             if (series.empty()) {
-              auto which = postop::comparable_series(
-                  source, [&](double share) { question.on_progress("Looking for CTs", share); });
+              auto which = series_in(
+                  source, program, [&](double share) { question.on_progress("Looking for CTs", share); },
+                  question.stops);
               if (inbox.stops()) return;
               if (which.size() == 1) question.series = which.front().uid;
               if (which.size() > 1) {

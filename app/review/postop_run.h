@@ -2,6 +2,9 @@
 // kept in the case as achieved.json when it has come to its end. Of a folder with several CTs it ends with
 // the question which of them; one alone is taken, whatever lies beside it.
 //
+// The files are from elsewhere: they are looked through and read in a process of its own, with a limit on its
+// memory.
+//
 // Threads: made and asked on the window's thread; one worker computes. It ends within one step of the
 // comparison (3 to 10 s) after stop().
 #pragma once
@@ -30,7 +33,8 @@ class PostopRun {
   // series: its UID; empty: not known yet. writes: whether achieved.json is kept; false in a case that is
   // read-only.
   PostopRun(const std::filesystem::path& case_folder, const std::filesystem::path& source,
-            const std::string& series, bool writes, std::function<void()> on_news);
+            const std::string& series, bool writes, std::function<void()> on_news,
+            const std::filesystem::path& program = "/proc/self/exe");
   [[nodiscard]] PostopProgress progress() const;
   [[nodiscard]] bool has_ended() const { return worker_.has_ended(); }
   [[nodiscard]] std::string error() const { return worker_.failure(); }  // empty: none

@@ -14,6 +14,7 @@
 #include "planning/images/series_list.h"
 #include "planning/import/import_messages.h"
 #include "planning/import/shared_voxels.h"
+#include "planning/postop/postop_source.h"
 
 namespace arthronaut::importing {
 
@@ -88,6 +89,20 @@ void make_bones(int socket, const ChildRequest& request) {
   send_all(socket, message_of(import));
 }
 
+void read_postop(int socket, const ChildRequest& request) {
+  postop::PostopSourceOptions options{.series = request.options.series};
+  options.on_progress = [&](double fraction) {
+    send_all(socket, message_of(ImportProgress{ImportStage::Reading, fraction}));
+  };
+  const images::Volume volume = postop::read_postop(request.source, options);
+  BoneImport import;
+  import.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
+  const images::EncodedVolume encoded = images::encoded(volume);
+  if (!put_voxels(kSharedDescriptor, encoded.voxels)) throw std::bad_alloc();
+  import.image.emplace().volume.header = encoded.header;
+  send_all(socket, message_of(import));
+}
+
 // A series that has none may well be listed, and so may those after it.
 SeriesPicture picture_of(const images::ImageSeries& series, const ChildRequest& request) {
   try {
@@ -121,6 +136,8 @@ void answer(int socket, const ChildRequest& request) {
   try {
     if (request.work == ChildWork::MakeBones)
       make_bones(socket, request);
+    else if (request.work == ChildWork::ReadPostop)
+      read_postop(socket, request);
     else
       look_through(socket, request);
   } catch (const std::bad_alloc&) {

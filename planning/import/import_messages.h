@@ -14,7 +14,12 @@
 
 namespace arthronaut::importing {
 
-enum class ChildWork : std::uint32_t { MakeBones = 1, ListSeries, ListSeriesWithPictures };
+enum class ChildWork : std::uint32_t {
+  MakeBones = 1,
+  ReadPostop,  // as postop::read_postop(), with the series of the options; a result without bones
+  ListSeries,
+  ListSeriesWithPictures
+};
 
 // To the child, once.
 struct ChildRequest {

@@ -29,11 +29,12 @@ ChildProcessOptions options_of(const ImportRequest& request) {
 
 ImportProcess::ImportProcess(ImportRequest request)
     : request_(limited(std::move(request))),
-      child_(options_of(request_),
-             message_of(ChildRequest{.work = ChildWork::MakeBones,
-                                     .source = request_.source,
-                                     .options = request_.options,
-                                     .memory_limit_bytes = request_.options.most_bytes})) {}
+      child_(
+          options_of(request_),
+          message_of(ChildRequest{.work = request_.is_postop ? ChildWork::ReadPostop : ChildWork::MakeBones,
+                                  .source = request_.source,
+                                  .options = request_.options,
+                                  .memory_limit_bytes = request_.options.most_bytes})) {}
 
 ImportProcess::State ImportProcess::wait_for(double seconds) {
   if (state() != State::Running) return state();

@@ -24,6 +24,9 @@ struct ImportRequest {
   std::filesystem::path source;
   BoneImportOptions options;  // most_bytes is set from the limit below
   double memory_limit_gib = 2.0;
+  // The images after an operation, as postop::read_postop() gives them, and no bones: of the options the
+  // series alone counts.
+  bool is_postop = false;
   // A program that answers kImportChildWord; this one by default.
   std::filesystem::path program = "/proc/self/exe";
 };
@@ -50,7 +53,7 @@ class ImportProcess {
   // Why it failed or was cancelled, for a person; empty otherwise.
   [[nodiscard]] const std::string& message() const { return child_.message(); }
   [[nodiscard]] const Failure& failure() const { return child_.failure(); }  // with these words
-  // The bones, once; the state must be Done.
+  // The bones or the images, once; the state must be Done.
   [[nodiscard]] BoneImport take_result();
 
   [[nodiscard]] int process_id() const { return child_.process_id(); }  // -1 once it has ended

@@ -85,12 +85,7 @@ images::Volume volume_of_mesh(const std::filesystem::path& source) {
 
 }  // namespace
 
-std::vector<images::ImageSeries> comparable_series(const std::filesystem::path& source,
-                                                   const std::function<void(double)>& on_progress) {
-  if (!images::is_volume_source(source)) return {};
-  images::VolumeFileOptions options;
-  options.on_progress = on_progress;
-  std::vector<images::ImageSeries> series = images::find_series(source, options).series;
+std::vector<images::ImageSeries> comparable_series(std::vector<images::ImageSeries> series) {
   // A scout has one image.
   std::erase_if(series, [](const images::ImageSeries& one) {
     return !one.is_readable() || one.uid.empty() || one.modality != "CT" || one.size.z() < 2;

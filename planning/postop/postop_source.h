@@ -18,10 +18,9 @@ struct PostopSourceOptions {
   std::function<void(double fraction)> on_progress = nullptr;  // of reading
 };
 
-// Of a folder or a disc from a hospital, what may be compared: the CTs that can be opened, the finest slices
-// first. Empty: there is none, or the source holds no DICOM. Throws as images::find_series().
-[[nodiscard]] std::vector<images::ImageSeries> comparable_series(
-    const std::filesystem::path& source, const std::function<void(double fraction)>& on_progress = nullptr);
+// Of what a folder or a disc from a hospital holds, what may be compared: the CTs that can be opened, the
+// finest slices first.
+[[nodiscard]] std::vector<images::ImageSeries> comparable_series(std::vector<images::ImageSeries> series);
 
 // A CT as it is. A label map, or a mesh of one drilled bone (closed, or with holes that can be mended), as a
 // picture of it without noise: 1000 HU where there is bone, 0 HU elsewhere. Throws IoError, InvalidInput

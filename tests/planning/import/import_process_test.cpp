@@ -8,8 +8,10 @@
 #include <chrono>
 
 #include "planning/geometry/error.h"
+#include "planning/images/volume_decoder.h"
 #include "planning/images/volume_writer.h"
 #include "planning/import/label_choice.h"
+#include "planning/postop/postop_source.h"
 #include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
 #include "tests/planning/geometry/shapes.h"
@@ -89,6 +91,26 @@ TEST_F(ImportProcessTest, TheStudyComesAlong) {
   EXPECT_EQ(import.origin, form.origin);
   import.forget_patient();
   EXPECT_TRUE(import.origin.is_empty() && import.identity.is_empty());
+}
+
+// Images after an operation come as they are read here, and whose they are.
+TEST_F(ImportProcessTest, Hazard18ReadsTheImagesAfterAnOperation) {
+  const test::DicomSeriesForm form;
+  test::write_dicom_series(folder_ / "ct", test::ellipsoid_ct(), form);
+  ImportRequest asked = request(folder_ / "ct");
+  asked.is_postop = true;
+  ImportProcess process(asked);
+  ASSERT_EQ(finished(process), State::Done) << process.message();
+  const BoneImport read = process.take_result();
+  EXPECT_TRUE(read.bones.empty());
+  EXPECT_EQ(read.identity, (cases::Identity{"Muster^Anna", "4711", "19900131"}));
+  ASSERT_TRUE(read.image);
+  const images::Volume apart = images::volume_of(read.image->volume),
+                       here = postop::read_postop(folder_ / "ct");
+  EXPECT_EQ(apart.values, here.values);
+  EXPECT_EQ(apart.size, here.size);
+  EXPECT_EQ(apart.modality, "CT");
+  EXPECT_TRUE(apart.lps_from_index.isApprox(here.lps_from_index, 1e-9));
 }
 
 // Every option arrives: without one of them the bone would be another, or none.
