@@ -1,8 +1,10 @@
 // When a picture of a device was taken: the driver's stamp where it can be true.
 //
-// V4L2 drivers stamp a picture on the monotonic clock, which is std::chrono::steady_clock on Linux. Some
-// stamp nothing, some on the wall clock, and what passes the stamp on (GStreamer) may not say which; so a
-// stamp is believed only when it lies in the last two seconds.
+// V4L2 drivers stamp a picture on the monotonic clock, which is std::chrono::steady_clock on Linux, and say
+// whether they did; GStreamer's stamps are on it because its pipeline is given that clock. Some stamp
+// nothing. A stamp of the past is believed, however old it is: what waited in a queue for seconds must never
+// be dated as taken when it came out. (One of another clock that gets here all the same is at worst an old
+// picture, and nothing guides by it.) One of the future is none.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +19,8 @@ struct CaptureTime {
   camera::CaptureClock clock = camera::CaptureClock::HandedOver;
 };
 
-// driver_ms: what the driver says, 0 when it says nothing. handed_over_ns: when the picture came, on the
-// steady clock.
+// driver_ms: what the driver says, on the steady clock, 0 when it says nothing. handed_over_ns: when the
+// picture came, on the steady clock.
 [[nodiscard]] CaptureTime capture_time(double driver_ms, std::int64_t handed_over_ns);
 
 [[nodiscard]] std::int64_t steady_now_ns();

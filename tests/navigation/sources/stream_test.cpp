@@ -278,6 +278,17 @@ TEST(GStreamerPipeline, GivesItsPicturesAndStamps) {
   expect_live(*source, camera::CaptureClock::Driver);
 }
 
+// Whatever waits in a pipeline is as old as it is when it comes out of it.
+TEST(GStreamerPipeline, Hazard3WhatWaitedForSecondsIsOld) {
+  const auto source = open_source(
+      "gst:videotestsrc is-live=true ! video/x-raw,width=64,height=48,framerate=30/1 ! "
+      "queue min-threshold-time=2500000000 max-size-time=0 max-size-buffers=0 max-size-bytes=0 ! appsink");
+  const camera::FramePtr picture = source->next();
+  ASSERT_NE(picture, nullptr);
+  EXPECT_EQ(picture->capture_clock, camera::CaptureClock::Driver);
+  EXPECT_GE(static_cast<double>(picture->received_ns - picture->captured_ns) * 1e-9, 2.4);
+}
+
 // Grey is grey in every format on the way: 601's luma of a plain picture, to a step of rounding.
 TEST(GStreamerPipeline, EveryFormatHasTheSameLuma) {
   for (const char* format : {"I420", "NV12", "P010_10LE", "BGR", "GRAY8", "YUY2", "UYVY", "RGBA", "Y42B"}) {
