@@ -4,6 +4,8 @@
 #include <exception>
 #include <utility>
 
+#include "navigation/worker/pace.h"
+
 namespace arthronaut::setup {
 
 namespace {
@@ -32,22 +34,16 @@ std::string FrameFeed::trouble() const {
 }
 
 void FrameFeed::read(const FeedSource& source, Reader::Inbox& inbox) {
-  using Clock = Reader::Clock;
   const std::unique_ptr<sources::FrameSource> opened = source.open();
   const std::shared_ptr<sources::SourceLine> line = opened->info().line;
   inbox.publish(Picture{nullptr, 0, line});
   const bool is_paced = !opened->info().is_live() && !source.is_stills;
   const bool waits = source.is_stills || !source.newest_wins;
-  Clock::time_point start;
-  std::int64_t first_ns = 0;
+  worker::Pace pace;
   for (long number = 1; !inbox.stops(); ++number) {
     camera::FramePtr frame = opened->next();
     if (frame == nullptr) return;
-    if (number == 1) {
-      first_ns = frame->timestamp_ns;
-      start = Clock::now();
-    }
-    if (is_paced) inbox.sleep_until(start + std::chrono::nanoseconds(frame->timestamp_ns - first_ns));
+    if (is_paced) inbox.sleep_until(pace.due(frame->timestamp_ns));
     inbox.publish(Picture{std::move(frame), number, line});
     if (!waits) continue;
     auto done = inbox.next();

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "navigation/sources/capture_time.h"
+#include "navigation/worker/pace.h"
 #include "navigation/worker/recycler.h"
 #include "navigation/worker/worker.h"
 
@@ -20,27 +21,6 @@ using Clock = std::chrono::steady_clock;
 double seconds_of(Clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
-
-// A recorded or simulated source is shown at its own pace: faster sources wait, slower ones run in slow
-// motion rather than leave frames out, since every frame may carry a touched point.
-class Pace {
- public:
-  // When the frame with this timestamp is due.
-  Clock::time_point due(std::int64_t timestamp_ns) {
-    const Clock::time_point now = Clock::now();
-    const Clock::time_point due = start_ + std::chrono::nanoseconds(timestamp_ns - first_ns_);
-    if (started_ && due + std::chrono::milliseconds(100) >= now) return due;
-    started_ = true;
-    start_ = now;
-    first_ns_ = timestamp_ns;
-    return now;
-  }
-
- private:
-  bool started_ = false;
-  Clock::time_point start_;
-  std::int64_t first_ns_ = 0;
-};
 
 class Rate {
  public:
@@ -207,7 +187,7 @@ class Loop {
     const operation::OperationStatePtr state = run_.state_of_frame();
     if (options_.decorate) live_.decoration = options_.decorate(*state);
     const bool is_live = kind_ == sources::SourceKind::Live;
-    if (!is_live) inbox_.sleep_until(pace_.due(step.picture->timestamp_ns));
+    if (!is_live) await(pace_.due(step.picture->timestamp_ns));
     live_.picture = step.picture;
     const bool is_dated = is_live && step.picture->captured_ns > 0;
     live_.captured_s =
@@ -222,6 +202,14 @@ class Loop {
     if (is_live)
       run_.latency().add(Stage::Publish,
                          std::chrono::duration<double, std::milli>(Clock::now() - ready).count());
+  }
+
+  // What is pressed during a long wait is not to wait as long.
+  void await(Clock::time_point due) {
+    if (due - Clock::now() > std::chrono::milliseconds(100))
+      inbox_.wait_until(due);
+    else
+      inbox_.sleep_until(due);
   }
 
   // Once a second is as often as anybody reads it.
@@ -258,7 +246,7 @@ class Loop {
     live.picture = nullptr;
     live.decoration = nullptr;
   }};
-  Pace pace_;
+  worker::Pace pace_;
   Rate rate_;
   double latency_at_s_ = 0;
   sources::SourceKind kind_ = sources::SourceKind::Simulation;

@@ -100,6 +100,29 @@ TEST_F(LiveOperationTest, Hazard3ASlowSourceAndARefusedTouchArePublished) {
   live_.end_source();
 }
 
+// A gap in a recording's time stamps freezes nobody's screen: it is passed over, and what is pressed
+// meanwhile is taken at once.
+TEST_F(LiveOperationTest, AGapInARecordingIsNotWaitedFor) {
+  class GappedSource : public test::PlainSource {
+   public:
+    GappedSource() : PlainSource(3, false) {}
+    [[nodiscard]] camera::FramePtr next() override {
+      const camera::FramePtr plain = PlainSource::next();
+      if (plain == nullptr) return nullptr;
+      const auto frame = std::make_shared<camera::Frame>(*plain);
+      if (frame->index > 0) frame->timestamp_ns += 3'600'000'000'000;
+      return frame;
+    }
+  };
+  TheatreSource source = test::plain_source(0);
+  source.open = [] { return std::make_unique<GappedSource>(); };
+  const double begun_s = LiveOperation::now_s();
+  live_.start(source);
+  ASSERT_TRUE(waits_for([&] { return live_.latest()->phase == Phase::Ended; }));
+  EXPECT_LT(LiveOperation::now_s() - begun_s, 10);
+  EXPECT_EQ(live_.latest()->operation->frame_count, 3);
+}
+
 // A record that cannot be begun is said on the screen and ends nothing.
 TEST(LiveOperationRecord, TroubleIsPublished) {
   LiveOptions options;
