@@ -38,8 +38,8 @@ using LatencyReport = std::array<StageLatency, kStageCount>;
   return report[static_cast<std::size_t>(stage)];
 }
 
-// Counts in steps of an eighth of a millisecond up to half a second; what takes longer counts as that, its
-// worst is kept. Allocates nothing; one thread at a time.
+// Counts in steps of an eighth of a millisecond up to half a second and of a tenth of itself beyond that; the
+// worst is kept as it is. Allocates nothing; one thread at a time.
 class LatencyMeter {
  public:
   void add(Stage stage, double ms);  // what is not known (below 0) is left out
@@ -49,7 +49,9 @@ class LatencyMeter {
   void clear() { *this = LatencyMeter(); }
 
  private:
-  static constexpr std::size_t kSteps = 4000;
+  static constexpr std::size_t kEvenSteps = 4000, kSteps = kEvenSteps + 100;  // to an hour and more
+  [[nodiscard]] static std::size_t step_of(double ms);
+  [[nodiscard]] static double end_of_ms(std::size_t step);
   struct Counts {
     std::array<std::uint32_t, kSteps> at{};
     std::uint64_t all = 0;

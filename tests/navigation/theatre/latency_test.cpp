@@ -42,5 +42,21 @@ TEST(LatencyMeter, KeepsWhatIsBeyondItsScale) {
   EXPECT_EQ(of(meter.report(), Stage::ToScreen).median_ms, 0.01);
 }
 
+// Seconds are told as seconds: to a tenth of themselves, and never as less than they are.
+TEST(LatencyMeter, Hazard3TellsSecondsAsSeconds) {
+  LatencyMeter meter;
+  for (int i = 0; i < 98; ++i) meter.add(Stage::ToGuidance, 3000);
+  meter.add(Stage::ToGuidance, 8000);
+  meter.add(Stage::ToGuidance, 60'000);
+  const StageLatency all = of(meter.report(), Stage::ToGuidance);
+  EXPECT_GE(all.median_ms, 3000);
+  EXPECT_LE(all.median_ms, 3300);
+  EXPECT_GE(all.p99_ms, 8000);
+  EXPECT_LE(all.p99_ms, 8800);
+  EXPECT_EQ(all.worst_ms, 60'000);
+  meter.add(Stage::ToGuidance, 1e12);
+  EXPECT_EQ(of(meter.report(), Stage::ToGuidance).worst_ms, 1e12);
+}
+
 }  // namespace
 }  // namespace arthronaut::theatre
