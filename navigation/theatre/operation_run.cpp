@@ -52,13 +52,16 @@ void OperationRun::start(const TheatreSource& source) {
         is_live ? "the tools are seen by an outside tracker, and nobody says where it is"
                 : "the tools are seen by an outside tracker, which tells where they are now: only a live "
                   "source goes with it");
+  // All that may throw comes first: a source that has begun for the operation must be one that ends.
   auto opened = std::make_unique<pipeline::PrefetchedSource>(source.open, source.patience_s);
+  std::unique_ptr<tracker::PoseSource> tracker;
+  if (source.setup.pipeline.tools.tracker) tracker = source.tracker();
   operation_.start_source(source.setup);
   theatre_source_ = source;
   source_ = std::move(opened);
   live_ = Live();
   refusal_.words.clear();
-  if (source.setup.pipeline.tools.tracker) outside_.tracker = source.tracker();
+  outside_.tracker = std::move(tracker);
   record_trouble_.clear();
   video_trouble_.clear();
   record_is_due_ = static_cast<bool>(make_session_folder_);

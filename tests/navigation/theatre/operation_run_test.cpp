@@ -78,6 +78,19 @@ class NoisySource : public test::PlainSource {
   std::mt19937 random_{1};
 };
 
+// Without its tracker a source is none: nothing of it is left running, and the next one starts.
+TEST_F(OperationRunTest, ATrackerThatCannotBeMadeLeavesNoSourceBehind) {
+  OperationRun run(setup_, test::at_once(setup_), {});
+  TheatreSource tracked = test::plain_source(3, false, sources::SourceKind::Live);
+  tracked.setup.pipeline.tools.tracker = tools::OutsideTracker{"igtl://127.0.0.1:1", 0.2, 0.1};
+  tracked.tracker = []() -> std::unique_ptr<tracker::PoseSource> { throw DeviceError("no socket"); };
+  EXPECT_THROW(run.start(tracked), DeviceError);
+  EXPECT_FALSE(run.has_source());
+  EXPECT_FALSE(run.state()->has_source);
+  run.start(test::plain_source(3));
+  EXPECT_EQ(run_to_end(run), 3);
+}
+
 // A pedal is pressed for where the probe is now; what comes two seconds late shows where it was.
 TEST_F(OperationRunTest, Hazard3NoTouchAndNoStrokeIsTakenOfAnOldPicture) {
   const fs::path session = folder_ / "session";
