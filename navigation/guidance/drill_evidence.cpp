@@ -42,7 +42,7 @@ std::string_view to_text(EvidenceOutcome outcome) {
     case EvidenceOutcome::BesideEntry:
       return "the guide did not stand at the planned entry";
     case EvidenceOutcome::TooShort:
-      return "the guide stood at the planned entry too shortly";
+      return "guide or drill stood at the planned entry too shortly";
     case EvidenceOutcome::Seen:
       return "seen";
   }
@@ -148,9 +148,11 @@ DrillEvidenceSummary DrillEvidence::summary() const {
   summary.nearest_mm = nearest_mm_;
   // A drill's own marker says more than the guide that it runs through.
   if (!drill_.poses().empty()) {
-    summarise(drill_.poses(), summary);
-    summary.is_of_drill = summary.is_usable();
-    if (summary.is_usable()) return summary;
+    DrillEvidenceSummary of_drill = summary;
+    of_drill.outcome = EvidenceOutcome::TooShort;
+    of_drill.is_of_drill = true;
+    summarise(drill_.poses(), of_drill);
+    if (of_drill.is_usable() || valid_count_ == 0) return of_drill;
   }
   if (valid_count_ == 0) return summary;
   if (deep_enough_count_ == 0) {

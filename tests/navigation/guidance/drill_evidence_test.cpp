@@ -167,6 +167,23 @@ TEST(DrillEvidence, TheDrillsOwnPosesCountFirst) {
 }
 
 // An hour of it: the store stays as large as it was, and the answer is that of all of the time.
+TEST(DrillEvidence, ADrillThatWasSeenTooShortlyIsNoWantOfGuidance) {
+  DrillEvidence evidence(plan());
+  Frames frames;
+  GuidanceNumbers numbers;  // the guide is out of view
+  numbers.drill = drill_depth(plan(), 30, plan().entry_mm + 10 * plan().direction, plan().direction, 0.3);
+  for (int i = 0; i < 20; ++i) frames.add(evidence, numbers);
+  const DrillEvidenceSummary summary = evidence.summary();
+  EXPECT_EQ(summary.outcome, EvidenceOutcome::TooShort);
+  EXPECT_TRUE(summary.is_of_drill);
+  EXPECT_EQ(summary.pose_count, 20);
+  // With a guide beside it that never came to the bone, what is said is of the guide alone.
+  frames.add(evidence, guide_at(-10, plan().entry_mm, plan().direction));
+  EXPECT_EQ(evidence.summary().outcome, EvidenceOutcome::NeverTouched);
+  EXPECT_FALSE(evidence.summary().is_of_drill);
+  EXPECT_EQ(evidence.summary().pose_count, 0);
+}
+
 TEST(DrillEvidence, ThinsItselfOut) {
   DrillEvidence evidence(plan());
   Frames frames;
