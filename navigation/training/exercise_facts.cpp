@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "navigation/guidance/guidance.h"
 #include "navigation/tools/pivot_calibration.h"
 
 namespace arthronaut::training {
@@ -15,14 +16,6 @@ using Eigen::Vector3d;
 // this.
 constexpr double kWrong_mm = 2.0;
 constexpr int kTouchesToVerify = 3;
-
-// Where the axis crosses the plane through the entry across the plan, from the entry.
-double offset_mm(const tunnels::Tunnel& plan, const Vector3d& point_mm, const Vector3d& direction) {
-  const double along = direction.dot(plan.direction);
-  if (std::abs(along) < 0.1) return (point_mm - plan.entry_mm).norm();  // beside the plan: no crossing
-  const double way = (plan.entry_mm - point_mm).dot(plan.direction) / along;
-  return (point_mm + way * direction - plan.entry_mm).norm();
-}
 
 }  // namespace
 
@@ -146,7 +139,9 @@ void Examiner::follow_guide(const operation::OperationState& state, const simula
   before_.error_mm = error_mm.value_or(0);
   // The guide stands still while it drills: the tunnel is where it began.
   if (exercise_.goal == Goal::Drill && hand.drilled_depth_mm <= 0) return;
-  facts_.entry_offset_mm = offset_mm(plan_, hand.guide_point_mm, hand.guide_direction);
+  // As guidance has it, so that the score and the screen say the same.
+  facts_.entry_offset_mm =
+      (guidance::crossing_of(hand.guide_point_mm, hand.guide_direction, plan_) - plan_.entry_mm).norm();
   facts_.angle_deg =
       geometry::deg_from_rad(geometry::angle_between_rad(hand.guide_direction, plan_.direction));
   if (exercise_.goal == Goal::Drill) facts_.depth_error_mm = hand.drilled_depth_mm - plan_length_mm_;

@@ -67,6 +67,18 @@ TEST_F(ExaminerTest, MeasuresTheTunnelByTheTruth) {
   EXPECT_EQ(facts.bad_data_mm, 0);
 }
 
+// A guide that lies across the plan is as far beside the entry as guidance says: by its axis, not by its end.
+TEST_F(ExaminerTest, MeasuresAGuideAcrossThePlanAsGuidanceDoes) {
+  truth_.hand.guide_direction = Vector3d(0, std::cos(0.02), std::sin(0.02));
+  truth_.hand.guide_point_mm = {11, 5, 0};
+  go_on(3, 1);
+  ASSERT_TRUE(examiner_.facts().entry_offset_mm.has_value());
+  const Vector3d crossing =
+      guidance::crossing_of(truth_.hand.guide_point_mm, truth_.hand.guide_direction, plan_);
+  EXPECT_NEAR(*examiner_.facts().entry_offset_mm, (crossing - plan_.entry_mm).norm(), 1e-9);
+  EXPECT_LT(*examiner_.facts().entry_offset_mm, 2);
+}
+
 // To drill on while nothing guides is to act on bad data, by the millimetre.
 TEST_F(ExaminerTest, CountsWhatIsDrilledWithoutGuidance) {
   go_on(5, 1);
