@@ -23,6 +23,7 @@ using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Eigen::Vector3d;
 
 constexpr int kSides = 96;
+constexpr double kRing_mm = 3;          // of the cylinder's length, between one ring and the next
 constexpr double kFurthestOut_mm = 15;  // beyond a mouth, where nothing else comes
 
 Mesh cgal_from(const geometry::TriangleMesh& mesh) {
@@ -50,24 +51,30 @@ geometry::TriangleMesh mesh_from(Mesh& mesh) {
   return result;
 }
 
-// A closed cylinder from one point to another.
+// A closed cylinder from one point to another, in rings: the boxes about sides as long as the tunnel, which
+// runs aslant, would hold most of the bone, and each of its edges would be tried against each of them.
 geometry::TriangleMesh cylinder(const Vector3d& from, const Vector3d& to, double radius) {
-  const Vector3d axis = (to - from).normalized(), u = axis.unitOrthogonal(), v = axis.cross(u);
+  const Vector3d along = to - from, axis = along.normalized(), u = axis.unitOrthogonal(), v = axis.cross(u);
+  const int rings = std::max(1, static_cast<int>(std::ceil(along.norm() / kRing_mm)));
   geometry::TriangleMesh mesh;
-  for (int i = 0; i < kSides; ++i) {
-    const double angle = 2 * geometry::kPi * (i + 0.5) / kSides;
-    const Vector3d out = radius * (std::cos(angle) * u + std::sin(angle) * v);
-    mesh.vertices_mm.push_back(from + out);
-    mesh.vertices_mm.push_back(to + out);
+  for (int ring = 0; ring <= rings; ++ring) {
+    const Vector3d middle = from + along * (static_cast<double>(ring) / rings);
+    for (int i = 0; i < kSides; ++i) {
+      const double angle = 2 * geometry::kPi * (i + 0.5) / kSides;
+      mesh.vertices_mm.push_back(middle + radius * (std::cos(angle) * u + std::sin(angle) * v));
+    }
   }
+  const auto first = static_cast<std::int32_t>(mesh.vertices_mm.size());
   mesh.vertices_mm.push_back(from);
   mesh.vertices_mm.push_back(to);
   for (std::int32_t i = 0; i < kSides; ++i) {
-    const std::int32_t a = 2 * i, b = 2 * ((i + 1) % kSides);
-    mesh.triangles.push_back({a, b, b + 1});
-    mesh.triangles.push_back({a, b + 1, a + 1});
-    mesh.triangles.push_back({2 * kSides, b, a});
-    mesh.triangles.push_back({2 * kSides + 1, a + 1, b + 1});
+    const std::int32_t next = (i + 1) % kSides, last = kSides * rings;
+    for (std::int32_t at = 0; at < last; at += kSides) {
+      mesh.triangles.push_back({at + i, at + next, at + next + kSides});
+      mesh.triangles.push_back({at + i, at + next + kSides, at + i + kSides});
+    }
+    mesh.triangles.push_back({first, next, i});
+    mesh.triangles.push_back({first + 1, last + i, last + next});
   }
   return mesh;
 }

@@ -86,7 +86,7 @@ void refuse_foreign(const fs::path& folder) {
 ExportSummary export_plan(const cases::Case& knee, const fs::path& folder, const std::stop_token& stop) {
   if (knee.plan.tunnels.empty())
     throw InvalidInput("plan: nothing is planned, so there is nothing to export");
-  files::refuse_unwritable(folder);  // drilling takes half a minute
+  files::refuse_unwritable(folder);  // before seconds of drilling
   refuse_foreign(folder);
   ExportSummary summary;
   std::map<bones::BoneKind, geometry::TriangleMesh> drilled;
