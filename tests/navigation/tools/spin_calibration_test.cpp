@@ -49,7 +49,7 @@ TEST(SpinCalibration, IsExactWithoutNoise) {
 // Turning tells no more than the line: which way a guide drills along it is what was declared, and where
 // nothing is, and it does not point down the marker either, it is not told.
 TEST(SpinCalibration, PointsTheWayThatWasDeclared) {
-  for (const Eigen::Vector3d& direction : {Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()}) {
+  for (const Eigen::Vector3d& direction : {Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1)}) {
     const std::vector<RigidTransform> poses = spin(200, 0.02, 0.02, 120, 11, direction);
     const auto declared =
         calibrate_spin(poses, {.declared_direction = direction + Eigen::Vector3d(0.2, 0, 0)});
