@@ -30,6 +30,10 @@ constexpr double kCommonCornerErrorPx = 0.010;
 // Of a fit whose edges are farther off than they should be by this factor the corners tell nothing.
 constexpr double kNearlySamePx = 1, kMinChiSquared = 16, kPoorScale = 1.2;
 
+// By how much the half of a marker may be off from all of it: squared, by what both are known to, a
+// direction.
+constexpr double kMaxHalfSquare = 1.5;
+
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
@@ -206,6 +210,26 @@ std::optional<EdgePose> rival_tilt(const camera::CameraModel& camera, double siz
   if (are_near) told = std::min(told, std::min(fit.inliers, other.inliers) * (square(other) - square(fit)));
   if (told >= kMinChiSquared * kCorrelatedEdges) return std::nullopt;
   return other;
+}
+
+bool is_held_by_halves(const camera::CameraModel& camera, double size_mm, std::span<const EdgeSample> samples,
+                       std::span<const EdgeMeasurement> measurements, const EdgePose& fit,
+                       const BloomPrior& bloom, std::vector<EdgeMeasurement>& half,
+                       std::vector<char>& scratch) {
+  const auto holds = [&](double EdgeSample::*coordinate, double sign) {
+    half.clear();
+    for (const EdgeMeasurement& edge : measurements) {
+      if (edge.state == EdgeState::Found && sign * samples[edge.sample].*coordinate >= 0)
+        half.push_back(edge);
+    }
+    const EdgePose by_half =
+        fit_edge_pose(camera, size_mm, samples, half, fit.camera_from_marker, bloom, scratch);
+    if (!by_half.converged) return true;
+    const Vector6d apart = geometry::log(fit.camera_from_marker.inverse() * by_half.camera_from_marker);
+    return apart.dot((fit.covariance + by_half.covariance).ldlt().solve(apart)) < kMaxHalfSquare * 6;
+  };
+  return (holds(&EdgeSample::x, -1) || holds(&EdgeSample::x, 1)) &&
+         (holds(&EdgeSample::y, 1) || holds(&EdgeSample::y, -1));
 }
 
 RowTrend row_trend(const camera::CameraModel& camera, double size_mm, std::span<const EdgeSample> samples,

@@ -170,7 +170,7 @@ class MarkerTrack {
   MarkerCode code_;
   int cells_;
   std::vector<EdgeSample> samples_;
-  std::vector<EdgeMeasurement> measurements_, few_;  // few_: while motions are tried
+  std::vector<EdgeMeasurement> measurements_, few_;  // few_: of motions that are tried, of half a marker
   std::vector<char> is_inlier_;
   MarkerMotion motion_;
   std::optional<MarkerMotion::Sighting> published_;  // the last pose that stood

@@ -18,6 +18,8 @@ constexpr double kMuchBetter = 0.5;
 // Where fewer edges are found, in the mean of both ways, they scatter by less than this, in their predicted
 // sigmas, and the cells agree; or some are of what covers the marker.
 constexpr double kManyEdges = 0.75, kMaxPartScale = 2;
+// Where fewer are, something hides or bends a part: one half has to hold the pose by itself.
+constexpr double kNearlyAllEdges = 0.9;
 
 }  // namespace
 
@@ -156,6 +158,10 @@ RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fi
       go_on_from(rival->camera_from_marker, misfit_of(*rival));
     }
   }
+  if (observation.is_tracked() && fit.share[0] + fit.share[1] < 2 * kNearlyAllEdges &&
+      !is_held_by_halves(frame.camera, marker_.size_mm, samples_, measurements_, fit, frame.smear.bloom, few_,
+                         is_inlier_))
+    observation.state = MarkerState::Doubtful;
   const double cell = cell_px(frame, fit.camera_from_marker);
   if (observation.state == MarkerState::Covered)
     observation.state = reason_of_loss(fit.camera_from_marker, measurements_, cell);

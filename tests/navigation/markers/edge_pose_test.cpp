@@ -1,4 +1,4 @@
-// Poses by edges alone, told from the one that is tilted the other way.
+// Poses by edges alone, told from the one that is tilted the other way, and from one between two.
 #include "navigation/markers/edge_pose.h"
 
 #include <gtest/gtest.h>
@@ -63,6 +63,48 @@ TEST(EdgePose, ABadFitIsAskedWhetherItIsTiltedTheOtherWayHoweverFarItsCornersAre
   EXPECT_TRUE(is_asked(wrong));
   const EdgePose right = fit_edge_pose(camera, kSize_mm, samples, edges, truth, BloomPrior(), is_inlier);
   EXPECT_FALSE(is_asked(right));
+}
+
+bool is_held(const camera::CameraModel& camera, std::span<const EdgeSample> samples,
+             std::span<const EdgeMeasurement> edges, const RigidTransform& start) {
+  std::vector<char> is_inlier;
+  std::vector<EdgeMeasurement> half;
+  const EdgePose fit = fit_edge_pose(camera, kSize_mm, samples, edges, start, BloomPrior(), is_inlier);
+  EXPECT_TRUE(fit.converged);
+  return is_held_by_halves(camera, kSize_mm, samples, edges, fit, BloomPrior(), half, is_inlier);
+}
+
+// As a wire across a marker passes for its upper side: what is beside the truth is as much as what is of it.
+TEST(EdgePose, AFitBetweenWhatTwoHalvesSayIsHeldByNeither) {
+  const camera::CameraModel camera = small_scope();
+  const auto samples = edge_samples(codes_4x4_50()[0]);
+  const RigidTransform truth = facing_pose(0.5, 0.3, 24, 24, 14, 25);
+  const RigidTransform bent =
+      truth * RigidTransform{Eigen::Quaterniond(Eigen::AngleAxisd(0.35, Eigen::Vector3d::UnitX())),
+                             Eigen::Vector3d::Zero()};
+  auto edges = edges_of(camera, samples, truth, 0.3);
+  EXPECT_TRUE(is_held(camera, samples, edges, truth));
+  const auto others = edges_of(camera, samples, bent, 0.3);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (samples[i].y > 0) edges[i] = others[i];
+  }
+  EXPECT_FALSE(is_held(camera, samples, edges, truth));
+}
+
+// What hides or moves a quarter of it leaves two halves as they are.
+TEST(EdgePose, AFitIsHeldByTheHalvesThatACoverLeaves) {
+  const camera::CameraModel camera = small_scope();
+  const auto samples = edge_samples(codes_4x4_50()[0]);
+  const RigidTransform truth = facing_pose(0.5, 0.3, 24, 24, 14, 25);
+  auto edges = edges_of(camera, samples, truth, 0.3);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    if (samples[i].x > 0 && samples[i].y > 0) edges[i].offset_px = 3;
+  }
+  EXPECT_TRUE(is_held(camera, samples, edges, truth));
+  for (EdgeMeasurement& edge : edges) {
+    if (samples[edge.sample].y > 0) edge.state = EdgeState::Different;
+  }
+  EXPECT_TRUE(is_held(camera, samples, edges, truth));
 }
 
 }  // namespace
