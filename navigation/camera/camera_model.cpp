@@ -132,8 +132,18 @@ std::optional<Eigen::Matrix<double, 2, 4>> CameraModel::d_pixel_d_lens(
 }
 
 std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& pixel) const {
-  Eigen::Matrix2d ignored;
-  return undistort(pixel, ignored);
+  const bool refracts = fluid_model_ == FluidModel::FlatPort;
+  const double f = refracts ? focal_ : focal_ * index_ratio_;
+  const Eigen::Vector2d distorted = (pixel - center_).cwiseProduct(Eigen::Vector2d(1 / f, 1 / (f * aspect_)));
+  const double bend = xi_ * distorted.squaredNorm();
+  if (!(std::abs(bend) < 1)) return std::nullopt;
+  const double g = 1 / (1 + bend);
+  const Eigen::Vector2d m = g * distorted;
+  if (!refracts) return m;
+  const double n2 = index_ratio_ * index_ratio_;
+  const double e = n2 + (n2 - 1) * m.squaredNorm();
+  if (!(e > 0)) return std::nullopt;  // total reflection
+  return m / std::sqrt(e);
 }
 
 // With m the tangent coordinates in the calibration's medium, Snell's law gives t = m / sqrt(n^2 + (n^2 - 1)

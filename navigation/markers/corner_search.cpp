@@ -194,7 +194,8 @@ void CornerSearch::mark_likely(const camera::GrayView& view, int y) {
                      *row = view.row(y), *below = view.row(y + 1), *lower = view.row(y + 2),
                      *down = view.row(y + 3);
   std::uint8_t* out = is_likely_.data();
-  for (int x = kRadius; x < view.width - kRadius; ++x) {
+  const int end = view.width - kRadius;
+  for (int x = kRadius; x < end; ++x) {
     const std::uint8_t n = up[x], ne = upper[x + 2], e = row[x + 3], se = lower[x + 2], s = down[x],
                        sw = lower[x - 2], w = row[x - 3], nw = upper[x - 2];
     const std::uint8_t low =

@@ -66,21 +66,28 @@ struct BestSquares {
 
 // The straightest part first, then of what is left; by their angles. Gives how many there are.
 int find_sides(const std::vector<Eigen::Vector2d>& outline, double size, const Eigen::Vector2d& middle,
-               std::vector<char>& is_used, Sides& sides) {
+               OutlinePoints& points, Sides& sides) {
   const double tight = kOnOutline * size;
+  auto& [is_used, xs, ys] = points;
   const int count = static_cast<int>(outline.size());
   is_used.assign(outline.size(), 0);
   int lines = 0;
   for (; lines < kMaxLines; ++lines) {
     Side best;
+    xs.clear();
+    ys.clear();
+    for (int k = 0; k < count; ++k) {
+      if (is_used[k]) continue;
+      xs.push_back(outline[k].x());
+      ys.push_back(outline[k].y());
+    }
     for (int trial = 0; trial < kOutlineTrials; ++trial) {
       const int i = trial * 7919 % count, j = (i + 2 + trial * 104729 % std::max(1, count / 6)) % count;
       if (is_used[i] || is_used[j]) continue;
       const Eigen::Vector2d way = outline[j] - outline[i];
       if (way.norm() < 0.12 * size || way.norm() > 0.9 * size) continue;
       const Line line{outline[i], way.normalized()};
-      int on = 0;
-      for (int k = 0; k < count; ++k) on += !is_used[k] && line.distance(outline[k]) < tight;
+      const int on = count_near(line, xs, ys, tight, best.support);
       if (on > best.support) {
         best.line = line;
         best.support = on;
@@ -222,7 +229,7 @@ void SquareSearch::combine_sides(const camera::CameraModel& camera) {
   }
   const double size = (high - low).maxCoeff(), least_area = kMinPart * size * size;
   Sides sides;
-  const int lines = find_sides(outline_, size, 0.5 * (low + high), is_used_, sides);
+  const int lines = find_sides(outline_, size, 0.5 * (low + high), points_, sides);
   BestSquares<kSquaresOfARegion> best;
   for (int mask = 0; mask < 1 << lines; ++mask) {
     std::array<int, 4> chosen;

@@ -179,18 +179,20 @@ inline void explain(const FittedLight& light, const SeenPixels& pixels, const Se
   }
 }
 
+// Four columns at a time, which take the same of the rows.
 inline void add_up(const float (&rows)[kPixelsTogether][kProductSize],
                    float (&sum)[kProductSize][kProductSize]) {
-  constexpr int kWide = 8;
-  for (int column = 0; column < kProductSize; ++column) {
+  constexpr int kWide = 8, kColumns = 4;
+  static_assert(kWide % kColumns == 0);
+  for (int column = 0; column < DirectUnknowns::kCount; column += kColumns) {
     for (int first = column / kWide * kWide; first < kProductSize; first += kWide) {
-      Floats part, row;
-      load(&sum[column][first], part);
+      Floats parts[kColumns], row;
+      for (int i = 0; i < kColumns; ++i) load(&sum[column + i][first], parts[i]);
       for (int k = 0; k < kPixelsTogether; ++k) {
         load(&rows[k][first], row);
-        part += rows[k][column] * row;
+        for (int i = 0; i < kColumns; ++i) parts[i] += rows[k][column + i] * row;
       }
-      store(part, &sum[column][first]);
+      for (int i = 0; i < kColumns; ++i) store(parts[i], &sum[column + i][first]);
     }
   }
 }

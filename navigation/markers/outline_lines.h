@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -28,5 +29,20 @@ struct Line {
     return std::abs(cross(direction, p - point));
   }
 };
+
+// How many of these points lie nearer to the line than this; where they cannot be more than `most`, it may
+// stop counting.
+inline int count_near(const Line& line, std::span<const double> xs, std::span<const double> ys, double near,
+                      int most) {
+  constexpr std::size_t kAtATime = 32;
+  const double dx = line.direction.x(), dy = line.direction.y(), px = line.point.x(), py = line.point.y();
+  int count = 0;
+  for (std::size_t first = 0; first < xs.size(); first += kAtATime) {
+    const std::size_t end = std::min(xs.size(), first + kAtATime);
+    if (count + static_cast<int>(xs.size() - first) <= most) return count;
+    for (std::size_t i = first; i < end; ++i) count += std::abs(dx * (ys[i] - py) - dy * (xs[i] - px)) < near;
+  }
+  return count;
+}
 
 }  // namespace arthronaut::markers

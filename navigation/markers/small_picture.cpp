@@ -1,5 +1,7 @@
 // The picture that squares are sought in: the view, made small, and its sums.
 #include <algorithm>
+#include <cstring>
+#include <type_traits>
 
 #include "navigation/markers/square_search.h"
 
@@ -21,10 +23,16 @@ void average_row(const camera::GrayView& frame, int left, int top, int width, st
     for (int k = 0; k < kTimes; ++k) sum += rows[k][x];
     sums[x] = static_cast<std::uint16_t>(sum);
   }
+  // The sums that make one pixel are the parts of a word: one product adds them up in its highest part.
+  using Word = std::conditional_t<kTimes == 4, std::uint64_t, std::uint32_t>;
+  static_assert(sizeof(Word) == kTimes * sizeof(std::uint16_t) && kTimes * kTimes * 255 < 1 << 16);
+  constexpr int kHighest = 16 * (kTimes - 1);
+  constexpr Word kOnes = static_cast<Word>(0x0001'0001'0001'0001);
   for (int x = 0; x < width; ++x) {
-    unsigned sum = kTimes * kTimes / 2;
-    for (int i = 0; i < kTimes; ++i) sum += sums[kTimes * x + i];
-    out[x] = static_cast<std::uint8_t>(sum / (kTimes * kTimes));
+    Word parts;
+    std::memcpy(&parts, sums + kTimes * x, sizeof parts);
+    const auto sum = static_cast<unsigned>(static_cast<Word>(parts * kOnes) >> kHighest);
+    out[x] = static_cast<std::uint8_t>((sum + kTimes * kTimes / 2) / (kTimes * kTimes));
   }
 }
 
@@ -71,7 +79,8 @@ void SquareSearch::reserve(int width, int height) {
   column_sums_.reserve(static_cast<std::size_t>(width) * shrink_);
   sums_.reserve((static_cast<std::size_t>(width) + 1) * (height + 1));
   labels_.reserve(count);
-  parents_.reserve(most_regions);
+  joined_.parents.reserve(most_regions);
+  joined_.runs.reserve(most_regions + height);
   regions_.reserve(most_regions);
   first_.reserve(std::max(width, height));
   last_.reserve(std::max(width, height));
@@ -79,7 +88,9 @@ void SquareSearch::reserve(int width, int height) {
   const std::size_t most_points = 4 * static_cast<std::size_t>(width + height);
   outline_.reserve(most_points);
   hull_.reserve(most_points + 1);
-  is_used_.reserve(most_points);
+  points_.is_used.reserve(most_points);
+  points_.xs.reserve(most_points);
+  points_.ys.reserve(most_points);
 }
 
 // Without white: what was before it in the row stands in for a white pixel.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "navigation/markers/outline_lines.h"
 
@@ -25,6 +26,18 @@ constexpr double kMaxSideRatio = 5;
 // Of the side's length: what may belong to a side, and what lies on it.
 constexpr double kNearSide = 0.25, kOnLine = 0.02;
 constexpr int kLineTrials = 40, kMaxSidePoints = 512;
+
+// From x on the first of the bytes, all 0 or 1, that is not this one; the end where there is none.
+int next_unlike(const std::uint8_t* bytes, int x, int end, std::uint8_t value) {
+  std::uint64_t alike, word;
+  std::memset(&alike, value, sizeof alike);
+  for (; x + static_cast<int>(sizeof word) <= end; x += sizeof word) {
+    std::memcpy(&word, bytes + x, sizeof word);
+    if (word != alike) break;
+  }
+  while (x < end && bytes[x] == value) ++x;
+  return x;
+}
 
 // Removes the edge whose neighbours, prolonged until they meet, add the least area; false when no edge can
 // go. So a rounded or covered corner is restored.
@@ -86,6 +99,7 @@ bool SquareSearch::may_be_square(const Region& region, int least_filled) const {
 }
 
 void SquareSearch::mark_dark_pixels(int radius, int percent) {
+  const int common = std::gcd(percent, 100), parts = percent / common, all_parts = 100 / common;
   const int inner_first = std::min(radius, width_), inner_end = std::max(inner_first, width_ - radius);
   for (int y = 0; y < height_; ++y) {
     const int y0 = std::max(0, y - radius), y1 = std::min(height_, y + radius + 1);
@@ -93,9 +107,13 @@ void SquareSearch::mark_dark_pixels(int radius, int percent) {
     const std::uint32_t* lower = &sums_[static_cast<std::size_t>(y1) * (width_ + 1)];
     const std::uint8_t* in = &small_[static_cast<std::size_t>(y) * width_];
     std::uint8_t* out = &dark_[static_cast<std::size_t>(y) * width_];
+    // What is compared is whole numbers below 2^24, which floats hold exactly and processors multiply
+    // quickly.
     const auto mark = [&](int x, int x0, int x1, int area) {
       const int sum = static_cast<int>(lower[x1] - lower[x0] - upper[x1] + upper[x0]);
-      out[x] = (in[x] * area * 100 < sum * percent) & (sum > kMinMean * area);
+      out[x] = (static_cast<float>(in[x]) * static_cast<float>(area * all_parts) <
+                static_cast<float>(sum) * static_cast<float>(parts)) &
+               (sum > kMinMean * area);
     };
     const auto mark_near_border = [&](int x) {
       const int x0 = std::max(0, x - radius), x1 = std::min(width_, x + radius + 1);
@@ -109,61 +127,57 @@ void SquareSearch::mark_dark_pixels(int radius, int percent) {
   }
 }
 
-// Four-connected regions by union-find: the eight-connected would run across the corners of bright cells to
-// the outside.
+// Four-connected regions by union-find of the rows' runs: the eight-connected would run across the corners of
+// bright cells to the outside. They are in the order of their first pixels.
 void SquareSearch::label_regions() {
-  parents_.clear();
-  const auto root_of = [this](int label) {
-    while (parents_[label] != label) label = parents_[label] = parents_[parents_[label]];
+  auto& [runs, parents] = joined_;
+  parents.clear();
+  runs.clear();
+  const auto root_of = [&parents = parents](int label) {
+    while (parents[label] != label) label = parents[label] = parents[parents[label]];
     return label;
   };
+  std::size_t above = 0, above_end = 0;  // the runs of the row before
   for (int y = 0; y < height_; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y) * width_;
-    const std::uint8_t* dark = &dark_[row];
-    std::fill_n(labels_.begin() + static_cast<std::ptrdiff_t>(row), width_, -1);
-    for (int x = 0; x < width_; ++x) {
-      if (!dark[x]) {
-        const void* next = std::memchr(dark + x, 1, static_cast<std::size_t>(width_ - x));
-        if (!next) break;
-        x = static_cast<int>(static_cast<const std::uint8_t*>(next) - dark);
+    const std::uint8_t* dark = &dark_[static_cast<std::size_t>(y) * width_];
+    for (int x = next_unlike(dark, 0, width_, 0); x < width_;) {
+      Run run{y, x, next_unlike(dark, x, width_, 1), -1};
+      while (above < above_end && runs[above].end <= run.first) ++above;
+      for (std::size_t k = above; k < above_end && runs[k].first < run.end; ++k) {
+        const int root = root_of(runs[k].label);
+        if (run.label >= 0) parents[std::max(run.label, root)] = std::min(run.label, root);
+        run.label = run.label < 0 ? root : std::min(run.label, root);
       }
-      int& label = labels_[row + x];
-      const int before = x > 0 ? labels_[row + x - 1] : -1, above = y > 0 ? labels_[row - width_ + x] : -1;
-      if (before < 0 && above < 0) {
-        label = static_cast<int>(parents_.size());
-        parents_.push_back(label);
-      } else if (before >= 0 && above >= 0 && before != above) {
-        const int a = root_of(before), b = root_of(above);
-        label = std::min(a, b);
-        parents_[std::max(a, b)] = label;
-      } else {
-        label = before >= 0 ? before : above;
+      if (run.label < 0) {
+        run.label = static_cast<int>(parents.size());
+        parents.push_back(run.label);
       }
+      runs.push_back(run);
+      x = next_unlike(dark, run.end, width_, 0);
     }
+    above = above_end;
+    above_end = runs.size();
   }
   // Roots come before what hangs on them: number them in one pass.
   regions_.clear();
-  for (std::size_t i = 0; i < parents_.size(); ++i) {
-    if (parents_[i] == static_cast<int>(i)) {
-      parents_[i] = -1 - static_cast<int>(regions_.size());
+  for (std::size_t i = 0; i < parents.size(); ++i) {
+    if (parents[i] == static_cast<int>(i)) {
+      parents[i] = static_cast<int>(regions_.size());
       regions_.push_back({width_, -1, height_, -1, 0});
     } else {
-      const int parent = parents_[i];
-      parents_[i] = parents_[parent];
+      parents[i] = parents[parents[i]];
     }
   }
-  for (int y = 0; y < height_; ++y) {
-    int* row = &labels_[static_cast<std::size_t>(y) * width_];
-    for (int x = 0; x < width_; ++x) {
-      if (row[x] < 0) continue;
-      row[x] = -1 - parents_[row[x]];
-      Region& region = regions_[row[x]];
-      region.left = std::min(region.left, x);
-      region.right = std::max(region.right, x);
-      region.top = std::min(region.top, y);
-      region.bottom = y;
-      ++region.area;
-    }
+  std::fill(labels_.begin(), labels_.end(), -1);
+  for (const Run& run : runs) {
+    const int label = parents[run.label];
+    std::fill_n(&labels_[static_cast<std::size_t>(run.row) * width_ + run.first], run.end - run.first, label);
+    Region& region = regions_[label];
+    region.left = std::min(region.left, run.first);
+    region.right = std::max(region.right, run.end - 1);
+    region.top = std::min(region.top, run.row);
+    region.bottom = run.row;
+    region.area += run.end - run.first;
   }
 }
 
@@ -244,6 +258,7 @@ bool SquareSearch::straighten_sides(std::array<Eigen::Vector2d, 4>& quad) const 
   const double near = kNearSide * size, tight = kOnLine * size;
   std::array<Line, 4> lines;
   std::array<Eigen::Vector2d, kMaxSidePoints> points;
+  std::array<double, kMaxSidePoints> xs, ys;
   for (int side = 0; side < 4; ++side) {
     const Eigen::Vector2d &a = quad[side], &b = quad[(side + 1) % 4];
     const Line guess{a, (b - a).normalized()};
@@ -253,6 +268,8 @@ bool SquareSearch::straighten_sides(std::array<Eigen::Vector2d, 4>& quad) const 
       const double along = guess.direction.dot(point - a);
       if (count < kMaxSidePoints && along > 0.05 * length && along < 0.95 * length &&
           guess.distance(point) < near) {
+        xs[count] = point.x();
+        ys[count] = point.y();
         points[count++] = point;
       }
     }
@@ -265,8 +282,7 @@ bool SquareSearch::straighten_sides(std::array<Eigen::Vector2d, 4>& quad) const 
       if ((q - p).norm() < 0.25 * length) continue;
       const Line line{p, (q - p).normalized()};
       if (std::abs(line.direction.dot(guess.direction)) < 0.85) continue;
-      int on = 0;
-      for (int i = 0; i < count; ++i) on += line.distance(points[i]) < tight;
+      const int on = count_near(line, std::span(xs).first(count), std::span(ys).first(count), tight, most);
       if (on > most) {
         most = on;
         best = line;

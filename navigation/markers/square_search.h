@@ -26,6 +26,13 @@ struct FoundSquare {
 // contrast.
 enum class Contrast { Usual, Deep, Faint };
 
+// The points of an outline while its sides are sought: those that are of one by now, and where the others
+// are.
+struct OutlinePoints {
+  std::vector<char> is_used;
+  std::vector<double> xs, ys;
+};
+
 // Keeps its memory from call to call; a frame of the same size allocates nothing.
 class SquareSearch {
  public:
@@ -105,11 +112,20 @@ class SquareSearch {
   enum class Sums { None, OfAll, WithoutWhite } sums_are_ = Sums::None;
   std::vector<std::uint8_t> dark_, was_dark_;  // was_dark_: before white was marked, too
   int white_pixels_ = 0;
-  std::vector<int> labels_, parents_;
+  std::vector<int> labels_;
+  // How label_regions() puts them together: of dark pixels side by side, from the first on to before the end;
+  // and of each label the one that it belongs to.
+  struct Run {
+    int row, first, end, label;
+  };
+  struct {
+    std::vector<Run> runs;
+    std::vector<int> parents;
+  } joined_;
   std::vector<Region> regions_;
   std::vector<int> first_, last_;  // extremes of a region's rows or columns
   std::vector<Eigen::Vector2d> outline_, hull_;
-  std::vector<char> is_used_;  // of the outline's points
+  OutlinePoints points_;
   std::vector<FoundSquare> squares_;
   // Where the search for covered squares goes on: at this region, or at this pair of pieces.
   struct {
