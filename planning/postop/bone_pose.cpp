@@ -25,8 +25,11 @@ constexpr double kMostSigma_mm = 0.3;
 // So little on an edge: the bone is not in these images at all.
 constexpr double kNothingOnEdge = 0.4;
 
+constexpr const char* kNotInThem =
+    ": they are another patient's, or of the other side, or do not show this bone";
 constexpr const char* kTooLittle =
-    ": it is another bone, or they show too little of it; 60 mm from the joint on are enough";
+    ": they are another patient's, or of the other side, or show too little of it; 60 mm from the joint on "
+    "are enough";
 
 bool lies_on_edges(const EdgePose& pose) {
   return pose.on_edge_share >= kLeastOnEdge && pose.spread_mm <= kMostSpread_mm;
@@ -75,8 +78,8 @@ FoundBone find_bone(const images::VolumeSampler& postop, const BoneField& field,
   found.reasons.clear();
   const EdgePose& pose = found.pose;
   if (best < 0 || pose.on_edge_share < kNothingOnEdge) {
-    found.reasons.push_back("nothing in the images looks like it" +
-                            std::string(field.is_cut ? kTooLittle : ""));
+    found.reasons.push_back(std::string("nothing in the images looks like it") +
+                            (field.is_cut ? kTooLittle : kNotInThem));
     return found;
   }
   found.is_found = true;

@@ -121,6 +121,9 @@ TEST(BonePose, AnotherPatientsBoneIsNotReliable) {
   const FoundBone tibia = found_in(volume, knee(), bones::BoneKind::Tibia);
   EXPECT_FALSE(tibia.is_found);
   EXPECT_FALSE(tibia.reliable);
+  // Why that may be: who looks at it knows whose images he took.
+  EXPECT_THAT(tibia.reasons,
+              testing::Contains(testing::AllOf(HasSubstr("another patient's"), HasSubstr("other side"))));
 }
 
 // A scan that ends within the condyles.
