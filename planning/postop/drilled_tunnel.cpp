@@ -68,17 +68,18 @@ class Finder {
         sampler_(postop),
         postop_from_plan_(postop_from_plan),
         bone_(bone),
+        depths_(bone),
         grid_(bone_grid(sampler_, postop_from_plan, bone, plan.entry_mm, kGridRadius_mm)) {}
 
   [[nodiscard]] const BoneGrid& grid() const { return grid_; }
 
   // nullopt: too short, or it does not open at the bone's surface.
-  [[nodiscard]] std::optional<Candidate> measured(const Bore& found) const {
+  [[nodiscard]] std::optional<Candidate> measured(const Bore& found) {
     Candidate candidate;
     const auto first = passage_of(bone_, found.entry_mm, found.direction);
     if (!first) return std::nullopt;
     const double whole_mm = first->length_mm();
-    const auto voxels = wall_voxels(volume_, postop_from_plan_.inverse(), grid_, bone_, found, whole_mm + 8,
+    const auto voxels = wall_voxels(volume_, postop_from_plan_.inverse(), grid_, depths_, found, whole_mm + 8,
                                     found.radius_mm + kReach_mm);
     Bore bore{first->entry_mm, found.direction, found.radius_mm, 0};
     if (!fitted(voxels, bore, std::min(whole_mm, kFirstLength_mm), WallProfile{}, candidate))
@@ -294,6 +295,7 @@ class Finder {
   images::VolumeSampler sampler_;
   geometry::RigidTransform postop_from_plan_;
   const geometry::Surface& bone_;
+  VoxelDepths depths_;
   BoneGrid grid_;
 };
 
@@ -327,7 +329,7 @@ DrilledTunnel told(const Candidate& candidate, const tunnels::Tunnel& plan) {
 DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTransform& postop_from_plan,
                            const geometry::Surface& bone, const tunnels::Tunnel& plan,
                            std::span<const tunnels::Tunnel> others) {
-  const Finder finder(postop, postop_from_plan, bone, plan);
+  Finder finder(postop, postop_from_plan, bone, plan);
   std::vector<Candidate> candidates;
   for (const Bore& bore : search_bores(finder.grid(), plan)) {
     if (auto candidate = finder.measured(bore)) candidates.push_back(std::move(*candidate));

@@ -14,20 +14,24 @@ constexpr double kLeastDepth_mm = 0.9;
 // By which the grid's depths may be off.
 constexpr double kGridOff_mm = BoneGrid::kStep_mm;
 
-void tell_depth(const geometry::Surface& bone, WallVoxel& voxel) {
-  const Vector3d from_surface = voxel.p_mm - bone.closest_point(voxel.p_mm).point_mm;
-  const double depth_mm = from_surface.norm();
-  if (depth_mm >= kDeep_mm || depth_mm < 1e-9) return;
-  voxel.depth_mm = static_cast<float>(depth_mm);
-  voxel.deeper = (from_surface / depth_mm).cast<float>();
-}
-
 }  // namespace
+
+void VoxelDepths::tell(std::size_t index, WallVoxel& voxel) {
+  const auto [known, is_new] = known_.try_emplace(index, Depth{voxel.depth_mm, voxel.deeper});
+  Depth& depth = known->second;
+  if (is_new) {
+    const Vector3d from_surface = voxel.p_mm - bone_.closest_point(voxel.p_mm).point_mm;
+    const double depth_mm = from_surface.norm();
+    if (depth_mm < kDeep_mm && depth_mm > 1e-9)
+      depth = {static_cast<float>(depth_mm), (from_surface / depth_mm).cast<float>()};
+  }
+  voxel.depth_mm = depth.depth_mm;
+  voxel.deeper = depth.deeper;
+}
 
 std::vector<WallVoxel> wall_voxels(const images::Volume& postop,
                                    const geometry::RigidTransform& plan_from_postop, const BoneGrid& grid,
-                                   const geometry::Surface& bone, const Bore& bore, double length_mm,
-                                   double reach_mm) {
+                                   VoxelDepths& depths, const Bore& bore, double length_mm, double reach_mm) {
   const geometry::RigidTransform postop_from_plan = plan_from_postop.inverse();
   const Eigen::Affine3d index_from_lps = postop.lps_from_index.inverse();
   Vector3d low = Vector3d::Constant(1e9), high = -low;
@@ -71,7 +75,7 @@ std::vector<WallVoxel> wall_voxels(const images::Volume& postop,
         if (depth_mm < kLeastDepth_mm) continue;
         const float hu = postop.at(i, j, k);
         voxels.push_back({p, hu, hu > kMetal_hu, has_metal && is_by_metal(i, j, k)});
-        if (depth_mm < kDeep_mm + kGridOff_mm) tell_depth(bone, voxels.back());
+        if (depth_mm < kDeep_mm + kGridOff_mm) depths.tell(postop.index(i, j, k), voxels.back());
       }
     }
   }

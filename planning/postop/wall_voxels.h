@@ -1,6 +1,7 @@
 // The voxels about a bore that tell of its wall. Inner header of postop.
 #pragma once
 
+#include <unordered_map>
 #include <vector>
 
 #include "planning/postop/bone_grid.h"
@@ -20,10 +21,30 @@ struct WallVoxel {
   Eigen::Vector3f deeper = Eigen::Vector3f::Zero();  // unit, from the surface on; zero where it is deep
 };
 
-// The voxels within the bone within `reach_mm` of the bore's axis. `bone`: what `grid` is of.
+// How deep voxels of one volume lie under the bone's surface. Bores that are tried one after another share
+// most of theirs, and the nearest point of a surface is dear: each is sought once.
+class VoxelDepths {
+ public:
+  // The bone must outlive it.
+  explicit VoxelDepths(const geometry::Surface& bone) : bone_(bone) {}
+
+  // Depth and direction of a voxel; `index`: its place in the volume.
+  void tell(std::size_t index, WallVoxel& voxel);
+
+ private:
+  struct Depth {
+    float depth_mm;
+    Eigen::Vector3f deeper;
+  };
+
+  const geometry::Surface& bone_;
+  std::unordered_map<std::size_t, Depth> known_;
+};
+
+// The voxels within the bone within `reach_mm` of the bore's axis. `depths`: of the bone that `grid` is of.
 [[nodiscard]] std::vector<WallVoxel> wall_voxels(const images::Volume& postop,
                                                  const geometry::RigidTransform& plan_from_postop,
-                                                 const BoneGrid& grid, const geometry::Surface& bone,
-                                                 const Bore& bore, double length_mm, double reach_mm);
+                                                 const BoneGrid& grid, VoxelDepths& depths, const Bore& bore,
+                                                 double length_mm, double reach_mm);
 
 }  // namespace arthronaut::postop
