@@ -111,7 +111,8 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee
              .reasons = planned.doubts,
              .source = planned.source,
              .place = planned.place,
-             .off_norm_mm = planned.off_norm_mm};
+             .off_norm_mm = planned.off_norm_mm,
+             .passing_entry_mm = planned.passing_entry_mm};
   for (const tunnels::PlanCheck& check : planned.failed) {
     verdict.is_reliable = false;
     verdict.reasons.push_back("no direction that a drill can follow from there passes the check \"" +

@@ -100,6 +100,7 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review
     node["source"] = verdict.source;
     node["place"] = verdict.place;
     node["off_norm_mm"] = verdict.off_norm_mm;
+    if (const auto& p = verdict.passing_entry_mm) node["passing_entry_mm"] = {p->x(), p->y(), p->z()};
   }
   if (verdict.kept_version > 0) node["kept_version"] = verdict.kept_version;
   node["reliable"] = verdict.is_reliable && fit.is_valid();

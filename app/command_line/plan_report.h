@@ -17,6 +17,7 @@ struct PlanVerdict {
   std::vector<std::string> reasons;
   std::string source, place;  // as default_plan::DefaultTunnel has them; empty where no default was made
   double off_norm_mm = 0;
+  std::optional<Eigen::Vector3d> passing_entry_mm;  // see DefaultTunnel
   int kept_version = 0;  // of the plan that the default took the place of; 0: it took none's
 };
 

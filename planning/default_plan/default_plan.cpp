@@ -1,5 +1,6 @@
 #include "planning/default_plan/default_plan.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -89,10 +90,10 @@ struct Site {
             .bundle = bundle};
   }
   // nullopt where no bone is at the norm's place.
-  [[nodiscard]] std::optional<Tunnel> at_norm(Bundle bundle, double share = 0) const {
-    Tunnel tunnel = tunnel_of(bundle);
-    const auto footprint = norms::expected_footprint(input.bone->mesh, *input.surface, tunnel.bone, side,
-                                                     marks, norm_apart(tunnel.bone, bundle, share));
+  [[nodiscard]] std::optional<Tunnel> at(const norms::InsertionNorm& norm) const {
+    Tunnel tunnel = tunnel_of(norm.bundle);
+    const auto footprint =
+        norms::expected_footprint(input.bone->mesh, *input.surface, tunnel.bone, side, marks, norm);
     if (!footprint) return std::nullopt;
     tunnel.entry_mm = footprint->center_mm;
     tunnel.direction = -footprint->normal;
@@ -102,6 +103,13 @@ struct Site {
                                             const Tunnel* beside = nullptr) const {
     return at_entry && !options.stop.stop_requested() ? aim(*at_entry, *input.surface, joint, options, beside)
                                                       : std::nullopt;
+  }
+  // The plan's checks that this tunnel alone fails; not of its diameter, which was asked for.
+  [[nodiscard]] std::vector<tunnels::PlanCheck> failed_by(const Tunnel& tunnel) const {
+    auto checks = tunnels::check_plan(tunnel, tunnels::measure(tunnel, *input.surface), joint.surroundings);
+    std::erase_if(checks,
+                  [](const auto& check) { return !tunnels::is_failed(check) || check.name == "Diameter"; });
+    return checks;
   }
   // Infinite where one of them misses the bone.
   [[nodiscard]] double between_mm(const Tunnel& one, const Tunnel& other) const {
@@ -130,7 +138,7 @@ class Places {
   explicit Places(const Site& site) : site_(site) {}
   [[nodiscard]] const std::optional<Tunnel>& entry(Bundle bundle, double share = 0) {
     const auto [at, is_new] = entries_.try_emplace({bundle, share});
-    if (is_new) at->second = site_.at_norm(bundle, share);
+    if (is_new) at->second = site_.at(norm_apart(site_.input.bone->kind, bundle, share));
     return at->second;
   }
   // With nothing beside it.
@@ -199,6 +207,57 @@ std::optional<Tunnel> bundle_tunnel(const Site& site, Places& places, DefaultTun
   return best->tunnel;
 }
 
+// Steps off the norm's place within its spread, in shares of it, the nearest first.
+std::vector<Eigen::Vector2d> steps_within_spread() {
+  constexpr int kSteps = 4;
+  std::vector<Eigen::Vector2d> steps;
+  for (int along = -kSteps; along <= kSteps; ++along) {
+    for (int across = -kSteps; across <= kSteps; ++across) {
+      const Eigen::Vector2d step = Eigen::Vector2d(along, across) / kSteps;
+      if (step.norm() > 0 && step.norm() <= 1) steps.push_back(step);
+    }
+  }
+  std::ranges::stable_sort(steps, {}, [](const auto& step) { return step.squaredNorm(); });
+  return steps;
+}
+
+// Where within the norm's spread a tunnel of the same aim passes every check, as the map of entries shows it.
+std::optional<Vector3d> nearest_that_passes(const Site& site, const Tunnel& at_norm) {
+  for (const Eigen::Vector2d& step : steps_within_spread()) {
+    if (site.options.stop.stop_requested()) return std::nullopt;
+    norms::InsertionNorm norm = norms::default_norm(at_norm.bone, at_norm.bundle);
+    norm.along.mean += step.x() * norm.along.sd;
+    norm.across.mean += step.y() * norm.across.sd;
+    auto moved = site.at(norm);
+    if (!moved) continue;
+    moved->direction = at_norm.direction;
+    if (site.failed_by(*moved).empty()) return moved->entry_mm;
+  }
+  return std::nullopt;
+}
+
+// "0.9 mm lateral, 0.4 mm anterior"
+std::string way_in_words(const Vector3d& way_mm, const landmarks::AnatomicalAxes& axes) {
+  const double lateral = way_mm.dot(axes.lateral), anterior = way_mm.dot(axes.anterior);
+  return files::format("%.1f mm %s, %.1f mm %s", std::abs(lateral), lateral > 0 ? "lateral" : "medial",
+                       std::abs(anterior), anterior > 0 ? "anterior" : "posterior");
+}
+
+// The entry itself stays: which places pass changes with what of the shaft another scan shows, by whose axis
+// the tunnel is aimed, and a default that follows them leaps by 1 to 2 mm (CT 051).
+void look_around(const Site& site, const Tunnel& at_norm, DefaultTunnel& result) {
+  if (at_norm.bone != bones::BoneKind::Tibia || result.failed.empty()) return;
+  result.passing_entry_mm = nearest_that_passes(site, at_norm);
+  if (!result.passing_entry_mm) {
+    result.place += "; with this aim no place within the norm's spread passes";
+    return;
+  }
+  const Vector3d way_mm = *result.passing_entry_mm - at_norm.entry_mm;
+  result.place += files::format(
+      "; with this aim a tunnel %.1f mm from there (%s), still within the norm's spread, passes every check",
+      way_mm.norm(), way_in_words(way_mm, site.joint.axes).c_str());
+}
+
 DefaultTunnel stopped() {
   DefaultTunnel result;
   result.outcome = Outcome::Stopped;
@@ -263,6 +322,7 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
   const Site site{input, side, marks, *joint, options};
   Places places(site);
   std::optional<Tunnel> aimed;
+  bool is_at_norm = false;
   if (options.bundle == Bundle::Whole && is_confirmed("native_footprint")) {
     const auto on = input.surface->closest_point(input.landmarks.at("native_footprint"));
     Tunnel marked = site.tunnel_of(Bundle::Whole);
@@ -274,8 +334,8 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
   } else if (const auto& at_norm = places.entry(options.bundle); at_norm) {
     result.source = norms::cited(norms::default_norm(kind, options.bundle));
     result.place = "at the norm's place";
-    aimed = options.bundle == Bundle::Whole ? site.aimed(at_norm, input.beside)
-                                            : bundle_tunnel(site, places, result);
+    is_at_norm = options.bundle == Bundle::Whole;
+    aimed = is_at_norm ? site.aimed(at_norm, input.beside) : bundle_tunnel(site, places, result);
   } else {
     result.outcome = Outcome::NoFootprint;
     result.message = "no bone is where the norm places the insertion";
@@ -289,11 +349,9 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
     return result;
   }
   result.tunnel = *aimed;
-  for (auto& check :
-       tunnels::check_plan(*aimed, tunnels::measure(*aimed, *input.surface), joint->surroundings)) {
-    const bool was_asked_for = check.name == "Diameter";
-    if (tunnels::is_failed(check) && !was_asked_for) result.failed.push_back(std::move(check));
-  }
+  result.failed = site.failed_by(*aimed);
+  if (is_at_norm) look_around(site, *aimed, result);
+  if (options.stop.stop_requested()) return stopped();
   result.outcome = Outcome::Planned;
   result.message.clear();
   return result;

@@ -8,6 +8,7 @@
 #include "planning/geometry/error.h"
 #include "planning/norms/footprint.h"
 #include "planning/phantom/phantom_knee.h"
+#include "planning/plan_export/drilled_bone.h"
 #include "planning/tunnels/plan_norms.h"
 #include "planning/tunnels/tunnel_pair.h"
 
@@ -81,6 +82,55 @@ TEST(DefaultPlan, PassesTheChecksOfItsOwnPlan) {
           ADD_FAILURE() << bones::to_text(side) << " " << check.name << ": " << check.text;
       }
     }
+  }
+}
+
+// A hole beside the tibia's tunnel leaves too thin a wall to any aim from the norm's place, as a steep flank
+// of the eminence does: the entry stays where the norm has it, and it is said which place within the norm's
+// spread passes every check, or that none does.
+TEST(DefaultPlan, SaysWhereWithinTheNormsSpreadATibiaPassesEveryCheck) {
+  const Knee& knee = knee_of(Side::Right);
+  const auto whole = plan_bone(knee.inputs(true)[1], Side::Right);
+  ASSERT_TRUE(whole.failed.empty());
+  EXPECT_FALSE(whole.passing_entry_mm);
+  EXPECT_EQ(whole.place, "at the norm's place");
+  constexpr double kHole_mm = 6;
+  for (const double wall_left_mm : {0.2, -2.0}) {
+    SCOPED_TRACE(wall_left_mm);
+    tunnels::Tunnel hole = whole.tunnel;
+    hole.diameter_mm = kHole_mm;
+    const Vector3d across = Vector3d::UnitX() - hole.direction.x() * hole.direction;  // medial
+    hole.entry_mm += (whole.tunnel.diameter_mm / 2 + kHole_mm / 2 + wall_left_mm) * across.normalized();
+    const auto mouth = knee.tibia.first_hit(hole.entry_mm - 30 * hole.direction, hole.direction);
+    ASSERT_TRUE(mouth);
+    hole.entry_mm = mouth->point_mm;
+    const auto drilled = plan_export::drill(knee.made.tibia.mesh, hole);
+    ASSERT_TRUE(drilled.is_usable()) << drilled.reason;
+    const bones::Bone tibia{BoneKind::Tibia, drilled.mesh, ""};
+    const geometry::Surface surface(tibia.mesh);
+    BoneInput input = knee.inputs(true)[1];
+    input.bone = &tibia;
+    input.surface = &surface;
+    const auto made = plan_bone(input, Side::Right);
+    ASSERT_TRUE(made.is_usable()) << made.message;
+    EXPECT_LT((made.tunnel.entry_mm - whole.tunnel.entry_mm).norm(), 1e-6);
+    EXPECT_FALSE(made.failed.empty());
+    if (wall_left_mm < 0) {
+      EXPECT_EQ(made.place, "at the norm's place; with this aim no place within the norm's spread passes");
+      EXPECT_FALSE(made.passing_entry_mm);
+      continue;
+    }
+    ASSERT_TRUE(made.passing_entry_mm) << made.place;
+    const double away_mm = (*made.passing_entry_mm - made.tunnel.entry_mm).norm();
+    EXPECT_GT(away_mm, 0.3);
+    EXPECT_LT(away_mm, 2);  // one sigma is 1.8 mm
+    EXPECT_TRUE(made.place.starts_with(
+        files::format("at the norm's place; with this aim a tunnel %.1f mm from there (", away_mm)))
+        << made.place;
+    EXPECT_NE(made.place.find(" mm lateral, "), std::string::npos) << made.place;  // the hole is medial
+    tunnels::Tunnel moved = made.tunnel;
+    moved.entry_mm = *made.passing_entry_mm;
+    EXPECT_GE(tunnels::measure(moved, surface).wall_mm, 1);  // what the tibia's check asks for
   }
 }
 
