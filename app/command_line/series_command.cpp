@@ -5,6 +5,7 @@
 
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
+#include "planning/bones/mesh_file.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
@@ -96,7 +97,12 @@ void list_series(const Context& context, const Arguments& arguments) {
     const std::string first = list.skipped.empty() ? ""
                                                    : " (" + list.skipped.front().file.filename().string() +
                                                          ": " + list.skipped.front().reason + ")";
-    throw InvalidInput(arguments.source, "", "holds no image" + first);
+    const auto is_mesh = [](const auto& entry) { return bones::is_mesh_file(entry.path()); };
+    const bool has_mesh = std::filesystem::is_directory(arguments.source) &&
+                          std::ranges::any_of(std::filesystem::directory_iterator(arguments.source), is_mesh);
+    const std::string meshes =
+        has_mesh ? "; its meshes are no images: arthronaut import takes each by its name" : "";
+    throw InvalidInput(arguments.source, "", "holds no image" + first + meshes);
   }
   // Of one file there is nothing else to list. In a folder, what is wrong with each is the list.
   if (!std::filesystem::is_directory(arguments.source) &&

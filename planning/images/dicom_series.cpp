@@ -2,6 +2,7 @@
 #include <iterator>
 #include <set>
 
+#include "planning/bones/mesh_file.h"
 #include "planning/geometry/error.h"
 #include "planning/images/dicom_study.h"
 #include "planning/images/volume_bytes.h"
@@ -26,18 +27,33 @@ bool is_aside(const DicomSlices& slices, const DicomSlices& volume) {
   return slices.size() == 1 && !is_like_a_slice;
 }
 
-// Other volumes are files of their own, each given by its name.
-[[noreturn]] void refuse_without_dicom(const fs::path& source, const DicomStudy& study) {
+// The first of them, as a sentence lists them.
+std::string some_of(const std::vector<fs::path>& files) {
   constexpr std::size_t kMostNamed = 5;
   std::string names;
-  std::size_t volumes = 0;
+  for (std::size_t i = 0; i < std::min(files.size(), kMostNamed); ++i)
+    names += (i == 0 ? "" : ", ") + files[i].string();
+  return files.size() > kMostNamed ? names + " and " + std::to_string(files.size() - kMostNamed) + " more"
+                                   : names;
+}
+
+// Other volumes, and meshes, are files of their own, each given by its name.
+[[noreturn]] void refuse_without_dicom(const fs::path& source, const DicomStudy& study) {
+  std::vector<fs::path> volumes, meshes;
   for (const fs::path& other : study.others) {
-    if (!is_volume_source(other) || ++volumes > kMostNamed) continue;
-    names += (names.empty() ? "" : ", ") + other.string();
+    if (is_volume_source(other))
+      volumes.push_back(other);
+    else if (bones::is_mesh_file(other))
+      meshes.push_back(other);
   }
-  if (volumes > kMostNamed) names += " and " + std::to_string(volumes - kMostNamed) + " more";
-  throw InvalidInput(source, "",
-                     "holds no DICOM file" + (volumes > 0 ? "; name the volume in it itself: " + names : ""));
+  std::string words = "holds no DICOM file";
+  if (!volumes.empty()) words += "; name the volume in it itself: " + some_of(volumes);
+  if (!meshes.empty())
+    words +=
+        "; of the meshes in it name one bone's at a time, with --bone femur or --bone tibia and --side "
+        "(the second joins the case of the first): " +
+        some_of(meshes);
+  throw InvalidInput(source, "", words);
 }
 
 DicomSlices chosen_series(const fs::path& source, DicomStudy study, const std::string& wanted) {

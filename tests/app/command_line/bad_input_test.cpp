@@ -116,6 +116,20 @@ TEST_F(BadInput, FolderOfVolumesThatAreNoDicom) {
                                    HasSubstr("scans/knee.nii.gz"), Not(HasSubstr("letter.txt"))));
 }
 
+// Nor is a folder of meshes one knee's: it is said how they are taken.
+TEST_F(BadInput, FolderOfMeshesThatAreNoDicom) {
+  std::filesystem::create_directory(folder_ / "meshes");
+  for (const char* name : {"a.stl", "b.vtk"}) test::write_file(folder_ / "meshes" / name, "solid");
+  const auto result = run_program({"import", folder_ / "meshes", "-o", folder_ / "knee.arthro"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, AllOf(HasSubstr("meshes: holds no DICOM file; of the meshes in it name one"),
+                                   HasSubstr("--bone femur or --bone tibia and --side"),
+                                   HasSubstr("meshes/a.stl"), HasSubstr("meshes/b.vtk")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "knee.arthro"));
+  EXPECT_THAT(run_program({"series", folder_ / "meshes"}).errors,
+              AllOf(HasSubstr("meshes: holds no image"), HasSubstr("arthronaut import")));
+}
+
 TEST_F(BadInput, MeshThatIsCutOffOrHoldsNoNumber) {
   test::write_file(folder_ / "cut.stl",
                    std::string(80, ' ') + std::string("\x10\0\0\0", 4) + std::string(70, '\0'));
