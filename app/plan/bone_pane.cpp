@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/plan/edge_words.h"
+#include "app/plan/pane_text.h"
 #include "app/scene/lateral_plane.h"
 #include "app/scene/notch_cut.h"
 #include "app/widgets/tooltip.h"
@@ -30,27 +31,6 @@ std::optional<BoneKind> only_bone_of(scene::ViewDirection view) {
 float radius_px(const PaneMark& mark) {
   if (mark.id.empty()) return 4;  // one of many
   return mark.shape == PaneMark::Shape::Cross || mark.shape == PaneMark::Shape::Pin ? 8 : 13;
-}
-
-// Where a word does not run over one that was drawn before: beside its sign, or a line below or above.
-ImVec2 free_place(const ImVec2& wanted, const ImVec2& size, std::vector<ImVec4>& taken) {
-  const auto rect = [&](int line) {
-    const float top = wanted.y + static_cast<float>(line) * size.y;
-    return ImVec4(wanted.x, top, wanted.x + size.x, top + size.y);
-  };
-  const auto is_free = [&](const ImVec4& place) {
-    return std::ranges::none_of(taken, [&](const ImVec4& other) {
-      return place.x < other.z && other.x < place.z && place.y < other.w && other.y < place.w;
-    });
-  };
-  ImVec4 place = rect(0);
-  for (const int line : {0, 1, -1, 2, -2})
-    if (is_free(rect(line))) {
-      place = rect(line);
-      break;
-    }
-  taken.push_back(place);
-  return {place.x, place.y};
 }
 
 // Whether the point lies in a closed line, by how often a ray from it crosses.
@@ -288,9 +268,10 @@ void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
     if (!mark.word.empty() && (!is_behind || mark.can_be_dragged)) {
       const std::string word = mark.word + (is_behind ? " (behind)" : "");
       const ImFont* font = is_behind ? ui.theme.body : ui.theme.strong;
-      const ImVec2 place = free_place(
-          {at.x + r * 1.4F, at.y - (mark.shape == PaneMark::Shape::Pin ? 2.1F * r : 0) - font->FontSize / 2},
-          font->CalcTextSizeA(font->FontSize, std::numeric_limits<float>::max(), 0, word.c_str()), words);
+      const ImVec2 place =
+          free_place({at.x, at.y - (mark.shape == PaneMark::Shape::Pin ? 2.1F * r : 0)},
+                     font->CalcTextSizeA(font->FontSize, std::numeric_limits<float>::max(), 0, word.c_str()),
+                     r * 1.4F, area, words);
       draw.AddText(font, font->FontSize, {place.x + 1, place.y + 1}, widgets::kBackground, word.c_str());
       draw.AddText(font, font->FontSize, place, is_behind ? kHidden : widgets::kText, word.c_str());
     }

@@ -20,6 +20,29 @@ namespace arthronaut::plan {
           within(point.y, picture.y, picture.height - text.y)};
 }
 
+// Where a word runs over none of those that were drawn before (`taken`, as corners; it joins them) and not
+// over the edge: to the right of its sign at `point`, whose half width is `gap`, else to the left, on the
+// lines above and below in turn. Where nothing is free: to the right.
+[[nodiscard]] inline ImVec2 free_place(const ImVec2& point, const ImVec2& text, float gap,
+                                       const widgets::Rect& picture, std::vector<ImVec4>& taken) {
+  const auto is_free = [&](const ImVec4& place) {
+    return place.x >= picture.x && place.z <= picture.x + picture.width && place.y >= picture.y &&
+           place.w <= picture.y + picture.height && std::ranges::none_of(taken, [&](const ImVec4& other) {
+             return place.x < other.z && other.x < place.z && place.y < other.w && other.y < place.w;
+           });
+  };
+  const auto put = [&](const ImVec2& corner) {
+    taken.emplace_back(corner.x, corner.y, corner.x + text.x, corner.y + text.y);
+    return corner;
+  };
+  for (const float line : {0.F, 1.F, -1.F, 2.F, -2.F, 3.F, -3.F})
+    for (const float left : {point.x + gap, point.x - gap - text.x}) {
+      const ImVec2 corner(left, point.y + (line - 0.5F) * text.y);
+      if (is_free({corner.x, corner.y, corner.x + text.x, corner.y + text.y})) return put(corner);
+    }
+  return put(beside({point.x, point.y - text.y / 2}, text, gap, picture));
+}
+
 // The same for a measurement of two points or three: beside the middle of a distance's line, outside of an
 // angle at its vertex, so that the word covers none of its own lines and points.
 [[nodiscard]] inline ImVec2 beside_measured(const std::vector<ImVec2>& points, const ImVec2& text, float gap,

@@ -159,8 +159,9 @@ void draw_tools(const widgets::Ui& ui, const tunnels::TunnelKey& key) {
   ImGui::Separator();
   button_pair(ui, "plan.default", "plan.place");
   button_pair(ui, "plan.narrower", "plan.wider");
-  if (key.bundle == norms::Bundle::Whole) return button_pair(ui, "plan.remove", "plan.bundles");
-  button_pair(ui, "plan.remove", "plan.other_bundle");
+  constexpr float kShare = 0.54F;  // for "Remove tunnel" and its key
+  if (key.bundle == norms::Bundle::Whole) return button_pair(ui, "plan.remove", "plan.bundles", kShare);
+  button_pair(ui, "plan.remove", "plan.other_bundle", kShare);
   widgets::action_button(ui, "plan.single", ImGui::GetContentRegionAvail().x);
 }
 

@@ -56,6 +56,27 @@ TEST(PaneText, OfAMeasurementIsNeverCutOffByTheEdge) {
   EXPECT_LE(at.x + kText.x, kPicture.x + kPicture.width);
 }
 
+// In the small picture beside the slices the words of entry, exit and landmarks ran over each other and over
+// the right edge.
+TEST(PaneText, OfSignsThatAreCloseKeepApart) {
+  std::vector<ImVec4> taken;
+  const float right = kPicture.x + kPicture.width, bottom = kPicture.y + kPicture.height;
+  for (int i = 0; i < 6; ++i) {
+    const auto off = static_cast<float>(i);
+    const ImVec2 at =
+        free_place({right - kText.x - 20 + 3 * off, bottom - 120 + 2 * off}, kText, 12, kPicture, taken);
+    EXPECT_GE(at.x, kPicture.x) << i;
+    EXPECT_LE(at.x + kText.x, right) << i;
+    EXPECT_LE(at.y + kText.y, bottom) << i;
+  }
+  ASSERT_EQ(taken.size(), 6U);
+  for (std::size_t i = 0; i < taken.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      EXPECT_FALSE(taken[i].x < taken[k].z && taken[k].x < taken[i].z && taken[i].y < taken[k].w &&
+                   taken[k].y < taken[i].w)
+          << i << " over " << k;
+}
+
 // A picture that is smaller than the word shows its beginning.
 TEST(PaneText, BeginsInAPictureThatIsTooSmall) {
   expect_at(beside({110, 60}, kText, 9, {100, 50, 30, 10}), 100, 50);
