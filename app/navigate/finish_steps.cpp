@@ -29,7 +29,7 @@ bool NavigateView::finishes() const {
 std::vector<FinishedBone> NavigateView::finished_bones() const {
   std::vector<FinishedBone> bones;
   if (model_ == nullptr) return bones;
-  const sources::SourceKind kind = kind_.value_or(sources::SourceKind::Live);
+  const sources::SourceKind kind = started_.kind().value_or(sources::SourceKind::Live);
   for (const bones::BoneKind kind_of_bone : {choices_.bone, choices_.other_bone()}) {
     if (!model_->has_bone(kind_of_bone)) continue;
     const auto keys = model_->knee().plan.of(kind_of_bone);

@@ -40,7 +40,7 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                0,
                false,
                simulates,
-               [this] { return is_running() && part_ == SimulatedPart::Scratch; },
+               [this] { return is_running() && started_.is_simulated(SimulatedPart::Scratch); },
                [this] { start_simulation(SimulatedPart::Scratch); },
                {"start the simulation instead", running}});
   actions.add({"navigate.drill",
@@ -50,7 +50,7 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                0,
                false,
                simulates,
-               [this] { return is_running() && part_ == SimulatedPart::Drill; },
+               [this] { return is_running() && started_.is_simulated(SimulatedPart::Drill); },
                [this] { start_simulation(SimulatedPart::Drill); },
                {"start the simulation instead", running}});
   actions.add({"navigate.video",

@@ -22,13 +22,13 @@ bool NavigateView::can_simulate() const {
 }
 
 void NavigateView::start_same_kind() {
-  if (!kind_) {
+  if (!started_.kind()) {
     // Nothing was chosen yet. The built-in knee has nothing but its simulation; a real case never starts one.
     if (simulates()) return start_simulation(SimulatedPart::Scratch);
     if (!choices_.videos.empty()) return start_video();
     return choose_camera();
   }
-  switch (*kind_) {
+  switch (*started_.kind()) {
     case sources::SourceKind::Live:
       return choose_camera();
     case sources::SourceKind::Recording:
@@ -49,7 +49,7 @@ const LeftBehind* NavigateView::left_behind() {
 void NavigateView::resume() {
   const LeftBehind* const left = left_behind();
   if (left == nullptr) return;
-  kind_ = sources::source_kind_from_text(left->found.header.source_kind);
+  started_.goes_on_with(sources::source_kind_from_text(left->found.header.source_kind));
   // Who resumes it was told by which tunnel.
   if (const auto& was = left->found.operation.plan;
       was && bones_.guided(choices_.bone) != was->tunnel.key() && bones_.planned(was->tunnel.key()))
@@ -99,7 +99,7 @@ std::string NavigateView::next_step() {
   if (waits_for_take_over() && guided->bundle != norms::Bundle::Whole)
     return "take over the tunnel " + tunnels::name_of(*guided);
   if (awaits_picture(*live_))
-    return stops_once_open_ ? "wait: it stops once it is open" : "wait for the first picture";
+    return started_.stops_once_open() ? "wait: it stops once it is open" : "wait for the first picture";
   if (is_in_wrong_medium()) return "wrong medium: hold Esc, then M for the other one, then start again";
   if (const std::string wait = words_without_pictures(); !wait.empty()) return wait;
   if (takes_guide_in_simulation()) return "take the guide (simulation)";
@@ -133,8 +133,8 @@ std::string NavigateView::missing_now(const Rail& rail) {
 std::string NavigateView::words_of_start() const {
   const bool stands = registration().in_force.standing == operation::Standing::Stands;
   if (simulates()) return stands ? "drill (simulation)" : "start the simulated operation";
-  if (kind_ == sources::SourceKind::Live) return "open the camera again";
-  return kind_ || !choices_.videos.empty() ? "open the next video" : "choose a camera";
+  if (started_.kind() == sources::SourceKind::Live) return "open the camera again";
+  return started_.kind() || !choices_.videos.empty() ? "open the next video" : "choose a camera";
 }
 
 // What is confirmed, recorded or said to be out stands in the record for good. It has to have been asked on
@@ -299,7 +299,8 @@ void NavigateView::repeat_step(operation::Step step) {
 }
 
 bool NavigateView::simulates() const {
-  return kind_ ? *kind_ == sources::SourceKind::Simulation : can_simulate() && !choices_.has_real_scope;
+  return started_.kind() ? *started_.kind() == sources::SourceKind::Simulation
+                         : can_simulate() && !choices_.has_real_scope;
 }
 
 // Nothing that is asked in it, the time-out with it, can be answered.
@@ -315,8 +316,8 @@ std::string NavigateView::words_without_pictures() const {
 
 // The scripted surgeon holds the probe: the guide is taken by starting the other part of the script.
 bool NavigateView::takes_guide_in_simulation() const {
-  return live_->operation->next_action == NextAction::BringGuide && part_ == SimulatedPart::Scratch &&
-         live_->phase == Phase::Running && can_simulate();
+  return live_->operation->next_action == NextAction::BringGuide &&
+         started_.is_simulated(SimulatedPart::Scratch) && live_->phase == Phase::Running && can_simulate();
 }
 
 bool NavigateView::must_set_up() const {
@@ -337,8 +338,9 @@ RailContext NavigateView::rail_context() const {
   const auto was_measured = [](const FinishedTunnel& tunnel) { return tunnel.measured.has_value(); };
   context.was_measured = context.is_drilled && std::ranges::all_of(finished.front().tunnels, was_measured);
   const auto& plan = live_->operation->plan;
-  context.was_verified = kind_ && plan && choices_.verified.contains({*kind_, plan->tunnel.key()});
-  context.marker_is_out = kind_ && choices_.markers_out.contains({*kind_, choices_.bone});
+  const auto& kind = started_.kind();
+  context.was_verified = kind && plan && choices_.verified.contains({*kind, plan->tunnel.key()});
+  context.marker_is_out = kind && choices_.markers_out.contains({*kind, choices_.bone});
   return context;
 }
 

@@ -48,8 +48,7 @@ mode::ModeTitle NavigateView::title() const {
 std::optional<sources::SourceKind> NavigateView::source_kind() const {
   if (live_->phase == Phase::NoSource) return std::nullopt;
   // Before its first picture, or where it gives none, the operation knows of the source before it alone.
-  const auto started = started_.find(choices_.bone);
-  if (live_->picture == nullptr) return started != started_.end() ? std::optional(started->second) : kind_;
+  if (live_->picture == nullptr) return started_.kind_of(choices_.bone);
   return live_->operation->source->kind;
 }
 
@@ -57,10 +56,8 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   bones_.open(opened.model, opened.folder, opened.read_only);
   live_ = TheatreBones::nothing();
   words_ = {};
-  part_.reset();
-  kind_.reset();
-  started_.clear();
-  stops_once_open_ = is_lent_ = false;
+  started_ = {};
+  lent_.reset();
   choices_ = {};
   notice_.clear();
   model_ = opened.model;
@@ -93,11 +90,9 @@ void NavigateView::enter() {
 }
 
 void NavigateView::end_source() {
-  end_was_asked_ = true;
+  started_.on_end_asked(live_->phase == Phase::Starting);
   choices_.guidance_seen_s = -1e9;
   notice_.clear();
-  // Nothing cuts an opening short; it ends right after it, before its first picture.
-  stops_once_open_ = live_->phase == Phase::Starting;
   if (theatre::LiveOperation* const operation = bones_.known(choices_.bone)) operation->end_source();
 }
 
@@ -111,16 +106,16 @@ void NavigateView::take_other_bone() {
   cameras_.close();
   notice_.clear();
   heard_ = {};
-  part_.reset();
+  started_.on_other_bone();
   depth_ = {};
   read_live();  // what is asked next is asked of this bone
   look_along_plan();
 }
 
 bool NavigateView::refuses_while_lent() {
-  if (!is_lent_) return false;
+  if (!lent_) return false;
   notice_ = "An exercise runs here: end it in Train (F6) first";
-  refused_s_ = theatre::LiveOperation::now_s();
+  lent_->refused_s = theatre::LiveOperation::now_s();
   return true;
 }
 
@@ -128,14 +123,11 @@ void NavigateView::start(theatre::TheatreSource source) {
   if (refuses_while_lent()) return;
   notice_.clear();
   heard_ = {};
-  end_was_asked_ = false;
   choices_.layout.reset();
   cameras_.close();
   choices_.guidance_seen_s = -1e9;
-  stops_once_open_ = false;
-  kind_ = started_[choices_.bone] = source.setup.kind;
-  part_.reset();
-  choices_.begin(*kind_);
+  started_.on_start(choices_.bone, source.setup.kind);
+  choices_.begin(source.setup.kind);
   resume_.answer(choices_.bone);  // it begins: afresh, unless it was resumed
   bones_.used(choices_.bone).start(std::move(source));
   read_live();
@@ -146,10 +138,7 @@ void NavigateView::start(theatre::TheatreSource source) {
 std::string NavigateView::refusal_to_lend(bones::BoneKind bone) {
   if (model_ == nullptr) return "no case is open";
   if (is_under_way(*live_)) return "stop what runs in Navigate first";
-  const bool was_real = std::any_of(started_.begin(), started_.end(), [](const auto& one) {
-    return one.second != sources::SourceKind::Simulation;
-  });
-  if (was_real) return "an operation was begun in this case: open the built-in knee (F5) to train";
+  if (started_.was_real()) return "an operation was begun in this case: open the built-in knee (F5) to train";
   if (resume_.is_looking()) return "wait: the case's last operation is looked for";
   const auto key = bones_.guided(bone);
   return key ? missing_for_simulation(*model_, *key) : "there is no one planned tunnel to aim at";
@@ -159,8 +148,7 @@ void NavigateView::lend(bones::BoneKind bone, theatre::TheatreSource source,
                         std::function<std::string()> next_step) {
   if (choices_.bone != bone) take_other_bone();
   start(std::move(source));
-  is_lent_ = true;
-  lent_step_ = std::move(next_step);
+  lent_ = Lent{.next_step = std::move(next_step)};
 }
 
 const operation::OperationSetup* NavigateView::setup_in_use() const {
@@ -174,7 +162,7 @@ void NavigateView::start_simulation(SimulatedPart part) {
   if (refuses_while_lent()) return;
   try {
     start(simulated_setup(*model_, *bones_.guided(choices_.bone), case_folder_, part));
-    part_ = part;
+    started_.simulates(part);
   } catch (const std::runtime_error& error) {  // as in start_video()
     notice_ = error.what();
   }
@@ -202,8 +190,7 @@ void NavigateView::start_live(const LivePictures& pictures) {
   try {
     start(camera_setup(*model_, choices_.bone, case_folder_, pictures, turns_,
                        choices_.saline ? camera::kSalineIndex : camera::kAirIndex, cameras_.tracker()));
-    used_before_ = pictures;
-    stream_is_new_ = !pictures.device;
+    used_before_ = Used{pictures, !pictures.device};
   } catch (const std::runtime_error& error) {
     notice_ = error.what();
     cameras_.close();
@@ -218,7 +205,8 @@ void NavigateView::choose_camera() {
 }
 
 void NavigateView::offer_cameras() {
-  cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()), used_before_,
+  cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()),
+                used_before_ ? std::optional(used_before_->pictures) : std::nullopt,
                 [turns = turns_](const LivePictures& one) {
                   return one.device ? turns.open_if_free({*one.device})
                                     : turns.open_stream_if_free(one.address);
@@ -254,9 +242,10 @@ void NavigateView::read_live() {
   // An address that gave no picture is not worth keeping.
   const bool gives_pictures = live_->phase == Phase::Running && live_->picture != nullptr;
   // That a source runs may still be news of the one before.
-  if (stream_is_new_ && gives_pictures && live_->operation->source->title == used_before_->name) {
-    stream_is_new_ = false;
-    note_stream(known_streams_file(), used_before_->address);
+  if (used_before_ && used_before_->is_new_stream && gives_pictures &&
+      live_->operation->source->title == used_before_->pictures.name) {
+    used_before_->is_new_stream = false;
+    note_stream(known_streams_file(), used_before_->pictures.address);
   }
   const bool is_same = live_->operation->registration == seen->operation->registration;
   if (is_same && is_of_source_before(*live_) == is_of_source_before(*seen)) return;
@@ -333,7 +322,7 @@ void NavigateView::sound(double now_s) {
                                       .reached = runs && choices_.reached.since(now_s).has_value(),
                                       .breaks_out = runs && breaks_out(display),
                                       .runs = runs,
-                                      .end_was_asked = end_was_asked_,
+                                      .end_was_asked = started_.end_was_asked(),
                                       .refusals = live_->refusal.count},
                                      now_s))
     player_.play(*due);
@@ -348,19 +337,19 @@ void NavigateView::tick(double /*now_s*/) {
 }
 
 void NavigateView::on_screen() {
-  const theatre::LiveStatePtr seen = std::exchange(drawn_, nullptr);
+  const theatre::LiveStatePtr seen = std::exchange(drawn_.live, nullptr);
   if (auto* const shows = bones_.known(choices_.bone); shows != nullptr && seen)
-    shows->shown(*seen, drawn_s_);
+    shows->shown(*seen, drawn_.since_s);
 }
 
 void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   // The bone is made ready for registration as soon as this mode is looked at.
   if (model_ != nullptr && model_->has_bone(choices_.bone)) (void)bones_.operation(choices_.bone);
   read_live();
-  drawn_ = live_;
-  const double now = drawn_s_ = theatre::LiveOperation::now_s();
+  drawn_.live = live_;
+  const double now = drawn_.since_s = theatre::LiveOperation::now_s();
   NavigateDisplay display = display_of(live_.get(), now);
-  const bool was_refused = is_lent_ && now - refused_s_ < kRefusal_s;
+  const bool was_refused = lent_ && now - lent_->refused_s < kRefusal_s;
   if (live_->phase == Phase::NoSource && !pedal_acts()) display.detail.clear();
   if ((live_->phase == Phase::NoSource || was_refused) && !notice_.empty()) display.detail = notice_;
   if (!live_->operation->plan && model_ != nullptr && bones_.must_choose(choices_.bone))

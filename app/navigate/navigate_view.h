@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 
 #include "app/case/plan_model.h"
@@ -17,6 +16,7 @@
 #include "app/navigate/navigate_scene.h"
 #include "app/navigate/navigate_setup.h"
 #include "app/navigate/pose_sharing.h"
+#include "app/navigate/started_source.h"
 #include "app/navigate/theatre_bones.h"
 #include "app/navigate/theatre_layout.h"
 #include "app/sounds/player.h"
@@ -127,7 +127,7 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] std::string next_step();
   // What that waits for; empty: nothing, or next_step() says it.
   [[nodiscard]] std::string missing_now(const Rail& rail);
-  [[nodiscard]] std::string lent_step() const { return is_lent_ && lent_step_ ? lent_step_() : ""; }
+  [[nodiscard]] std::string lent_step() const { return lent_ && lent_->next_step ? lent_->next_step() : ""; }
   [[nodiscard]] bool can_simulate() const;
   [[nodiscard]] bool is_running() const;
   [[nodiscard]] const operation::RegistrationState& registration() const {
@@ -158,24 +158,27 @@ class NavigateView : public mode::Mode {
   ResumeOffer resume_;
   DepthEntry depth_;
   CameraChoice cameras_;
-  std::optional<LivePictures> used_before_;  // live, last
-  bool stream_is_new_ = false;               // that, and it gave no picture yet
-  std::string patient_;                      // in words; empty: not known
+  struct Used {  // live, last
+    LivePictures pictures;
+    bool is_new_stream = false;  // and it gave no picture yet
+  };
+  std::optional<Used> used_before_;
+  std::string patient_;  // in words; empty: not known
   NavigateChoices choices_;
-  theatre::LiveStatePtr drawn_;                           // and not told to be on the screen yet; else null
-  double drawn_s_ = 0;                                    // when that was begun
+  struct Drawn {
+    theatre::LiveStatePtr live;  // and not told to be on the screen yet; else null
+    double since_s = 0;          // when that was begun
+  } drawn_;
   theatre::LiveStatePtr live_ = TheatreBones::nothing();  // of this frame, of the chosen bone; never null
   RegistrationWords words_;                               // of its registration
-  std::optional<SimulatedPart> part_;                     // of the simulation that was started last
-  std::optional<sources::SourceKind> kind_;  // of the source that was started last; empty: none yet
-  std::map<bones::BoneKind, sources::SourceKind> started_;  // the same, of each bone's
+  StartedSource started_;                                 // last
   sounds::SoundWatch heard_;
   sounds::Player player_;
-  bool stops_once_open_ = false;            // the source that is being opened is not wanted any more
-  bool end_was_asked_ = false;              // of the source that was started last
-  bool is_lent_ = false;                    // what was started last is an exercise's
-  std::function<std::string()> lent_step_;  // with that; see lend()
-  double refused_s_ = -1e9;                 // when something was refused because of that
+  struct Lent {  // to an exercise: what was started last is its own; see lend()
+    std::function<std::string()> next_step;
+    double refused_s = -1e9;  // when something was refused because of that
+  };
+  std::optional<Lent> lent_;
   std::string notice_;
   PassingWords read_notice_;
 };
