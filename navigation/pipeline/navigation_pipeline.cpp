@@ -10,15 +10,10 @@ namespace arthronaut::pipeline {
 
 namespace {
 
-// Whether any pose of this picture stands, whatever the markers say of themselves.
-bool poses_stand(const FrameResult& result) {
-  return result.intrinsics_are_known && !result.is_frozen && !result.is_repeating;
-}
-
 geometry::TrackedPose tracked_pose(const FrameResult& result, std::size_t body) {
   geometry::TrackedPose pose;
   pose.timestamp_ns = result.timestamp_ns;
-  pose.is_valid = poses_stand(result) && result.bodies[body].is_tracked();
+  pose.is_valid = result.poses_stand() && result.bodies[body].is_tracked();
   if (!pose.is_valid) return pose;
   pose.target_from_source = result.bodies[body].camera_from_body;
   pose.covariance = result.bodies[body].covariance;
@@ -259,7 +254,7 @@ BodyView body_in(const FrameResult& result, int id) {
   BodyView view;
   const auto take = [&](const auto& seen, const geometry::RigidTransform& pose) {
     view.state = seen.state;
-    if (seen.is_tracked() && poses_stand(result)) view.camera_from_body = pose;
+    if (seen.is_tracked() && result.poses_stand()) view.camera_from_body = pose;
   };
   for (const markers::BodyObservation& body : result.bodies)
     if (body.id == id) take(body, body.camera_from_body);

@@ -31,6 +31,10 @@ std::vector<std::string> reasons_of(const TrackedVideo& video) {
     return reasons;
   }
   reasons.emplace_back("no declared marker was tracked in any frame");
+  if (2 * s.frames_frozen > s.frame_count) {
+    reasons.emplace_back("the picture is frozen: no pose of it is of its moment");
+    return reasons;
+  }
   const auto is_doubtful = [](const MarkerStatistics& m) {
     return m.main_loss == markers::MarkerState::Doubtful;
   };

@@ -41,9 +41,11 @@ struct PictureObservation {
   camera::CameraModel camera;  // of this frame
   std::vector<markers::MarkerObservation> markers;   // one for each declared marker, in their order
   std::vector<markers::MarkerCandidate> candidates;  // of this frame's search for markers, when there was one
-  // Whether the pose of a marker of this picture may be used at all; its own state says more.
+  // Whether any pose of this picture may be used, whatever the markers say of themselves.
+  [[nodiscard]] bool poses_stand() const { return intrinsics_are_known && !is_frozen && !is_repeating; }
+  // Whether that of a marker may; its own state says more.
   [[nodiscard]] bool stands_for(const markers::MarkerObservation& marker) const {
-    return intrinsics_are_known && marker.is_tracked();
+    return poses_stand() && marker.is_tracked();
   }
 };
 

@@ -160,7 +160,7 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
   for (const markers::BodyObservation& body : result.bodies) {
     const bool is_of_several =
         std::find(bodies_of_several_.begin(), bodies_of_several_.end(), body.id) != bodies_of_several_.end();
-    if (!is_of_several || !body.is_tracked() || !result.intrinsics_are_known) continue;
+    if (!is_of_several || !body.is_tracked() || !result.poses_stand()) continue;
     const Eigen::Quaterniond& q = body.camera_from_body.rotation;
     body_.bind(1, result.frame_index).bind(2, body.id);
     body_.bind(3, q.w()).bind(4, q.x()).bind(5, q.y()).bind(6, q.z());

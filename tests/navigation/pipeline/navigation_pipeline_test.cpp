@@ -50,6 +50,13 @@ class NavigationPipeline : public ::testing::Test {
     return result_;
   }
 
+  // Whether poses.csv gets the poses of the newest picture.
+  [[nodiscard]] bool written() const {
+    std::vector<strokes::PoseRow> rows;
+    pipeline::append_pose_rows(result_, rows);
+    return !rows.empty();
+  }
+
   RigidTransform camera_from_world_ = pose(1, 2, 25, 2.5, {1, 0.2, 0.1});
   RigidTransform world_from_probe_ = pose(-4, 12, 20, 1.1, {0.3, 1, 0.2});
   registration::RegistrationSummary registration_;
@@ -173,17 +180,24 @@ TEST_F(NavigationPipeline, DropsWhatRestsOnALostMarkerInTheSameFrame) {
   EXPECT_FALSE(result_.tools[0].world_from_tool.is_valid);
 }
 
-// The same picture for 0.3 s is no live picture: nothing of it may guide a hand. The next new picture may.
+// The same picture for 0.3 s is no live picture: nothing of it may guide a hand, and no pose of it is
+// written. The next new picture may.
 TEST_F(NavigationPipeline, SaysThatAPictureIsFrozen) {
   pipeline_.set_plan(plan_, 30);
   pipeline_.set_registration(registration_);
   ASSERT_TRUE(process(0, 7).guidance.is_valid());
-  for (int i = 1; i < 18; ++i) EXPECT_FALSE(process(i, 7).is_frozen) << i;
+  for (int i = 1; i < 18; ++i) {
+    EXPECT_FALSE(process(i, 7).is_frozen) << i;
+    EXPECT_EQ(written(), !result_.is_repeating) << i;
+  }
+  EXPECT_TRUE(result_.is_repeating) << "long before it is called frozen";
   EXPECT_TRUE(process(18, 7).is_frozen);
+  EXPECT_FALSE(written());
   EXPECT_EQ(result_.guidance.state, GuidanceState::Stale);
   EXPECT_FALSE(result_.tip_is_valid);
   EXPECT_FALSE(result_.camera_from_world.is_valid);
   EXPECT_TRUE(process(19, 60).guidance.is_valid());
+  EXPECT_TRUE(written());
 }
 
 // The lower half of the picture stands, the upper half goes on: what shows the guide there is not of this
