@@ -38,11 +38,12 @@ struct ViewTracker::State {
   }
 
   // The angle does not help while the focal length is not known. A scope whose principal point lies on the
-  // axis of rotation needs no mark; for others the chord that two sigma of the angle span must stay small.
+  // axis of rotation needs no mark; for others the chord that two sigma of the angle span must stay small
+  // while the mark is not seen: a hand turns the lens by ten degrees in a tenth of a second.
   [[nodiscard]] bool are_known(const lens::LensObservation& lens) const {
     if (lens.zoom == lens::ZoomState::Unknown || lens.zoom == lens::ZoomState::Changed) return false;
     if (lens.zoom_or_slip) return false;
-    if (lens.has_angle() && mark_was_seen) return true;
+    if (lens.mark == lens::MarkState::Found) return true;
     const double two_sigma_deg = mark_was_seen ? std::min(2 * lens.mark_sigma_deg, 180.0) : 180.0;
     const double chord_px = 2 * turn_radius_px * std::sin(geometry::rad_from_deg(two_sigma_deg) / 2);
     return chord_px <= options.max_principal_point_error_px;
