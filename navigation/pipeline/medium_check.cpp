@@ -105,9 +105,15 @@ void MediumCheck::vote(const camera::CameraModel& stated, const markers::MarkerO
   if (may_be_for && speaks_for(stated_px, other_px)) {
     ++verdict_.votes_for;
     score_ += options_.weight_for;
-    confirmed_ns_ = now_ns_;
+    confirmed_ns_ = voted_for_ns_ = now_ns_;
+    if (score_ >= score_before_doubt_) is_in_doubt_ = false;
   } else if (speaks_for(other_px, stated_px)) {
     ++verdict_.votes_against;
+    if (!is_in_doubt_) {
+      is_in_doubt_ = true;
+      score_before_doubt_ = score_;
+      verdict_.last_sure_ns = has_fitted_ ? voted_for_ns_ : -1;
+    }
     score_ -= options_.weight_against;
     // What fits no square at all says no more than one that is 10 px off.
     stated_square_ += std::pow(std::min(stated_px, 10.0), 2);
@@ -122,6 +128,7 @@ void MediumCheck::decide() {
     verdict_.stated_rms_px = std::sqrt(stated_square_ / count);
     verdict_.other_rms_px = std::sqrt(other_square_ / count);
   }
+  const bool contradicted = verdict_.fit == MediumFit::Contradicts;
   // Between the bounds a verdict stays: on the way from one to the other nothing is known.
   if (score_ <= options_.contradicts_at)
     verdict_.fit = MediumFit::Contradicts;
@@ -129,13 +136,17 @@ void MediumCheck::decide() {
     verdict_.fit = MediumFit::Fits;
   else if (verdict_.fit == MediumFit::Fits ? score_ < 0 : score_ > 0)
     verdict_.fit = MediumFit::Unknown;
+  has_fitted_ = has_fitted_ || verdict_.fit == MediumFit::Fits;
+  if (contradicted && verdict_.fit != MediumFit::Contradicts) is_in_doubt_ = false;
 }
 
 void MediumCheck::reset() {
   std::fill(next_vote_ns_.begin(), next_vote_ns_.end(), 0);
   now_ns_ = confirmed_ns_ = looked_ns_ = 0;
   has_begun_ = has_looked_ = wants_second_look_ = false;
-  score_ = 0;
+  score_ = score_before_doubt_ = 0;
+  is_in_doubt_ = has_fitted_ = false;
+  voted_for_ns_ = -1;
   stated_square_ = other_square_ = 0;
   MediumVerdict fresh;
   fresh.stated_index = verdict_.stated_index;

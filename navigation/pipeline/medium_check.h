@@ -40,6 +40,10 @@ struct MediumVerdict {
   long votes_for = 0, votes_against = 0;
   // How far the corners lie from a square's in either medium, RMS over the votes against; 0 without one.
   double stated_rms_px = 0, other_rms_px = 0;
+  // Of Contradicts: the last moment at which markers spoke for the stated medium, after it had fitted and
+  // before what speaks against it came together. What was measured later is of the wrong medium or may be.
+  // -1: it never fitted, and all that was measured may be.
+  std::int64_t last_sure_ns = -1;
 };
 
 // Why no number is shown: names both media. Empty unless Contradicts.
@@ -93,6 +97,10 @@ class MediumCheck {
   std::int64_t now_ns_ = 0, confirmed_ns_ = 0, looked_ns_ = 0;
   bool has_begun_ = false, has_looked_ = false, wants_second_look_ = false;
   int score_ = 0;
+  // Votes speak against it that were not outweighed since: from this score on. See last_sure_ns.
+  bool is_in_doubt_ = false, has_fitted_ = false;
+  int score_before_doubt_ = 0;
+  std::int64_t voted_for_ns_ = -1;
   double stated_square_ = 0, other_square_ = 0;  // sums over the votes against
   MediumVerdict verdict_;
 };

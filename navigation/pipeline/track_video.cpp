@@ -5,6 +5,7 @@
 
 #include "navigation/pipeline/medium_check.h"
 #include "navigation/pipeline/prefetched_source.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::pipeline {
 
@@ -30,11 +31,11 @@ std::vector<std::string> reasons_of(const TrackedVideo& video) {
         "the lens mark was not seen, so the lens angle and with it the camera are not known");
     return reasons;
   }
-  reasons.emplace_back("no declared marker was tracked in any frame");
   if (2 * s.frames_frozen > s.frame_count) {
     reasons.emplace_back("the picture is frozen: no pose of it is of its moment");
     return reasons;
   }
+  reasons.emplace_back("no declared marker was tracked in any frame");
   const auto is_doubtful = [](const MarkerStatistics& m) {
     return m.main_loss == markers::MarkerState::Doubtful;
   };
@@ -54,6 +55,51 @@ void append_sized_rows(const PictureObservation& view, const std::vector<markers
     for (const markers::DeclaredMarker& marker : declared)
       if (marker.id == rows[i].marker_id) rows[i].size_mm = marker.size_mm;
 }
+
+// Where the medium is contradicted no pose stands, and none did since it was sure.
+class MediumStretches {
+ public:
+  explicit MediumStretches(std::vector<strokes::PoseRow>& rows) : rows_(rows) {}
+  // After the rows of the picture at this time were appended.
+  void follow(const MediumVerdict& verdict, std::int64_t timestamp_ns) {
+    const bool contradicts = verdict.fit == MediumFit::Contradicts;
+    if (contradicts && !is_in_one_) begin(verdict);
+    if (contradicts) {
+      drop_later_than(stretches_.back().from_s);
+      stretches_.back().to_s = seconds_of(timestamp_ns);
+      stretches_.back().words = reason_text(verdict);
+    }
+    is_in_one_ = contradicts;
+  }
+  [[nodiscard]] bool has_any() const { return !stretches_.empty(); }
+  [[nodiscard]] std::vector<std::string> reasons() const {
+    // With no row left the whole video is meant.
+    if (rows_.empty()) return {stretches_.back().words};
+    std::vector<std::string> reasons;
+    for (const Stretch& one : stretches_)
+      reasons.push_back(
+          files::format("from %.1f s to %.1f s there is no pose: ", std::max(one.from_s, 0.0), one.to_s) +
+          one.words);
+    return reasons;
+  }
+
+ private:
+  struct Stretch {
+    double from_s = 0, to_s = 0;
+    std::string words;
+  };
+  static double seconds_of(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+  void begin(const MediumVerdict& verdict) {
+    stretches_.push_back({verdict.last_sure_ns < 0 ? -1 : seconds_of(verdict.last_sure_ns), 0, ""});
+  }
+  void drop_later_than(double time_s) {
+    while (!rows_.empty() && rows_.back().time_s > time_s) rows_.pop_back();
+  }
+
+  std::vector<strokes::PoseRow>& rows_;
+  std::vector<Stretch> stretches_;
+  bool is_in_one_ = false;
+};
 
 }  // namespace
 
@@ -100,6 +146,7 @@ TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions&
   MediumCheck medium(declared, options.refractive_index, calibration_index);
   SecondLook second(declared, medium.other_index(), calibration_index);
   PrefetchedSource prefetched(source);
+  MediumStretches stretches(video.rows);
   PictureObservation view;
   while (const camera::FramePtr frame = prefetched.next()) {
     const auto begin = std::chrono::steady_clock::now();
@@ -109,13 +156,10 @@ TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions&
     video.statistics.add(view, taken.count());
     medium.look(view);
     if (medium.wants_second_look()) medium.look_again(view, second.look(*frame, view.camera));
+    stretches.follow(medium.verdict(), view.timestamp_ns);
     if (on_frame) on_frame(*frame, view);
   }
-  video.reasons = reasons_of(video);
-  if (medium.verdict().fit == MediumFit::Contradicts) {
-    video.rows.clear();  // a row is a pose that the program stands for
-    video.reasons = {reason_text(medium.verdict())};
-  }
+  video.reasons = stretches.has_any() ? stretches.reasons() : reasons_of(video);
   return video;
 }
 

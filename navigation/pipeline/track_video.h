@@ -42,8 +42,9 @@ struct TrackedVideo {
 
 using FrameSeen = std::function<void(const camera::Frame&, const PictureObservation&)>;
 
-// In a medium that the pictures contradict (medium_check.h) no pose stands: there are no rows, and the reason
-// names the medium. Decoding runs in a thread of its own. on_frame is called after each frame with what was
+// In a medium that the pictures contradict (medium_check.h) no pose stands: of a stretch that shows another
+// one there are no rows, from the last moment on that was sure to its end, and a reason names the medium and
+// the stretch. Decoding runs in a thread of its own. on_frame is called after each frame with what was
 // seen in it. Throws what the source throws, what on_frame throws, and InvalidInput for another frame size.
 [[nodiscard]] TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions& options,
                                        const tools::ToolSet& tools, const FrameSeen& on_frame = {});

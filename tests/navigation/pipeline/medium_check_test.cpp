@@ -96,6 +96,44 @@ TEST(MediumCheck, Hazard27TheRightMediumFitsAndIsNeverDoubted) {
     }
 }
 
+// What was measured in the right medium before it changed stays; nothing is sure where it never fitted, and a
+// second change has a last sure moment of its own.
+TEST(MediumCheck, Hazard27SaysUntilWhenTheMediumWasSure) {
+  Knee knee(kSalineIndex, kSalineIndex, 3);
+  MediumCheck check = check_of(kSalineIndex);
+  const auto see = [&](int frame) {
+    const PictureObservation view = knee.view(frame);
+    check.look(view);
+    if (check.wants_second_look()) {
+      std::vector<markers::MarkerObservation> again = view.markers;
+      for (markers::MarkerObservation& marker : again) {
+        marker.state = markers::MarkerState::Tracked;
+        marker.rms_px = 0.05;
+      }
+      check.look_again(view, again);
+    }
+    return check.verdict().fit;
+  };
+  int frame = 0;
+  for (const int change : {120, 420}) {
+    knee.turn_to(kSalineIndex);
+    while (frame < change) see(frame++);
+    ASSERT_EQ(check.verdict().fit, MediumFit::Fits);
+    knee.turn_to(kAirIndex);
+    while (frame < change + 180 && see(frame) != MediumFit::Contradicts) ++frame;
+    ASSERT_EQ(check.verdict().fit, MediumFit::Contradicts);
+    EXPECT_LT(check.verdict().last_sure_ns, change * kFrame_ns);
+    EXPECT_GT(check.verdict().last_sure_ns, (change - 60) * kFrame_ns);
+  }
+  Knee never(kAirIndex, kSalineIndex, 4);
+  check.reset();
+  knee = never;
+  for (frame = 0; frame < 120 && see(frame) != MediumFit::Contradicts; ++frame) {
+  }
+  ASSERT_EQ(check.verdict().fit, MediumFit::Contradicts);
+  EXPECT_EQ(check.verdict().last_sure_ns, -1);
+}
+
 // Air stated in saline and saline in air: told within half a second, and the reason names both.
 TEST(MediumCheck, Hazard27AWrongMediumIsNamedAsTheReason) {
   for (const auto& [truth, stated] : {std::pair(kSalineIndex, kAirIndex), std::pair(kAirIndex, kSalineIndex)})
