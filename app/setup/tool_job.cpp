@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "planning/geometry/error.h"
@@ -59,8 +58,11 @@ ToolJob::ToolJob(const pipeline::ViewTrackerOptions& view, const tools::ToolSet&
                  const ToolChoice& choice)
     : choice_(choice),
       tools_(tools),
-      declared_bodies_(markers::declared_bodies(tools)),
-      tracker_(view, markers::make_tracker(markers::declared_markers(tools))) {
+      seen_bodies_(tools),
+      tracker_(view, markers::make_tracker(markers::declared_markers(tools))),
+      medium_(markers::declared_markers(tools), view.refractive_index, view.calibration.refractive_index),
+      second_look_(markers::declared_markers(tools), medium_.other_index(),
+                   view.calibration.refractive_index) {
   (void)tool_of(tools_, choice_.tool_name);
   if (tools_.tracker)
     throw InvalidInput("the tools of this case are seen by an outside tracker: measure them there");
@@ -70,12 +72,10 @@ ToolJob::ToolJob(const pipeline::ViewTrackerOptions& view, const tools::ToolSet&
 void ToolJob::look(const camera::FramePtr& frame) {
   status_.picture = frame;
   tracker_.observe(*frame, view_);
-  bodies_.clear();
-  for (const markers::Body& body : declared_bodies_)
-    bodies_.push_back(markers::observe_body(
-        body, std::span(view_.markers).subspan(body.first, body.markers.size()), view_.camera));
+  seen_bodies_.observe(view_.markers, view_.camera, bodies_);
   status_.view = view_.camera.boundary();
   judge_markers();
+  judge_medium(*frame);
   if (!status_.reason.empty() || !status_.is_collecting) return;
   if (fixed_from_tool_.size() == kMostPoses) {
     status_.reason = "enough poses were taken";
@@ -84,6 +84,7 @@ void ToolJob::look(const camera::FramePtr& frame) {
   const markers::BodyObservation& world = body_of(*world_id_);
   const markers::BodyObservation& tool = body_of(tool_of(tools_, choice_.tool_name).marker_id);
   fixed_from_tool_.push_back(world.camera_from_body.inverse() * tool.camera_from_body);
+  taken_ns_.push_back(view_.timestamp_ns);
   status_.pose_count = fixed_from_tool_.size();
 }
 
@@ -93,8 +94,9 @@ const markers::BodyObservation& ToolJob::body_of(int id) const {
 
 // Of several, the first that is part of the pose.
 const markers::MarkerObservation& ToolJob::outlined_marker(const markers::BodyObservation& body) const {
-  const auto declared = std::find_if(declared_bodies_.begin(), declared_bodies_.end(),
-                                     [&](const markers::Body& one) { return one.id == body.id; });
+  const std::vector<markers::Body>& bodies = seen_bodies_.declared();
+  const auto declared =
+      std::find_if(bodies.begin(), bodies.end(), [&](const markers::Body& one) { return one.id == body.id; });
   return view_.markers[declared->first + static_cast<std::size_t>(std::countr_zero(body.used))];
 }
 
@@ -129,6 +131,26 @@ void ToolJob::judge_markers() {
                                 : "";
 }
 
+// In the wrong medium every pose is wrong, and a tip comes out of them all the same: what was taken since the
+// medium was sure goes, too.
+void ToolJob::judge_medium(const camera::Frame& frame) {
+  medium_.look(view_);
+  if (medium_.wants_second_look()) medium_.look_again(view_, second_look_.look(frame, view_.camera));
+  const pipeline::MediumVerdict& verdict = medium_.verdict();
+  if (verdict.fit != pipeline::MediumFit::Contradicts) return;
+  status_.reason = reason_text(verdict);
+  for (ToolStatus::Seen& seen : status_.markers) seen.stands = false;
+  if (!status_.is_collecting) return;
+  while (!taken_ns_.empty() && taken_ns_.back() > verdict.last_sure_ns) {
+    taken_ns_.pop_back();
+    fixed_from_tool_.pop_back();
+  }
+  if (fixed_from_tool_.size() == status_.pose_count) return;
+  status_.pose_count = fixed_from_tool_.size();
+  calibrated_count_ = 0;
+  status_.result.reset();
+}
+
 bool ToolJob::work() {
   const std::size_t count = fixed_from_tool_.size();
   const std::size_t wait = std::max(kPosesBetweenResults, calibrated_count_ / 20);
@@ -149,6 +171,7 @@ ToolStatus ToolJob::status() const { return status_; }
 
 void ToolJob::clear() {
   fixed_from_tool_.clear();
+  taken_ns_.clear();
   world_id_.reset();
   calibrated_count_ = 0;
   status_.pose_count = 0;

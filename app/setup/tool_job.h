@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "navigation/markers/body_pose.h"
+#include "navigation/markers/seen_bodies.h"
+#include "navigation/pipeline/medium_check.h"
 #include "navigation/pipeline/view_tracker.h"
 #include "navigation/tools/pivot_calibration.h"
 #include "navigation/tools/spin_calibration.h"
@@ -75,18 +76,22 @@ class ToolJob {
 
  private:
   void judge_markers();
+  void judge_medium(const camera::Frame& frame);
   // Of the picture in view_. Precondition: it is declared.
   [[nodiscard]] const markers::BodyObservation& body_of(int id) const;
   [[nodiscard]] const markers::MarkerObservation& outlined_marker(const markers::BodyObservation& body) const;
 
   ToolChoice choice_;
   tools::ToolSet tools_;
-  std::vector<markers::Body> declared_bodies_;
+  markers::SeenBodies seen_bodies_;
   pipeline::ViewTracker tracker_;
+  pipeline::MediumCheck medium_;
+  pipeline::SecondLook second_look_;
   pipeline::PictureObservation view_;
   std::vector<markers::BodyObservation> bodies_;  // of view_
   std::vector<geometry::RigidTransform> fixed_from_tool_;
-  std::optional<int> world_id_;  // whose frame the poses are in
+  std::vector<std::int64_t> taken_ns_;  // each of them
+  std::optional<int> world_id_;         // whose frame the poses are in
   std::size_t calibrated_count_ = 0;
   ToolStatus status_;
 };

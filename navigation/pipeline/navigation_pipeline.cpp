@@ -4,6 +4,7 @@
 #include <chrono>
 #include <span>
 
+#include "navigation/markers/seen_bodies.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::pipeline {
@@ -75,9 +76,9 @@ struct NavigationPipeline::State {
         probe(index_of(with.tools.tools, with.probe_name)),
         guide(index_of(with.tools.tools, with.guide_name)),
         drill(drill_index(with.tools.tools)),
-        bodies(markers::declared_bodies(with.tools)),
+        bodies(with.tools),
         axes(with.axes.value_or(landmarks::scanner_axes(with.side))) {
-    for (const markers::Body& body : bodies) corners_mm.push_back(corners_of(body));
+    for (const markers::Body& body : bodies.declared()) corners_mm.push_back(corners_of(body));
     known_errors.camera = camera::covariance_of(with.calibration);
     if (probe) known_errors.probe_tip_mm2 = tools::tip_error_mm2(with.tools.tools[*probe]);
     known_errors.registration = guidance::BiasSums().bias();
@@ -104,42 +105,14 @@ struct NavigationPipeline::State {
   // In the camera's frame or the outside tracker's, whichever sees the bodies.
   [[nodiscard]] geometry::TrackedPose pose_of_body(const FrameResult& result, std::size_t body) const {
     if (!is_outside()) return tracked_pose(result, body);
-    geometry::TrackedPose pose =
-        tracker::pose_of(result.outside, bodies[body].id, result.timestamp_ns, *options.tools.tracker);
+    geometry::TrackedPose pose = tracker::pose_of(result.outside, bodies.declared()[body].id,
+                                                  result.timestamp_ns, *options.tools.tracker);
     pose.is_valid = pose.is_valid && !result.is_frozen && !result.is_repeating;
     return pose;
   }
 
   [[nodiscard]] const geometry::TrackedPose& world_pose(const FrameResult& result) const {
     return is_outside() ? result.tracker_from_world : result.camera_from_world;
-  }
-
-  void observe_bodies(FrameResult& result) {
-    result.bodies.resize(bodies.size());
-    distrusted.resize(bodies.size(), 0);
-    const std::span<const markers::MarkerObservation> all(result.markers);
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      result.bodies[i] = markers::observe_body(
-          bodies[i], all.subspan(bodies[i].first, bodies[i].markers.size()), result.camera);
-      distrust(bodies[i], all, result.bodies[i], distrusted[i]);
-    }
-  }
-
-  // A marker that did not lie where the others of its body had it is not believed alone, once the others are
-  // out of sight, nor is either of two that contradicted each other; not until it agrees with another again.
-  static void distrust(const markers::Body& body, std::span<const markers::MarkerObservation> all,
-                       markers::BodyObservation& observation, std::uint32_t& out_of_place) {
-    const bool contradict = observation.state == markers::MarkerState::Disagreeing;
-    for (std::size_t i = 0; i < body.markers.size(); ++i) {
-      const std::uint32_t bit = std::uint32_t{1} << i;
-      const bool is_odd = observation.odd_marker == body.markers[i].marker_id;
-      if (is_odd || (contradict && all[body.first + i].is_tracked())) out_of_place |= bit;
-    }
-    if (!observation.is_tracked()) return;
-    if (observation.used_count() >= 2)
-      out_of_place &= ~observation.used;
-    else if ((observation.used & out_of_place) != 0)
-      observation.state = markers::MarkerState::Disagreeing;
   }
 
   void place_tools(FrameResult& result) const {
@@ -239,8 +212,7 @@ struct NavigationPipeline::State {
   ViewTracker view_tracker;
   std::size_t world;                               // index of the bone's world marker among the bodies
   std::optional<std::size_t> probe, guide, drill;  // indices into the tools
-  std::vector<markers::Body> bodies;
-  std::vector<std::uint32_t> distrusted;  // of each body: bit i, its marker i did not lie where others had it
+  markers::SeenBodies bodies;
   std::vector<std::vector<Eigen::Vector3d>> corners_mm;  // of each body
   landmarks::AnatomicalAxes axes;
   guidance::KnownErrors known_errors;
@@ -280,7 +252,7 @@ void NavigationPipeline::process(const camera::Frame& frame, FrameResult& result
   if (state_->is_outside()) {
     state_->take_outside(outside, result);
   } else {
-    state_->observe_bodies(result);
+    state_->bodies.observe(result.markers, result.camera, result.bodies);
     result.camera_from_world = tracked_pose(result, state_->world);
   }
   state_->place_tools(result);
