@@ -20,6 +20,8 @@ constexpr std::uint64_t kLargestBody = std::uint64_t{1} << 32;
 constexpr int kNewestVersion = 3;
 constexpr std::size_t kExtendedHeaderSize = 12;
 constexpr std::uint16_t kStatusOk = 1;
+// What PLUS and 3D Slicer say of a tool beside its pose: OK, MISSING, OUT_OF_VOLUME, ...
+constexpr std::string_view kToolStatusKey = "TransformStatus", kToolSeen = "OK";
 constexpr double kFarthest_mm = 1e5;
 
 std::uint64_t number_at(Bytes bytes, std::size_t at, std::size_t size) {
@@ -67,6 +69,26 @@ std::optional<geometry::RigidTransform> quaternion_at(Bytes bytes, std::size_t a
   const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
   if (!(std::abs(rotation.norm() - 1) <= kTolerance)) return std::nullopt;
   return in_lps(rotation, {v[0], v[1], v[2]});
+}
+
+// What the metadata say of this key; empty: nothing. A count, the sizes of each key and value, then all keys
+// with their values. nullopt: the sizes do not fit.
+std::optional<std::string> metadata_value(Bytes sizes, Bytes values, std::string_view wanted) {
+  if (sizes.empty()) return "";
+  if (sizes.size() < 2) return std::nullopt;
+  constexpr std::size_t kEntry = 8;
+  const std::uint64_t count = number_at(sizes, 0, 2);
+  if (sizes.size() != 2 + kEntry * count) return std::nullopt;
+  std::string found;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t key_size = number_at(sizes, 2 + kEntry * i, 2);
+    const std::uint64_t value_size = number_at(sizes, 2 + kEntry * i + 4, 4);
+    if (key_size + value_size > values.size() - at) return std::nullopt;
+    if (text_at(values, at, key_size) == wanted) found = text_at(values, at + key_size, value_size);
+    at += key_size + value_size;
+  }
+  return found;
 }
 
 bool is_read(const std::string& type) {
@@ -131,6 +153,7 @@ bool IgtlReader::begin_body() {
 void IgtlReader::end_body() {
   has_header_ = false;
   header_.clear();
+  ++ended_count_;
   if (!is_passed_over_) {
     if (crc64(body_.data(), body_.size(), 0) != message_.checksum)
       listener_.refused("the checksum of a " + message_.type + " is wrong");
@@ -144,15 +167,23 @@ void IgtlReader::read_message(Bytes content) {
   const auto refuse = [&] {
     listener_.refused("a " + message_.type + " has lengths that do not fit into it");
   };
+  std::string tool_status;
   if (message_.version > 1) {  // an extended header before the content, metadata behind it
     if (content.size() < kExtendedHeaderSize) return refuse();
     const std::uint64_t before = number_at(content, 0, 2);
-    const std::uint64_t behind = number_at(content, 2, 2) + number_at(content, 4, 4);
-    if (before < kExtendedHeaderSize || before + behind > content.size()) return refuse();
-    content = content.subspan(before, content.size() - before - behind);
+    const std::uint64_t sizes = number_at(content, 2, 2), values = number_at(content, 4, 4);
+    if (before < kExtendedHeaderSize || before + sizes + values > content.size()) return refuse();
+    const Bytes metadata = content.last(sizes + values);
+    const auto value = metadata_value(metadata.first(sizes), metadata.last(values), kToolStatusKey);
+    if (!value) return refuse();
+    tool_status = *value;
+    content = content.subspan(before, content.size() - before - sizes - values);
   }
   if (message_.type == "TRANSFORM") {
     if (content.size() != 48) return refuse();
+    // A tool that is not seen keeps its last pose, with a stamp of now.
+    if (!tool_status.empty() && tool_status != kToolSeen)
+      return listener_.status(message_.device, false, tool_status);
     return listener_.pose(message_.device, matrix_at(content, 0), message_.stamp_utc_s);
   }
   if (message_.type == "STATUS") {

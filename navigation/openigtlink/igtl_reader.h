@@ -6,6 +6,9 @@
 // pose must be one. One that is not as it must be is told and left out. A header that is none means that
 // nobody knows where the next message begins: then the connection is of no use any more.
 //
+// A TRANSFORM whose metadata say that its tool is not seen ("TransformStatus" of PLUS and 3D Slicer) is told
+// as a status of its device, and its pose, the last one, is none.
+//
 // 3D Slicer and OpenIGTLink keep everything in RAS; poses are handed on in LPS, by ras_from_lps(),
 // which turns back what it turned.
 #pragma once
@@ -43,6 +46,7 @@ class IgtlReader {
   [[nodiscard]] bool take(std::span<const std::uint8_t> bytes);
   // Some of a message has come and the rest has not.
   [[nodiscard]] bool is_within_message() const { return !header_.empty(); }
+  [[nodiscard]] std::uint64_t ended_count() const { return ended_count_; }  // of messages, read or not
 
  private:
   struct Header {
@@ -61,6 +65,7 @@ class IgtlReader {
   Header message_;
   bool has_header_ = false, is_passed_over_ = false;
   std::uint64_t to_come_ = 0;  // of the body
+  std::uint64_t ended_count_ = 0;
 };
 
 }  // namespace arthronaut::openigtlink

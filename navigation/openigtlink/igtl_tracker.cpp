@@ -7,6 +7,7 @@
 #include <charconv>
 #include <chrono>
 #include <set>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -28,9 +29,10 @@ using BookWorker = worker::Worker<std::monostate, tracker::PoseBook>;
 constexpr std::string_view kScheme = "igtl://";
 constexpr int kReceive_ms = 50;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-// A message that has begun and does not go on; a connection on which nothing comes; poses that are all late.
-constexpr std::int64_t kHalfMessage_ns = 2 * kSecond_ns, kSilence_ns = 5 * kSecond_ns,
-                       kBehind_ns = 2 * kSecond_ns;
+// A message that has begun and does not go on; one that goes on and on, since its length was wrong; a
+// connection on which nothing comes; poses that are all late.
+constexpr std::int64_t kHalfMessage_ns = 2 * kSecond_ns, kEndlessMessage_ns = 5 * kSecond_ns,
+                       kSilence_ns = 5 * kSecond_ns, kBehind_ns = 2 * kSecond_ns;
 constexpr std::int64_t kNoPose_ns = kSecond_ns;
 constexpr std::chrono::milliseconds kPause{500};
 
@@ -118,7 +120,8 @@ class Reading {
     IgtlReader reader(listener);
     std::array<std::uint8_t, 16 * 1024> bytes;
     const std::int64_t begun_ns = sources::steady_now_ns();
-    std::int64_t heard_ns = begun_ns, timely_ns = begun_ns;
+    std::int64_t heard_ns = begun_ns, timely_ns = begun_ns, ended_ns = begun_ns;
+    std::uint64_t ended_count = 0;
     listener.pose_ns = begun_ns;
     while (!inbox_.stops()) {
       const auto received = connection.receive(bytes, kReceive_ms);
@@ -135,6 +138,10 @@ class Reading {
       if (listener.now_ns - heard_ns > kSilence_ns) return "it sends nothing";
       if (reader.is_within_message() && listener.now_ns - heard_ns > kHalfMessage_ns)
         return "a message broke off half-way";
+      if (std::exchange(ended_count, reader.ended_count()) != reader.ended_count() ||
+          !reader.is_within_message())
+        ended_ns = listener.now_ns;
+      if (listener.now_ns - ended_ns > kEndlessMessage_ns) return "a message does not end";
       tell(listener);
     }
     return "ended";

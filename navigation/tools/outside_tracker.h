@@ -16,8 +16,8 @@ struct OutsideTracker {
   std::optional<double> sigma_mm = std::nullopt, sigma_deg = std::nullopt;
   // "femur", "tibia" or a tool's name -> the name of its messages; others have their usual names.
   std::map<std::string, std::string> devices = {};
-  // A pose that is the same to the last bit for a second is one that the tracker lost and repeats. True: of
-  // this tracker it is not; a simulated one.
+  // A pose that is the same to the last bit for a tenth of a second is one that the tracker lost and repeats.
+  // True: of this tracker it is not; a simulated one.
   bool may_repeat = false;
   [[nodiscard]] bool has_known_error() const { return sigma_mm.has_value() && sigma_deg.has_value(); }
 };

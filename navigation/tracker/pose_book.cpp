@@ -10,7 +10,9 @@ namespace {
 // Bodies that a tracker measures together bear one stamp, or stamps of one exposure. A tool that is led by
 // hand goes 0.3 mm in that time.
 constexpr double kSameMoment_s = 0.005;
-constexpr double kRepeatsAfter_s = 1;
+// As old as any pose may be: what is the same to the last bit for so long was measured before that. Six
+// samples at 60 a second, so that one that a server sends twice or thrice is none that was lost.
+constexpr double kRepeatsAfter_s = PoseBook::kMaxAge_s;
 constexpr double kFarBehind_s = 1;
 
 double seconds_of(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }

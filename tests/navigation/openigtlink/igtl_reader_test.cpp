@@ -87,6 +87,28 @@ TEST(IgtlReader, ReadsStatusAndPassesOverTheRest) {
   EXPECT_EQ(heard.statuses, std::vector<std::string>{"Probe not ok out of volume"});
 }
 
+// A tool that its tracker does not see goes out with its last pose and a stamp of now; what tells stands in
+// the metadata behind it.
+TEST(IgtlReader, Hazard43AToolThatItsTrackerDoesNotSeeHasNoPose) {
+  Heard heard;
+  IgtlReader reader(heard);
+  const Bytes plain = test::transform_message("Probe", sent_pose(), 1.8e9 + 0.25);
+  EXPECT_TRUE(reader.take(test::as_version_2(plain, "MISSING")));
+  EXPECT_TRUE(heard.poses.empty());
+  EXPECT_EQ(heard.statuses, std::vector<std::string>{"Probe not ok MISSING"});
+  EXPECT_TRUE(reader.take(test::as_version_2(plain, "OK")));
+  expect_sent(heard, "Probe");
+  // Sizes that do not fit into the metadata, and metadata that are cut off.
+  for (const std::size_t at : {59 + 12 + 48 + 0, 59 + 12 + 48 + 2, 59 + 12 + 48 + 8}) {
+    Bytes spoilt = test::as_version_2(plain, "MISSING");
+    spoilt[at] = 200;
+    seal(spoilt);
+    EXPECT_TRUE(reader.take(spoilt)) << at;
+  }
+  EXPECT_EQ(heard.poses.size(), 1U);
+  EXPECT_EQ(heard.refusals.size(), 3U);
+}
+
 TEST(IgtlReader, RefusesAWrongChecksumAndGoesOn) {
   Heard heard;
   IgtlReader reader(heard);

@@ -141,6 +141,20 @@ TEST_F(IgtlTrackerTest, HalfAMessageEndsTheConnection) {
   EXPECT_TRUE(until([&] { return state(tracker) == BodyState::Tracked; })) << tracker.trouble();
 }
 
+// One length in a header is wrong: all that comes after it would be of that message, for hours, while bytes
+// come all the time.
+TEST_F(IgtlTrackerTest, AMessageThatDoesNotEndEndsTheConnection) {
+  IgtlTracker tracker(peer_.address(), bodies_);
+  ASSERT_TRUE(until([&] { return state(tracker) == BodyState::Tracked; })) << tracker.trouble();
+  test::Bytes spoilt = test::transform_message("Probe", pose(0.5, 1), test::utc_s());
+  spoilt[46] = 0x40;  // a gigabyte
+  ASSERT_TRUE(until([&] { return peer_.send(spoilt); }, false));
+  EXPECT_TRUE(until([&] { return tracker.trouble().find("does not end") != std::string::npos; }))
+      << tracker.trouble();
+  peer_.drop();
+  EXPECT_TRUE(until([&] { return state(tracker) == BodyState::Tracked; })) << tracker.trouble();
+}
+
 // The tracker's clock is set back by an hour while it runs: nothing is used until a new connection has told
 // how it goes now.
 TEST_F(IgtlTrackerTest, AClockThatIsSetAnewIsLearntAnew) {

@@ -53,8 +53,19 @@ inline void seal(Bytes& message) {
 
 // The same as newer programs send it: an extended header of 12 bytes before the content, metadata behind it.
 // This library does not write that yet.
-inline Bytes as_version_2(Bytes message) {
-  const Bytes before{0, 12, 0, 2, 0, 0, 0, 3, 0, 0, 0, 1}, behind{0, 0, 'a', 'b', 'c'};
+inline Bytes as_version_2(Bytes message, const std::string& tool_status = "") {
+  Bytes before{0, 12, 0, 2, 0, 0, 0, 3, 0, 0, 0, 1}, behind{0, 0, 'a', 'b', 'c'};
+  if (!tool_status.empty()) {  // two entries of metadata: their sizes, then each key with its value
+    const std::string texts =
+        "Quality"
+        "0.5"
+        "TransformStatus" +
+        tool_status;
+    const auto size = static_cast<std::uint8_t>(tool_status.size());
+    before = {0, 12, 0, 18, 0, 0, 0, static_cast<std::uint8_t>(texts.size()), 0, 0, 0, 1};
+    behind = {0, 2, 0, 7, 0, 3, 0, 0, 0, 3, 0, 15, 0, 3, 0, 0, 0, size};
+    behind.insert(behind.end(), texts.begin(), texts.end());
+  }
   message[1] = 2;
   message.insert(message.begin() + 58, before.begin(), before.end());
   message.insert(message.end(), behind.begin(), behind.end());
