@@ -223,7 +223,7 @@ double captured_utc_s(const camera::Frame& picture) {
 // Ctrl+C ends a live source, and what was seen until then is kept, as at any other end of it. A recording can
 // be run again: its half session is removed.
 void stop_if_interrupted(const Interruption& interruption) {
-  if (interruption.caught() != 0) throw DeviceError("stopped by hand");
+  if (interruption.caught() != 0) throw theatre::StoppedByHand("stopped by hand");
 }
 
 // `interruption` begins with the session: until then Ctrl+C ends the program at once.
@@ -265,6 +265,12 @@ void navigate(Context& context, const NavigateArguments& arguments,
     observer.on_frame = [&](const camera::FramePtr& picture, const operation::OperationStatePtr& state) {
       progress.advance_to(++done);
       if (igtl) igtl->publish(state, captured_utc_s(*picture), picture);
+      stop_if_interrupted(*interruption);
+    };
+    observer.on_late = [&](const camera::FramePtr&, const std::string& why,
+                           const operation::OperationStatePtr&) {
+      progress.advance_to(++done);
+      if (igtl) igtl->tell({false, why}, utc_now_s());
       stop_if_interrupted(*interruption);
     };
     observer.on_silence = [&](const theatre::SourceWatch& watch, const operation::OperationStatePtr&) {

@@ -256,8 +256,7 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   // while it is young, so that nothing comes and goes ten times a second. That it has stopped is told by
   // trouble.
   const bool is_slow = live->trouble == theatre::SourceTrouble::Slow;
-  constexpr double kSlowPicture_s = 0.3;  // older ones are not taken for live; see OperationRun::apply
-  if (display.age_s > (is_slow ? kSlowPicture_s : live->stale_after_s)) {
+  if (!theatre::is_of_now(display.age_s, live->trouble, live->stale_after_s)) {
     const bool is_short = display.age_s < 1;
     // What is wrong with the source comes first; what lasts stays said while a busy machine is late with one.
     const bool is_late = live->trouble == theatre::SourceTrouble::Late || is_slow;

@@ -1,10 +1,12 @@
 #include "navigation/theatre/navigate_source.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "navigation/sources/capture_time.h"
 #include "navigation/theatre/operation_run.h"
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::theatre {
@@ -100,7 +102,7 @@ class Navigation {
       summary_.last_guidance = frame.guidance;
     }
     follow_registration();
-    if (observer_.on_frame) observer_.on_frame(step.picture, state);
+    pass_on(step.picture, state);
     if (!observer_.pedal) return true;
     for (const operation::Command& command : observer_.pedal(*state)) apply(command);
     return true;
@@ -131,6 +133,23 @@ class Navigation {
   }
 
  private:
+  // As the screen would show it: what waited for too long is not of now, and neither is the oldest pose in
+  // it.
+  void pass_on(const camera::FramePtr& picture, const operation::OperationStatePtr& state) {
+    const bool is_dated = state->source->kind == sources::SourceKind::Live && picture->captured_ns > 0;
+    const double now_s = static_cast<double>(sources::steady_now_ns()) * 1e-9;
+    double captured_s = is_dated ? static_cast<double>(picture->captured_ns) * 1e-9 : now_s;
+    captured_s = std::min(captured_s, run_.oldest_pose_s(captured_s));
+    if (is_of_now(now_s - captured_s, run_.watch().trouble())) {
+      if (observer_.on_frame) observer_.on_frame(picture, state);
+    } else if (observer_.on_late) {
+      const std::string& words = run_.watch().words();
+      observer_.on_late(
+          picture,
+          words.empty() ? files::format("the picture is %.0f ms late", 1000 * (now_s - captured_s)) : words,
+          state);
+    }
+  }
   // Nobody stands by who could tell a source that comes back from one that is gone. Throws DeviceError.
   bool waits_on() {
     constexpr std::int64_t kGivesUpAfter_ns = 15'000'000'000;
@@ -209,6 +228,7 @@ NavigationSummary navigate_source(const std::shared_ptr<sources::FrameSource>& s
                                   const NavigationObserver& observer) {
   Navigation navigation(source, options, record, observer);
   std::string ending;
+  bool broke_off = false;
   try {
     while (navigation.take_frame()) {
     }
@@ -219,11 +239,13 @@ NavigationSummary navigate_source(const std::shared_ptr<sources::FrameSource>& s
       throw;
     }
     ending = error.what();
+    broke_off = dynamic_cast<const StoppedByHand*>(&error) == nullptr;
   } catch (...) {
     navigation.give_up();
     throw;
   }
   NavigationSummary summary = navigation.finish();
+  if (broke_off) summary.reasons.push_back("the source broke off: " + ending);
   summary.ending = std::move(ending);
   return summary;
 }

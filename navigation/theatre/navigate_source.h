@@ -18,6 +18,7 @@
 #include "navigation/theatre/latency.h"
 #include "navigation/theatre/source_watch.h"
 #include "navigation/tracker/pose_source.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::theatre {
 
@@ -37,9 +38,20 @@ struct NavigateOptions {
   std::optional<double> duration_s;  // frames of later than this are not taken; else to the source's end
 };
 
+// Thrown by an observer to end a live source where it is: what was made stays, and nothing is the matter.
+class StoppedByHand : public DeviceError {
+ public:
+  using DeviceError::DeviceError;
+};
+
 // Called in the thread of navigate_source.
 struct NavigationObserver {
   std::function<void(const camera::FramePtr& picture, const operation::OperationStatePtr& state)> on_frame;
+  // Instead of on_frame for a live picture that is not of now (see is_of_now()): by what. Nobody is to take
+  // the poses of its state for valid.
+  std::function<void(const camera::FramePtr& picture, const std::string& why,
+                     const operation::OperationStatePtr& state)>
+      on_late;
   // Instead of on_frame, ten times a second while a live source gives no picture: why, and what is known by
   // now.
   std::function<void(const SourceWatch& watch, const operation::OperationStatePtr& state)> on_silence;
@@ -62,7 +74,7 @@ struct NavigationSummary {
   guidance::GuidanceNumbers last_guidance;  // the last valid one; not valid when there was none
   guidance::GuidanceState last_state = guidance::GuidanceState::NoPlan;
   operation::DrilledState drilled;
-  std::string ending;                 // why a live source ended; empty when nothing failed
+  std::string ending;                 // why a live source ended before its end; empty when it did not
   LatencyReport latency{};            // of a live source; of others tracking and operation alone
   std::vector<std::string> troubles;  // what was wrong with a live source, in order, each when it began
   std::vector<std::string> tracker_troubles{};  // likewise with the outside tracker

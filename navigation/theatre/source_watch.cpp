@@ -34,6 +34,11 @@ std::string_view to_text(SourceTrouble trouble) {
   return kNames[static_cast<std::size_t>(trouble)];
 }
 
+bool is_of_now(double age_s, SourceTrouble trouble, double late_after_s) {
+  constexpr double kSlowPicture_s = 0.3;
+  return age_s <= (trouble == SourceTrouble::Slow ? kSlowPicture_s : late_after_s);
+}
+
 bool SourceWatch::set(SourceTrouble trouble, const std::string& words) {
   const bool is_another = trouble != trouble_;
   trouble_ = trouble;

@@ -19,6 +19,11 @@ enum class SourceTrouble { None, NoPicture, Plain, Frozen, Torn, Repeated, Late,
 // "no picture", "plain picture", ...; empty for None.
 [[nodiscard]] std::string_view to_text(SourceTrouble trouble);
 
+// Whether a live picture of this age may be shown, and told to others, as one of now. Of a slow source no
+// picture guides, and what is young enough for a touch (see OperationRun::apply) is shown all the same.
+inline constexpr double kLateAfter_s = 0.1;
+[[nodiscard]] bool is_of_now(double age_s, SourceTrouble trouble, double late_after_s = kLateAfter_s);
+
 class SourceWatch {
  public:
   SourceWatch() = default;
@@ -43,7 +48,7 @@ class SourceWatch {
   bool set(SourceTrouble trouble, const std::string& words);
   [[nodiscard]] std::int64_t silence_ns() const;
 
-  double late_after_ms_ = 100;
+  double late_after_ms_ = 1000 * kLateAfter_s;
   SourceTrouble trouble_ = SourceTrouble::None;
   std::string words_;
   std::int64_t last_picture_ns_ = 0, torn_ns_ = 0, late_ns_ = 0, late_said_ns_ = 0, slow_ns_ = 0;

@@ -93,7 +93,7 @@ int stream(const StreamChoice& choice) {
   long seen = 0;
   double first_s = 0, last_s = 0, memory_mb = 0;
   theatre::NavigationObserver observer;
-  observer.on_frame = [&](const camera::FramePtr& picture, const operation::OperationStatePtr&) {
+  const auto count = [&](const camera::FramePtr& picture) {
     // Until then buffers fill, of which the 20 s of encoded pictures to reach back to are the longest.
     if (memory_mb == 0 && picture->timestamp_ns > kBuffersFull_s * 1'000'000'000) memory_mb = resident_mb();
     if (first < 0) {
@@ -104,6 +104,11 @@ int stream(const StreamChoice& choice) {
     last_s = static_cast<double>(picture->timestamp_ns) * 1e-9;
     ++seen;
   };
+  observer.on_frame = [&](const camera::FramePtr& picture, const operation::OperationStatePtr&) {
+    count(picture);
+  };
+  observer.on_late = [&](const camera::FramePtr& picture, const std::string&,
+                         const operation::OperationStatePtr&) { count(picture); };
   const theatre::NavigationSummary summary = theatre::navigate_source(source, options, record, observer);
   const double memory_at_end_mb = resident_mb();  // reading the record back is not the chain's
   const double sent = 60 * (last_s - first_s) + 1;

@@ -6,12 +6,24 @@
 #include <algorithm>
 
 #include "navigation/recording/session.h"
+#include "navigation/sources/capture_time.h"
 #include "tests/navigation/operation/ball_pictures.h"
 #include "tests/navigation/theatre/theatre_sources.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::theatre {
 namespace {
+
+class LivePictures : public test::PlainSource {
+ public:
+  LivePictures() : PlainSource(5, true) {
+    info_ = PlainSource::info(), info_.kind = sources::SourceKind::Live;
+  }
+  [[nodiscard]] const sources::SourceInfo& info() const override { return info_; }
+
+ private:
+  sources::SourceInfo info_;
+};
 
 class NavigateSource : public ::testing::Test {
  protected:
@@ -106,22 +118,66 @@ TEST_F(NavigateSource, EndsBeforeTheFirstFrameThatIsLater) {
 
 // A live source that fails has ended, and what was made stays; a recording that fails is an error.
 TEST_F(NavigateSource, ALiveSourceThatFailsHasEnded) {
-  class LivePictures : public test::PlainSource {
-   public:
-    LivePictures() : PlainSource(5, true) {
-      info_ = PlainSource::info(), info_.kind = sources::SourceKind::Live;
-    }
-    [[nodiscard]] const sources::SourceInfo& info() const override { return info_; }
-
-   private:
-    sources::SourceInfo info_;
-  };
   const NavigationSummary summary =
       navigate_source(std::make_shared<LivePictures>(), options(sources::SourceKind::Live), record());
   EXPECT_EQ(summary.ending, "the camera was unplugged");
+  EXPECT_NE(std::find(summary.reasons.begin(), summary.reasons.end(),
+                      "the source broke off: the camera was unplugged"),
+            summary.reasons.end())
+      << "not what it was begun for";
   EXPECT_TRUE(recording::RecordedSession(folder_.path()).was_finished());
   EXPECT_THROW((void)navigate_source(pictures(5, true), options(sources::SourceKind::Recording)),
                DeviceError);
+}
+
+// Whoever ends it himself has all that he wanted.
+TEST_F(NavigateSource, ALiveSourceThatIsStoppedByHandDidNotBreakOff) {
+  NavigationObserver observer;
+  observer.on_frame = [](const camera::FramePtr&, const operation::OperationStatePtr&) {
+    throw StoppedByHand("stopped by hand");
+  };
+  const NavigationSummary summary = navigate_source(std::make_shared<LivePictures>(),
+                                                    options(sources::SourceKind::Live), record(), observer);
+  EXPECT_EQ(summary.ending, "stopped by hand");
+  EXPECT_EQ(summary.statistics.frame_count, 1);
+  for (const std::string& reason : summary.reasons)
+    EXPECT_EQ(reason.find("the source broke off"), std::string::npos) << reason;
+}
+
+// Whoever passes poses on is told which pictures are not of now, as the screen would not show them; those of
+// a recording are shown as if they were.
+TEST_F(NavigateSource, Hazard3ALatePictureIsPassedOnAsLate) {
+  class AgedPictures : public test::PlainSource {
+   public:
+    AgedPictures() : PlainSource(6, false) {}
+    [[nodiscard]] camera::FramePtr next() override {
+      const camera::FramePtr plain = PlainSource::next();
+      if (plain == nullptr) return nullptr;
+      const auto frame = std::make_shared<camera::Frame>(*plain);
+      // The others are of a minute ahead: no busy machine makes them old.
+      const std::int64_t age_ms = frame->index == 3 ? 150 : -60'000;
+      frame->captured_ns = sources::steady_now_ns() - age_ms * 1'000'000;
+      return frame;
+    }
+  };
+  for (const auto kind : {sources::SourceKind::Live, sources::SourceKind::Recording}) {
+    std::vector<std::int64_t> shown, late;
+    std::string words;
+    NavigationObserver observer;
+    observer.on_frame = [&](const camera::FramePtr& picture, const operation::OperationStatePtr&) {
+      shown.push_back(picture->index);
+    };
+    observer.on_late = [&](const camera::FramePtr& picture, const std::string& why,
+                           const operation::OperationStatePtr&) {
+      late.push_back(picture->index);
+      words = why;
+    };
+    (void)navigate_source(std::make_shared<AgedPictures>(), options(kind), {}, observer);
+    const bool is_live = kind == sources::SourceKind::Live;
+    EXPECT_EQ(late, is_live ? std::vector<std::int64_t>{3} : std::vector<std::int64_t>{});
+    EXPECT_EQ(shown.size(), is_live ? 5U : 6U);
+    EXPECT_EQ(words.empty(), !is_live);
+  }
 }
 
 TEST_F(NavigateSource, ARecordThatCannotBeginIsAnError) {
