@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "navigation/camera/medium.h"
+#include "navigation/pipeline/frozen_picture.h"
+#include "navigation/pipeline/view_tracker.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::calibration {
@@ -13,6 +15,16 @@ namespace {
 double other_index(const RulerSightingsOptions& options) {
   const double dry = options.calibration.refractive_index;
   return options.refractive_index > 1.1 * dry ? dry : dry * camera::kSalineIndex;
+}
+
+// What is measured in a picture that repeats the one before. Corners of two pictures of one moment differ by
+// hundredths of a pixel: a codec's, not a sensor's.
+constexpr double kSameCorners_px = 0.01;
+
+bool are_same(const std::array<Eigen::Vector2d, 4>& a, const std::array<Eigen::Vector2d, 4>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if ((a[i] - b[i]).norm() > kSameCorners_px) return false;
+  return true;
 }
 
 bool both_tracked(const std::array<markers::MarkerObservation, 2>& markers) {
@@ -46,9 +58,17 @@ struct RulerSightings::State {
     std::copy(found.begin(), found.end(), seen.markers.begin());
   }
 
-  // Most fundamental first: without the lens angle the markers' corners say nothing.
+  // Most fundamental first: what shows no moment of now, or is of another focal length, says nothing, and
+  // neither do the markers' corners without the lens angle.
   [[nodiscard]] std::string reason_against() const {
-    if (options.follow_lens && (seen.lens.zoom_or_slip || seen.lens.mark != lens::MarkState::Found))
+    const pipeline::FrozenPicture::Signs& signs = frozen.signs();
+    if (is_frozen) return "the picture is frozen";
+    if (signs.is_repeating || repeats_last()) return "the picture repeats itself";
+    if (signs.is_torn) return "the picture is torn";
+    const bool is_other_zoom =
+        seen.lens.zoom == lens::ZoomState::Unknown || seen.lens.zoom == lens::ZoomState::Changed;
+    if (options.follow_lens &&
+        (is_other_zoom || seen.lens.zoom_or_slip || seen.lens.mark != lens::MarkState::Found))
       return lens::reason_text(seen.lens);
     for (const auto& marker : seen.markers)
       if (!marker.is_tracked())
@@ -56,8 +76,17 @@ struct RulerSightings::State {
     return "";
   }
 
+  // A view counts once, however often its source sends it.
+  [[nodiscard]] bool repeats_last() const {
+    return !sightings.empty() && both_tracked(seen.markers) &&
+           are_same(sightings.back().first_px, seen.markers[0].corners_px) &&
+           are_same(sightings.back().second_px, seen.markers[1].corners_px);
+  }
+
   RulerSightingsOptions options;
   lens::LensTracker lens_tracker;
+  pipeline::FrozenPicture frozen{pipeline::ViewTrackerOptions().frozen_after_s};
+  bool is_frozen = false;
   double other;  // index
   std::unique_ptr<markers::MarkerTracker> as_stated, as_other;
   std::vector<std::uint8_t> gray;
@@ -82,6 +111,7 @@ const RulerLook& RulerSightings::look(const camera::Frame& frame) {
   camera::gray_from(frame, s.gray);
   const camera::GrayView picture{s.gray.data(), frame.width, frame.height, frame.width};
   ++s.frame_count;
+  s.is_frozen = s.frozen.observe(picture, frame.timestamp_ns);
   s.seen.lens = s.lens_tracker.observe(picture, frame.timestamp_ns);
   s.find_markers(*s.as_stated, picture, s.options.refractive_index, frame.timestamp_ns);
   if (!both_tracked(s.seen.markers)) {

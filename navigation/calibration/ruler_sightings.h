@@ -5,6 +5,9 @@
 // markers, so a frame in which the stated medium recognises none is looked at once more as if the medium were
 // another: a check that finds nothing when the medium is wrong would be none.
 //
+// Only pictures of now, with the lens as it was calibrated, are taken: none that is frozen or repeats the one
+// before, none whose zoom is unknown or another one.
+//
 // look() takes about as long as tracking (1 to 6 ms on a 1080p frame). One thread at a time.
 #pragma once
 
