@@ -11,16 +11,16 @@
 namespace arthronaut::pipeline {
 namespace {
 
-constexpr int kPerSecond = 30, kWet = 45, kDry = 45;
+constexpr int kPerSecond = 30, kDry = 45, kWet = 90;
 
-// The ruler in saline for a while, and then in air: fluid that was let out, or turned on too late.
-class LetOut : public sources::FrameSource {
+// The ruler in air for a while, and then in saline: fluid that was turned on too late.
+class TurnedOn : public sources::FrameSource {
  public:
-  LetOut() : wet_(scene(camera::kSalineIndex, kWet)), dry_(scene(camera::kAirIndex, kDry)) {}
+  TurnedOn() : wet_(scene(camera::kSalineIndex, kWet)), dry_(scene(camera::kAirIndex, kDry)) {}
   [[nodiscard]] const sources::SourceInfo& info() const override { return wet_.info(); }
   [[nodiscard]] camera::FramePtr next() override {
     const std::int64_t index = next_++;
-    const camera::FramePtr picture = index < kWet ? wet_.next() : dry_.next();
+    const camera::FramePtr picture = index < kDry ? dry_.next() : wet_.next();
     if (picture == nullptr) return nullptr;
     const auto frame = std::make_shared<camera::Frame>(*picture);
     frame->index = index;
@@ -42,8 +42,8 @@ class LetOut : public sources::FrameSource {
   std::int64_t next_ = 0;
 };
 
-// What was measured while the medium was right stays, whatever comes after it; from then on there is nothing,
-// and the reason says from when to when.
+// What was measured in the wrong medium is not written because the video ends in the right one, and what was
+// measured in the right one is; the reason says from when to when.
 TEST(TrackVideo, Hazard27OnlyTheStretchInTheWrongMediumIsDropped) {
   ViewTrackerOptions options;
   options.calibration = simulator::standard_camera();
@@ -55,7 +55,7 @@ TEST(TrackVideo, Hazard27OnlyTheStretchInTheWrongMediumIsDropped) {
   end.marker_id = 6;
   end.size_mm = 2.89;
   tools.tools = {end};
-  LetOut source;
+  TurnedOn source;
   const TrackedVideo video = track_video(source, options, tools);
   ASSERT_EQ(video.statistics.frame_count, kWet + kDry);
   ASSERT_EQ(video.reasons.size(), 1U);
@@ -63,8 +63,8 @@ TEST(TrackVideo, Hazard27OnlyTheStretchInTheWrongMediumIsDropped) {
       << video.reasons.front();
   EXPECT_EQ(video.reasons.front().find("from "), 0U) << video.reasons.front();
   ASSERT_FALSE(video.rows.empty());
-  EXPECT_GT(video.rows.size(), std::size_t{kWet}) << "two markers, and few are lost";
-  for (const strokes::PoseRow& row : video.rows) EXPECT_LT(row.frame, kWet);
+  EXPECT_GT(video.rows.size(), 20U);
+  for (const strokes::PoseRow& row : video.rows) EXPECT_GE(row.frame, kDry);
 }
 
 }  // namespace
