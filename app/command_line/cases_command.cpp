@@ -3,6 +3,7 @@
 
 #include "app/command_line/command.h"
 #include "app/library/workstation_library.h"
+#include "planning/cases/case_lock.h"
 #include "planning/cases/case_note.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
@@ -97,6 +98,9 @@ void list_cases(const Context& context, const Arguments& arguments) {
     say_done(context, arguments, "Forgot " + arguments.forget + "; the folder stays as it is.");
   }
   if (!arguments.note.empty()) {
+    cases::CaseLock lock;
+    if (fs::exists(fs::path(arguments.note) / "case.json")) lock = cases::lock_or_refuse(arguments.note);
+    if (!lock.notice().empty()) say_done(context, arguments, lock.notice() + ".");
     const std::string before = cases::load_note(arguments.note).text;
     cases::save_note_over(arguments.note, arguments.note_text, before);
     (void)known.add(std::vector<fs::path>{arguments.note});

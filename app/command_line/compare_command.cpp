@@ -3,6 +3,7 @@
 #include "app/case/postop_comparison.h"
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
+#include "planning/cases/case_lock.h"
 #include "planning/files/format.h"
 #include "planning/postop/achieved_file.h"
 
@@ -35,9 +36,25 @@ std::string line_of(const tunnels::TunnelKey& key, const postop::AchievedTunnel&
   return line;
 }
 
+// The case that a file of this name would lie in; empty: none.
+std::filesystem::path case_around(const std::string& file) {
+  if (file == "-") return {};
+  std::filesystem::path folder = std::filesystem::weakly_canonical(std::filesystem::absolute(file));
+  while (folder != folder.root_path()) {
+    folder = folder.parent_path();
+    if (std::filesystem::exists(folder / "case.json")) return folder;
+  }
+  return {};
+}
+
 void compare(Context& context, const CompareArguments& arguments) {
   refuse_before_the_work(
       {.read = {arguments.source}, .written = {arguments.output}, .makes = "achieved.json"});
+  // What a workstation that has the case open compares goes into the same file.
+  cases::CaseLock lock;
+  if (const auto folder = case_around(arguments.output); !folder.empty())
+    lock = cases::lock_or_refuse(folder);
+  if (!lock.notice().empty()) context.say(lock.notice() + ".");
   Progress progress("Comparing", 100);
   open_case::PostopQuestion question{arguments.case_folder,
                                      arguments.source,

@@ -1,9 +1,11 @@
 // `arthronaut cases`: the library as a script sees it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
+#include "planning/cases/case_lock.h"
 #include "planning/cases/identity.h"
 #include "planning/files/atomic_file.h"
 #include "tests/app/command_line/program.h"
@@ -55,6 +57,18 @@ TEST_F(CasesCommand, ListsWhatWasAdded) {
   EXPECT_THAT(cases({"--add", folder_ / "knees" / "deep"}).output,
               AllOf(HasSubstr("1 case found, 1 of them new"), HasSubstr("Beta"), Not(HasSubstr("Alpha"))));
   EXPECT_EQ(nlohmann::json::parse(cases({"--add", b_, "--json"}).output).at("cases").size(), 2U);
+}
+
+// A note may be written just now where the case is open.
+TEST_F(CasesCommand, Hazard15NotesNothingWithACaseThatAnotherProgramHolds) {
+  {
+    const cases::CaseLock lock(a_);
+    ASSERT_TRUE(lock.is_held()) << lock.refusal();
+    const auto result = cases({"--note", a_, "--text", "from the ward"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.errors, HasSubstr("process " + std::to_string(::getpid())));
+  }
+  EXPECT_EQ(cases({"--note", a_, "--text", "from the ward"}).exit_code, 0);
 }
 
 TEST_F(CasesCommand, KeepsNotesInTheCase) {

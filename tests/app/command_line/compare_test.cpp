@@ -1,11 +1,13 @@
 // compare on the built-in knee, drilled and scanned, as a user types it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/case.h"
+#include "planning/cases/case_lock.h"
 #include "planning/cases/identity.h"
 #include "planning/files/atomic_file.h"
 #include "planning/images/volume_writer.h"
@@ -62,6 +64,17 @@ Eigen::Vector3d vector_of(const json& values) {
 }
 
 }  // namespace
+
+// The case keeps one comparison: two programs do not write it at once.
+TEST_F(CompareCommand, Hazard15WritesNothingIntoACaseThatAnotherProgramHolds) {
+  test::write_file(folder_ / "postop.nrrd", "is not even looked at");
+  const cases::CaseLock lock(folder_ / "knee.arthro");
+  ASSERT_TRUE(lock.is_held()) << lock.refusal();
+  const auto result = compare("postop.nrrd", "knee.arthro/achieved.json");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, HasSubstr("process " + std::to_string(::getpid())));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "knee.arthro/achieved.json"));
+}
 
 // The file is what the interface says, the numbers are the truth's.
 TEST_F(CompareCommand, WritesWhatWasAchieved) {
