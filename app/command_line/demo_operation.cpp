@@ -280,6 +280,8 @@ class Demo {
     navigation_.source.title = "Simulated operation: " + name;
     const theatre::NavigationSummary summary =
         theatre::navigate_source(source, navigation_, record, observer);
+    if (const auto reasons = record_reasons(summary); !reasons.empty())
+      context_.say_unreliable("the record of \"" + name + "\"", reasons);
     true_marker_from_bone_ = source->operation().marker_from_bone();
     if (phase == Phase::Drill) true_tunnel_ = source->operation().drilled_tunnel();
     if (last_frame) write_picture(name, *last_frame, last_result, summary.registration);
