@@ -130,9 +130,27 @@ void PostopPage::show_scene() {
       scene::add_achieved_tunnel(content, comparison.tunnel.tunnel, comparison.tunnel.length_mm);
   }
   pane_.show(content);
+}
+
+void PostopPage::look_at_chosen() {
   if (const auto tunnel = model_->tunnel(chosen_))
     pane_.look(scene::orbited(
         scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 190, {0, 0, 1}), {60, -40}, 600));
+}
+
+// A plan that was edited meanwhile leaves the user's view as it is.
+void PostopPage::follow_plan(const widgets::Ui& ui) {
+  const bool looks_anew = std::exchange(scene_is_stale_, false);
+  const bool is_edited = std::exchange(scene_is_of_, model_->revision()) != model_->revision();
+  if (looks_anew || is_edited) {
+    show_scene();
+    const auto tunnel = model_->tunnel(chosen_);
+    scene_words_ = tunnel ? files::format("%.2f %.2f %.2f", tunnel->entry_mm.x(), tunnel->entry_mm.y(),
+                                          tunnel->entry_mm.z())
+                          : "no plan";
+  }
+  if (looks_anew) look_at_chosen();
+  ui.log.note_state("postop_planned", scene_words_);
 }
 
 void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
@@ -156,7 +174,7 @@ void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
                                  "for it.");
     return;
   }
-  if (std::exchange(scene_is_stale_, false)) show_scene();
+  follow_plan(ui);
   draw_table(ui, area.cut_right(ui.theme.px(520), gap));
   const widgets::Rect scene = area.cut_left((area.width - gap) / 2, gap);
   pane_.draw(ui, "review.postop_view", scene);

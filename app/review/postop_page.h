@@ -86,6 +86,8 @@ class PostopPage {
   void take_answer();
   [[nodiscard]] const Places& places();
   void show_scene();
+  void look_at_chosen();
+  void follow_plan(const widgets::Ui& ui);
   void draw_head(const widgets::Ui& ui, widgets::Rect area);
   void draw_browser(const widgets::Ui& ui, widgets::Rect area);
   void draw_question(const widgets::Ui& ui, const widgets::Rect& area);
@@ -109,7 +111,9 @@ class PostopPage {
   Places places_;
   std::uint64_t places_are_of_ = 0;  // PlanModel::revision(); 0: none yet
   tunnels::TunnelKey chosen_{bones::BoneKind::Femur};
-  bool scene_is_stale_ = true;
+  bool scene_is_stale_ = true;     // it shows another case, tunnel or answer, and not from where it lies
+  std::uint64_t scene_is_of_ = 0;  // PlanModel::revision()
+  std::string scene_words_;        // where its plan enters
   PathField field_;
   Search search_;
   std::array<Slice, 2> slices_;
