@@ -146,6 +146,14 @@ void CaseList::add_actions(widgets::Actions& actions, const std::function<bool()
                GLFW_KEY_SPACE, 0, false, [this, is_shown] { return is_shown() && view_.shows_trends; },
                [this] { return view_.with_simulated; },
                [this] { view_.with_simulated = !view_.with_simulated; }});
+  actions.add(
+      {"start.trend_bone", "Femur, tibia or both",
+       "Which bone's tunnels and sessions the trends are of, and their limits", GLFW_KEY_B, 0, false,
+       [this, is_shown] { return is_shown() && view_.shows_trends; },
+       [this] { return !view_.trend_bone.empty(); },
+       [this] {
+         view_.trend_bone = view_.trend_bone.empty() ? "femur" : view_.trend_bone == "femur" ? "tibia" : "";
+       }});
   actions.add({"start.forget",
                "Take off the list",
                "The missing case is not listed any more; nothing is deleted",

@@ -112,23 +112,28 @@ void draw_points(const widgets::Ui& ui, const Chart& chart, const Charted& chart
     const ImVec2 at = chart.at(i, points[i].value);
     if (charted.is_outside(points[i].value))  // by shape, too: a square
       draw.AddRectFilled({at.x - radius, at.y - radius}, {at.x + radius, at.y + radius}, widgets::kBad);
+    else if (points[i].bone == "tibia")
+      draw.AddTriangleFilled({at.x, at.y - radius}, {at.x + radius, at.y + radius},
+                             {at.x - radius, at.y + radius}, widgets::kAccent);
     else
       draw.AddCircleFilled(at, radius, widgets::kAccent);
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ImVec2 at = chart.at(i, points[i].value);
     if (std::hypot(at.x - mouse.x, at.y - mouse.y) > 2 * radius) continue;
-    const std::string words = points[i].case_name + ", " + files::local_day(points[i].when_utc) + ": " +
-                              charted.number(points[i].value);
+    const std::string bone = points[i].bone.empty() ? "" : ", " + points[i].bone;
+    const std::string words = points[i].case_name + bone + ", " + files::local_day(points[i].when_utc) +
+                              ": " + charted.number(points[i].value);
     ImGui::SetTooltip("%s", words.c_str());
     break;
   }
 }
 
-Charted charted_trend(std::span<const library::CaseRecord> listed, Trend trend, bool with_simulated) {
+Charted charted_trend(std::span<const library::CaseRecord> listed, Trend trend,
+                      const library::TrendOptions& options) {
   Charted charted;
   charted.unit = library::unit_of(trend);
-  charted.points = library::trend_of(listed, trend, {.with_simulated = with_simulated});
+  charted.points = library::trend_of(listed, trend, options);
   std::vector<double> values;
   for (const TrendPoint& point : charted.points) values.push_back(point.value);
   charted.limits = library::control_limits(values);
@@ -229,25 +234,29 @@ void CaseList::draw_trends(const widgets::Ui& ui, const widgets::Rect& area) {
     if (!accuracy_.problems.empty()) words += ".  " + accuracy_.problems.front();
   } else {
     const auto trend = static_cast<Trend>(view_.chart);
-    charted = charted_trend(listed, trend, view_.with_simulated);
-    left_out = library::trend_of(listed, trend, {.with_simulated = true}).size() - charted.points.size();
+    charted =
+        charted_trend(listed, trend, {.with_simulated = view_.with_simulated, .bone = view_.trend_bone});
+    left_out = library::trend_of(listed, trend, {.with_simulated = true, .bone = view_.trend_bone}).size() -
+               charted.points.size();
     const std::string one = is_of_comparisons(trend) ? "tunnel in a CT" : "session";
     const std::string many = is_of_comparisons(trend) ? "tunnels in CTs" : "sessions";
-    words = std::to_string(charted.points.size()) + " " + (charted.points.size() == 1 ? one : many) + " of " +
-            std::to_string(found_.size()) + (found_.size() == 1 ? " listed case" : " listed cases");
+    words = (view_.trend_bone.empty() ? std::string("femur (round) and tibia (pointed)") : view_.trend_bone) +
+            ": " + std::to_string(charted.points.size()) + " " + (charted.points.size() == 1 ? one : many) +
+            " of " + std::to_string(found_.size()) + (found_.size() == 1 ? " listed case" : " listed cases");
     if (left_out > 0) words += "; " + std::to_string(left_out) + " simulated left out";
     words += limits_in_words(charted, std::to_string(library::kLeastForLimits) + " " + many);
   }
   ui.log.note_state("trend_points", std::to_string(charted.points.size()));
   ui.log.note_state("trend", chart_name(view_.chart));
   ui.log.note_state("trend_says", words);
+  ui.log.note_state("trend_bone", view_.trend_bone.empty() ? "both" : view_.trend_bone);
 
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   widgets::draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, chart_name(view_.chart));
   widgets::draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(50), widgets::kQuietText,
                      widgets::fitting(ui.theme.body, words, head.width));
   widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-                        {"start.trends", "start.simulated", "start.back"});
+                        {"start.trends", "start.trend_bone", "start.simulated", "start.back"});
   draw_chart_list(ui, rest.cut_left(ui.theme.px(420), ui.theme.px(12)));
   widgets::begin_panel(ui, "start.trend_plot", rest);
   if (charted.points.empty())

@@ -46,9 +46,9 @@ void add_comparisons(const CaseRecord& record, Trend trend, const TrendOptions& 
     if (!value || !facts.is_reliable || (!options.bone.empty() && facts.bone != options.bone)) continue;
     const SessionFacts* session = newest_session_of(record, facts.bone);
     if (session == nullptr)
-      points.push_back({record.created_utc, *value, record.name, "", record.folder});
+      points.push_back({record.created_utc, *value, record.name, "", record.folder, facts.bone});
     else if (!session->is_simulated() || options.with_simulated)
-      points.push_back({session->started_utc, *value, record.name, session->id, record.folder});
+      points.push_back({session->started_utc, *value, record.name, session->id, record.folder, facts.bone});
   }
 }
 
@@ -106,7 +106,8 @@ std::vector<TrendPoint> trend_of(std::span<const CaseRecord> records, Trend tren
       if (session.started_utc.empty() || (session.is_simulated() && !options.with_simulated)) continue;
       if (!options.bone.empty() && session.bone != options.bone) continue;
       const auto value = value_of(session, trend);
-      if (value) points.push_back({session.started_utc, *value, record.name, session.id, record.folder});
+      if (value)
+        points.push_back({session.started_utc, *value, record.name, session.id, record.folder, session.bone});
     }
   }
   std::sort(points.begin(), points.end(), [](const TrendPoint& a, const TrendPoint& b) {

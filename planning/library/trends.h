@@ -31,6 +31,7 @@ struct TrendPoint {
   double value = 0;
   std::string case_name, session;
   std::filesystem::path case_folder;
+  std::string bone = {};  // "femur", "tibia"; empty: of none (a check of accuracy), or not known
 };
 
 struct TrendOptions {

@@ -195,6 +195,17 @@ TEST(OutputFolder, OfADemoThatIsInterruptedIsGone) {
   EXPECT_THAT(folder.names(), ::testing::IsEmpty());
 }
 
+// A demo whose video the disk does not take says so of each record, and goes on.
+TEST(OutputFolder, OfADemoSaysThatItsVideoCouldNotBeKept) {
+  const test::TemporaryFolder folder;
+  const fs::path knee = folder / "demo.arthro";
+  const auto result = run_program(
+      {"demo", "-o", knee}, {.file_size_bytes = 20'000'000,
+                             .interrupts_when = [&] { return fs::exists(knee / "pictures/scratch.png"); }});
+  EXPECT_THAT(result.errors, HasSubstr("the record of \"scratch\" is not reliable"));
+  EXPECT_THAT(result.errors, HasSubstr("the video is not kept to its end: video.mkv: cannot write"));
+}
+
 // What was asked for on standard output and did not get there is an error, as in a file.
 TEST(OutputFile, AFullDiskBehindStandardOutputIsTold) {
   const test::TemporaryFolder folder;

@@ -56,6 +56,11 @@ TEST_F(CasesWindow, IsSearchedNotedAndOpenedByKeys) {
   EXPECT_EQ(cases::load_note(case_folder("Berta")).text, "second look");
   app.press("t");
   ASSERT_TRUE(app.wait_for_state("page", "trends"));
+  ASSERT_TRUE(app.wait_for_state("trend_bone", "both"));
+  for (const char* bone : {"femur", "tibia", "both"}) {
+    app.press("b");
+    ASSERT_TRUE(app.wait_for_state("trend_bone", bone));
+  }
   app.press("Escape");
   ASSERT_TRUE(app.wait_for_state("page", "list"));
   app.press("Return");

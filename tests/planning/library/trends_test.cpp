@@ -42,6 +42,8 @@ TEST(TrendTest, GoesThroughTheSessionsInTime) {
   EXPECT_EQ(values({.with_simulated = true}), (std::vector<double>{1, 2, 3, 4}));
   EXPECT_EQ(values({.bone = "tibia"}), (std::vector<double>{2}));
   EXPECT_EQ(trend_of(records, Trend::EntryOffset)[1].case_name, "B");
+  EXPECT_EQ(trend_of(records, Trend::EntryOffset)[0].bone, "femur");
+  EXPECT_EQ(trend_of(records, Trend::EntryOffset)[1].bone, "tibia");
   EXPECT_TRUE(trend_of(records, Trend::Drilling).empty());
 }
 
