@@ -158,8 +158,9 @@ TEST_F(RigCommand, PivotTakesTheWorldThatTheToolsDeclare) {
   std::vector<strokes::PoseRow> rows;
   for (int i = 0; i < 60; ++i) {
     const RigidTransform facing{Eigen::Quaterniond(0, 1, 0, 0), {0.02 * i, 1, 24}};
-    rows.push_back({i, i / 30.0, 2, facing * turned({1, 0.3, 0}, 25 * std::sin(0.3 * i), {0, 0, 0}), 0.1});
-    rows.push_back({i, i / 30.0, 10, facing * turned({1, 0, 0}, 20, {5, 5, 0}), 0.1});
+    rows.push_back(
+        {i, i / 30.0, 2, facing * turned({1, 0.3, 0}, 25 * std::sin(0.3 * i), {0, 0, 0}), 0.1, {}, {}});
+    rows.push_back({i, i / 30.0, 10, facing * turned({1, 0, 0}, 20, {5, 5, 0}), 0.1, {}, {}});
   }
   strokes::write_poses_file(folder_ / "poses.csv", rows);
   tools::ToolSet set = tools::standard_tools();
