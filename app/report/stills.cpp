@@ -12,6 +12,7 @@
 #include "app/scene/overlay_picture.h"
 #include "app/scene/plan_overlay.h"
 #include "app/scene/tool_clearance.h"
+#include "navigation/recording/of_drilled.h"
 #include "navigation/recording/recorded_pictures.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/files/format.h"
@@ -71,13 +72,14 @@ std::optional<geometry::RigidTransform> camera_from_world(const pipeline::Pipeli
 std::vector<Moment> key_moments(const recording::RecordedSession& session,
                                 const pipeline::PipelineOptions& options) {
   const auto& frames = session.frames();
-  std::int64_t registered_after = -2, drilled_after = -1;
+  std::int64_t registered_after = -2;
+  recording::OfDrilled<std::int64_t> drilled_in;
   for (const recording::SessionEvent& event : session.events()) {
     if (event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent)
       registered_after = event.after_frame;
-    if (event.kind == recording::kDrilledEvent) drilled_after = event.after_frame;
-    if (event.kind == recording::kDrilledTakenBackEvent) drilled_after = -1;
+    drilled_in.follow(event, event.after_frame);
   }
+  const std::int64_t drilled_after = drilled_in.newest() != nullptr ? *drilled_in.newest() : -1;
   std::optional<std::size_t> registered, closest, drilled;
   const auto miss = [&](std::size_t i) {
     return frames[i].guidance.axis_to_entry_mm + 0.5 * frames[i].guidance.angle_deg;

@@ -11,8 +11,7 @@ void CountingRegistration::follow(const SessionEvent& event) {
     newest_.is_void = true;
     newest_.was_verified = false;
   }
-  if (event.kind == kDrilledEvent) drilled_by_ = newest_;
-  if (event.kind == kDrilledTakenBackEvent) drilled_by_.reset();
+  drilled_by_.follow(event, newest_);
 }
 
 }  // namespace arthronaut::recording

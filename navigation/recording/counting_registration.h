@@ -3,9 +3,9 @@
 // drilled it is the newest one.
 #pragma once
 
-#include <optional>
 #include <string>
 
+#include "navigation/recording/of_drilled.h"
 #include "navigation/recording/session.h"
 
 namespace arthronaut::recording {
@@ -19,13 +19,16 @@ class CountingRegistration {
   };
 
   void follow(const SessionEvent& event);
-  [[nodiscard]] const Trust& counts() const { return drilled_by_ ? *drilled_by_ : newest_; }
+  [[nodiscard]] const Trust& counts() const {
+    const Trust* const drilled_by = drilled_by_.newest();
+    return drilled_by != nullptr ? *drilled_by : newest_;
+  }
   // It is not the newest: registration.json holds another one.
   [[nodiscard]] bool is_of_before() const { return counts().file != newest_.file && !counts().file.empty(); }
 
  private:
   Trust newest_;
-  std::optional<Trust> drilled_by_;
+  OfDrilled<Trust> drilled_by_;
 };
 
 }  // namespace arthronaut::recording

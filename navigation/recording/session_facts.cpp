@@ -7,6 +7,7 @@
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/recording/counting_registration.h"
+#include "navigation/recording/of_drilled.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_database.h"
 #include "navigation/recording/session_files.h"
@@ -35,13 +36,13 @@ class Steps {
     const bool is_trusted = event.kind == kVerifiedEvent || event.kind == kConfirmedEvent;
     if (is_trusted && verified_ns_ == kNever) verified_ns_ = guided_ns_ = at;
     if (event.kind == kVerificationLostEvent) verified_ns_ = kNever;
-    if (event.kind == kDrilledEvent) drilled_ns_ = at;
-    if (event.kind == kDrilledTakenBackEvent) drilled_ns_ = kNever;
+    drilled_ns_.follow(event, at);
   }
   void fill(SessionFacts& facts) const {
     facts.registering_min = minutes(start_ns_, registered_ns_);
     facts.verifying_min = minutes(registered_ns_, verified_ns_);
-    facts.drilling_min = minutes(guided_ns_, drilled_ns_);
+    facts.drilling_min =
+        minutes(guided_ns_, drilled_ns_.newest() != nullptr ? *drilled_ns_.newest() : kNever);
   }
 
  private:
@@ -50,7 +51,8 @@ class Steps {
     return static_cast<double>(to_ns - from_ns) * 1e-9 / 60;
   }
   std::int64_t start_ns_, guided_ns_;
-  std::int64_t registered_ns_ = kNever, verified_ns_ = kNever, drilled_ns_ = kNever;
+  std::int64_t registered_ns_ = kNever, verified_ns_ = kNever;
+  OfDrilled<std::int64_t> drilled_ns_;
 };
 
 void read_header(const fs::path& folder, SessionFacts& facts) {
