@@ -312,7 +312,8 @@ TEST_F(ReplayedOperation, EveryNumberAndDecisionThatDiffersIsToldOnAnotherBuild)
   EXPECT_EQ(whats_of(), std::set<std::string>{});
 
   std::string frame;
-  for (const recording::RecordedFrame& recorded : recording::RecordedSession(folder).frames())
+  const recording::RecordedSession session(folder);  // whose frames are looked at
+  for (const recording::RecordedFrame& recorded : session.frames())
     if (recorded.guidance.is_valid()) frame = std::to_string(recorded.index);
   ASSERT_FALSE(frame.empty()) << "the test must see guidance";
   std::set<std::string> changed{"drill", "alarm", "verification skipped"};
@@ -399,7 +400,8 @@ TEST_F(ReplayedOperation, SecondLooksThatComeLateGiveTheSameStates) {
     }
     const std::string name = "session" + std::to_string(++session);
     int looks = 0, failed = 0;
-    for (const recording::SessionEvent& event : recording::RecordedSession(folder_ / name).events()) {
+    const recording::RecordedSession recorded(folder_ / name);  // whose events are looked at
+    for (const recording::SessionEvent& event : recorded.events()) {
       looks += event.kind == recording::kLookEvent ? 1 : 0;
       failed += event.kind == recording::kLookFailedEvent ? 1 : 0;
     }
