@@ -145,8 +145,9 @@ void PostopPage::follow_plan(const widgets::Ui& ui) {
   if (looks_anew || is_edited) {
     show_scene();
     const auto tunnel = model_->tunnel(chosen_);
-    scene_words_ = tunnel ? files::format("%.2f %.2f %.2f", tunnel->entry_mm.x(), tunnel->entry_mm.y(),
-                                          tunnel->entry_mm.z())
+    scene_words_ = tunnel ? files::format("%.2f %.2f %.2f along %.3f %.3f %.3f", tunnel->entry_mm.x(),
+                                          tunnel->entry_mm.y(), tunnel->entry_mm.z(), tunnel->direction.x(),
+                                          tunnel->direction.y(), tunnel->direction.z())
                           : "no plan";
   }
   if (looks_anew) look_at_chosen();

@@ -148,7 +148,7 @@ void CaseList::add_actions(widgets::Actions& actions, const std::function<bool()
                [this] { view_.with_simulated = !view_.with_simulated; }});
   actions.add(
       {"start.trend_bone", "Femur, tibia or both",
-       "Which bone's tunnels and sessions the trends are of, and their limits", GLFW_KEY_B, 0, false,
+       "Which bone's tunnels and sessions the trends are of, and their limits", GLFW_KEY_TAB, 0, false,
        [this, is_shown] { return is_shown() && view_.shows_trends; },
        [this] { return !view_.trend_bone.empty(); },
        [this] {

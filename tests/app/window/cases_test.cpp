@@ -58,7 +58,7 @@ TEST_F(CasesWindow, IsSearchedNotedAndOpenedByKeys) {
   ASSERT_TRUE(app.wait_for_state("page", "trends"));
   ASSERT_TRUE(app.wait_for_state("trend_bone", "both"));
   for (const char* bone : {"femur", "tibia", "both"}) {
-    app.press("b");
+    app.press("Tab");
     ASSERT_TRUE(app.wait_for_state("trend_bone", bone));
   }
   app.press("Escape");

@@ -230,20 +230,22 @@ TEST_F(ReviewWindow, ShowsTheComparisonThatACaseKeeps) {
   EXPECT_TRUE(app.wait_for_state("review_page", "achieved"));
   EXPECT_TRUE(app.wait_for_state("postop", "kept"));
   // What it calls planned is the plan of now.
-  const auto entry_in_words = [&] {
-    const auto at = cases::load_case(case_folder_).plan.tunnels.at(bones::BoneKind::Femur).entry_mm;
-    return files::format("%.2f %.2f %.2f", at.x(), at.y(), at.z());
+  const auto planned_in_words = [&] {
+    const auto tunnel = cases::load_case(case_folder_).plan.tunnels.at(bones::BoneKind::Femur);
+    const Eigen::Vector3d &at = tunnel.entry_mm, &along = tunnel.direction;
+    return files::format("%.2f %.2f %.2f along %.3f %.3f %.3f", at.x(), at.y(), at.z(), along.x(), along.y(),
+                         along.z());
   };
-  const std::string before = entry_in_words();
+  const std::string before = planned_in_words();
   EXPECT_TRUE(app.wait_for_state("postop_planned", before));
   app.press("F1");
   ASSERT_TRUE(app.wait_for_state("mode", "plan"));
   app.press("n");
-  for (int i = 0; i < 300 && entry_in_words() == before; ++i)
+  for (int i = 0; i < 300 && planned_in_words() == before; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  ASSERT_NE(entry_in_words(), before) << "the test needs another plan";
+  ASSERT_NE(planned_in_words(), before) << "the test needs another plan";
   app.press("F3");
-  EXPECT_TRUE(app.wait_for_state("postop_planned", entry_in_words()));
+  EXPECT_TRUE(app.wait_for_state("postop_planned", planned_in_words()));
 
   std::filesystem::rename(aside, session_);
   app.press("F1");
