@@ -240,7 +240,9 @@ void CaseList::draw_trends(const widgets::Ui& ui, const widgets::Rect& area) {
                charted.points.size();
     const std::string one = is_of_comparisons(trend) ? "tunnel in a CT" : "session";
     const std::string many = is_of_comparisons(trend) ? "tunnels in CTs" : "sessions";
-    words = (view_.trend_bone.empty() ? std::string("femur (round) and tibia (pointed)") : view_.trend_bone) +
+    words = (view_.trend_bone.empty()      ? std::string("Femur (round) and tibia (pointed)")
+             : view_.trend_bone == "femur" ? "Femur"
+                                           : "Tibia") +
             ": " + std::to_string(charted.points.size()) + " " + (charted.points.size() == 1 ? one : many) +
             " of " + std::to_string(found_.size()) + (found_.size() == 1 ? " listed case" : " listed cases");
     if (left_out > 0) words += "; " + std::to_string(left_out) + " simulated left out";
