@@ -323,7 +323,7 @@ std::string reason_text(const LensObservation& lens) {
     return "another zoom, or the coupler slipped";  // of a record, which holds no more
   else if (lens.mark != MarkState::Found)
     return "lens mark: " + std::string(to_text(lens.mark)) +
-           (lens.is_stale ? ", the lens angle is not known" : ", its last angle is held");
+           (lens.is_stale ? ", the lens angle is not known" : ", its last angle is held while it is sure");
   return text;
 }
 

@@ -252,7 +252,7 @@ TEST(LensTracker, SaysThatTheAngleIsHeldAndThenNotKnown) {
     const LensObservation held = tracker.observe(picture.view(), 200'000'000);
     EXPECT_EQ(held.mark, MarkState::NotSeen);
     EXPECT_TRUE(held.has_angle());
-    EXPECT_EQ(reason_text(held), "lens mark: no mark on the rim, its last angle is held");
+    EXPECT_EQ(reason_text(held), "lens mark: no mark on the rim, its last angle is held while it is sure");
     const LensObservation& stale = tracker.observe(picture.view(), 1'500'000'000);
     EXPECT_TRUE(stale.is_stale);
     EXPECT_FALSE(stale.has_angle());
