@@ -11,6 +11,7 @@
 #include "planning/bones/mesh_hash.h"
 #include "planning/geometry/error.h"
 #include "planning/plan_review/proposed_landmarks.h"
+#include "planning/tunnels/diameter_range.h"
 
 namespace arthronaut::open_case {
 
@@ -125,7 +126,7 @@ default_plan::DefaultTunnel PlanModel::default_tunnel(const tunnels::TunnelKey& 
        // there.
        .proposal = bone.proposal ? &*bone.proposal : nullptr},
       knee_.side,
-      {.bundle = key.bundle, .diameter_mm = default_plan::usual_diameter_mm(key.bundle), .stop = stop});
+      {.bundle = key.bundle, .diameter_mm = tunnels::usual_diameter_mm(key.bundle), .stop = stop});
 }
 
 std::optional<tunnels::Tunnel> PlanModel::tunnel(const tunnels::TunnelKey& key) const {

@@ -51,7 +51,7 @@ tunnels::TunnelKey key_of(const PlanArguments& arguments) {
 
 double diameter_mm_of(const PlanArguments& arguments) {
   return arguments.names_diameter ? arguments.diameter_mm
-                                  : default_plan::usual_diameter_mm(norms::bundle_from_text(arguments.type));
+                                  : tunnels::usual_diameter_mm(norms::bundle_from_text(arguments.type));
 }
 
 tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case& knee,

@@ -72,7 +72,7 @@ void MediumCheck::look(const PictureObservation& view) {
     vote(view.camera, marker, declared_[i].size_mm, true);
   }
   decide();
-  const double pause_s = score_ < 0 ? options_.follow_up_s : options_.look_every_s;
+  const double pause_s = score_ < 0 || is_in_doubt_ ? options_.follow_up_s : options_.look_every_s;
   const bool is_unconfirmed = now_ns_ - confirmed_ns_ >= ns_from_s(options_.unconfirmed_s);
   const bool is_rested = !has_looked_ || now_ns_ - looked_ns_ >= ns_from_s(pause_s);
   wants_second_look_ = is_any_strained && is_unconfirmed && is_rested;

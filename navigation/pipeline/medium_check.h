@@ -62,7 +62,7 @@ struct MediumCheckOptions {
   double vote_every_s = 0.05;
   // Second looks: when no marker has spoken for the stated medium for so long, and not oftener than ...
   double unconfirmed_s = 0.1, look_every_s = 0.5;
-  double follow_up_s = 0.1;  // ... while votes speak against it
+  double follow_up_s = 0.1;  // ... while votes speak against it, from the first one after those for it on
 };
 
 class MediumCheck {

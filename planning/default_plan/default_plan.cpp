@@ -83,11 +83,12 @@ struct Site {
   const Options& options;
 
   [[nodiscard]] Tunnel tunnel_of(Bundle bundle) const {
-    return {.bone = input.bone->kind,
-            .entry_mm = {},
-            .direction = {},
-            .diameter_mm = bundle == options.bundle ? options.diameter_mm : usual_diameter_mm(bundle),
-            .bundle = bundle};
+    return {
+        .bone = input.bone->kind,
+        .entry_mm = {},
+        .direction = {},
+        .diameter_mm = bundle == options.bundle ? options.diameter_mm : tunnels::usual_diameter_mm(bundle),
+        .bundle = bundle};
   }
   // nullopt where no bone is at the norm's place.
   [[nodiscard]] std::optional<Tunnel> at(const norms::InsertionNorm& norm) const {
@@ -266,18 +267,6 @@ DefaultTunnel stopped() {
 }
 
 }  // namespace
-
-double usual_diameter_mm(norms::Bundle bundle) {
-  switch (bundle) {
-    case norms::Bundle::Whole:
-      break;
-    case norms::Bundle::Anteromedial:
-      return 7.0;
-    case norms::Bundle::Posterolateral:
-      return 6.0;
-  }
-  return 9.0;
-}
 
 void Options::check() const {
   check_range("diameter_mm", diameter_mm, tunnels::kLeastDiameter_mm, tunnels::kGreatestDiameter_mm);

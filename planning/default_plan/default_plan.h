@@ -21,12 +21,9 @@
 
 namespace arthronaut::default_plan {
 
-// Customary, of grafts from hamstring tendons: 9 mm for the whole ligament, 7 mm for AM and 6 mm for PL.
-[[nodiscard]] double usual_diameter_mm(norms::Bundle bundle);
-
 struct Options {
   norms::Bundle bundle = norms::Bundle::Whole;
-  double diameter_mm = 9.0;  // 3 to 15; see usual_diameter_mm
+  double diameter_mm = 9.0;  // see tunnels/diameter_range.h
   // Femur: the knee is flexed while the portal's drill goes in; the axis points at the portal then. 110 to
   // 120 degrees is customary through the anteromedial portal.
   double flexion_deg = 115;

@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "planning/default_plan/default_plan.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
@@ -105,7 +104,7 @@ void take_tunnel(const tunnels::TunnelKey& key, const std::vector<Vector3d>& pos
   if (!diameter_mm) plan.without_diameter.insert(key);
   plan.tunnels.emplace(
       key, tunnels::Tunnel{key.bone, positions[0], along.normalized(),
-                           diameter_mm.value_or(default_plan::usual_diameter_mm(key.bundle)), key.bundle});
+                           diameter_mm.value_or(tunnels::usual_diameter_mm(key.bundle)), key.bundle});
 }
 
 void read_markup(const json& node, const Place& place, MarkupsPlan& plan) {

@@ -9,6 +9,7 @@
 #include "planning/default_plan/default_plan.h"
 #include "planning/files/csv_table.h"
 #include "planning/files/format.h"
+#include "planning/tunnels/diameter_range.h"
 #include "planning/tunnels/plan_norms.h"
 #include "planning/tunnels/tunnel_pair.h"
 #include "tests/real_data/real_data.h"
@@ -93,13 +94,14 @@ TEST(RealDefaultPlan, LeavesBoneBetweenTwoBundlesInEitherOrder) {
     const geometry::Surface surface(bone.mesh);
     const auto proposal = landmarks::propose(bone.mesh, bone.kind, {.side = Side::Right});
     const auto planned = [&](Bundle bundle, const tunnels::Tunnel* beside) {
-      const auto plan = plan_bone({.bone = &bone,
-                                   .surface = &surface,
-                                   .landmarks = {},
-                                   .states = {},
-                                   .proposal = &proposal,
-                                   .beside = beside},
-                                  Side::Right, {.bundle = bundle, .diameter_mm = usual_diameter_mm(bundle)});
+      const auto plan =
+          plan_bone({.bone = &bone,
+                     .surface = &surface,
+                     .landmarks = {},
+                     .states = {},
+                     .proposal = &proposal,
+                     .beside = beside},
+                    Side::Right, {.bundle = bundle, .diameter_mm = tunnels::usual_diameter_mm(bundle)});
       EXPECT_TRUE(plan.is_usable()) << plan.message;
       return plan.tunnel;
     };

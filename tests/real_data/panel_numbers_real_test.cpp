@@ -15,6 +15,7 @@
 #include "planning/bones/mesh_repair.h"
 #include "planning/default_plan/default_plan.h"
 #include "planning/plan_review/plan_review.h"
+#include "planning/tunnels/diameter_range.h"
 #include "tests/planning/tunnels/dense_wall.h"
 #include "tests/real_data/real_data.h"
 
@@ -50,7 +51,7 @@ cases::Case real_knee(const std::filesystem::path& folder, Side side, const std:
     for (const Bundle bundle : bundles) {
       const auto planned = default_plan::plan_bone(
           {.bone = &bone, .surface = &surface, .landmarks = {}, .states = {}, .proposal = &proposal}, side,
-          {.bundle = bundle, .diameter_mm = default_plan::usual_diameter_mm(bundle)});
+          {.bundle = bundle, .diameter_mm = tunnels::usual_diameter_mm(bundle)});
       EXPECT_TRUE(planned.is_usable()) << planned.message;
       knee.plan.put(planned.tunnel, "");
     }

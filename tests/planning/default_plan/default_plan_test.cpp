@@ -9,6 +9,7 @@
 #include "planning/norms/footprint.h"
 #include "planning/phantom/phantom_knee.h"
 #include "planning/plan_export/drilled_bone.h"
+#include "planning/tunnels/diameter_range.h"
 #include "planning/tunnels/plan_norms.h"
 #include "planning/tunnels/tunnel_pair.h"
 
@@ -215,7 +216,7 @@ TEST(DefaultPlan, KeepsBoneBetweenTwoBundlesInEitherOrder) {
       SCOPED_TRACE(bones::to_text(input.bone->kind));
       const auto planned = [&](Bundle bundle, const tunnels::Tunnel* beside) {
         input.beside = beside;
-        return plan_bone(input, side, {.bundle = bundle, .diameter_mm = usual_diameter_mm(bundle)});
+        return plan_bone(input, side, {.bundle = bundle, .diameter_mm = tunnels::usual_diameter_mm(bundle)});
       };
       for (const auto& [one, other] : {std::pair(Bundle::Anteromedial, Bundle::Posterolateral),
                                        std::pair(Bundle::Posterolateral, Bundle::Anteromedial)}) {
@@ -244,8 +245,8 @@ TEST(DefaultPlan, MovesBundlesApartWithinTheirSpreadAndSaysSo) {
       const auto expected = norms::expected_footprint(input.bone->mesh, *input.surface, kind, Side::Right,
                                                       input.landmarks, norms::default_norm(kind, bundle));
       ASSERT_TRUE(expected);
-      const auto planned =
-          plan_bone(input, Side::Right, {.bundle = bundle, .diameter_mm = usual_diameter_mm(bundle)});
+      const auto planned = plan_bone(input, Side::Right,
+                                     {.bundle = bundle, .diameter_mm = tunnels::usual_diameter_mm(bundle)});
       ASSERT_TRUE(planned.is_usable());
       const double off_mm = (planned.tunnel.entry_mm - expected->center_mm).norm();
       EXPECT_EQ(planned.off_norm_mm, off_mm);
@@ -259,7 +260,8 @@ TEST(DefaultPlan, MovesBundlesApartWithinTheirSpreadAndSaysSo) {
       // Thin ones have bone enough between them at the norms.
       const Bundle of_other = bundle == Bundle::Anteromedial ? Bundle::Posterolateral : Bundle::Anteromedial;
       tunnels::Tunnel needle =
-          plan_bone(input, Side::Right, {.bundle = of_other, .diameter_mm = usual_diameter_mm(of_other)})
+          plan_bone(input, Side::Right,
+                    {.bundle = of_other, .diameter_mm = tunnels::usual_diameter_mm(of_other)})
               .tunnel;
       const double between_mm =
           tunnels::gap_between(planned.tunnel, tunnels::measure(planned.tunnel, *input.surface), needle,
