@@ -182,10 +182,9 @@ void add_pivot_command(CLI::App& app, Context& context) {
   subcommand->add_option("-o,--output", arguments->output, "tip.json, or - for standard output")
       ->required()
       ->check(a_name());
-  subcommand->add_option("--tools", arguments->tools,
-                         "tools.json: world markers, which way a guide drills, and bodies of several "
-                         "markers, whose tip is then in "
-                         "the tool's frame");
+  subcommand->add_option(
+      "--tools", arguments->tools,
+      "tools.json: world markers, which way a guide drills, and bodies of several markers");
   subcommand->callback([arguments, &context] {
     refuse_before_the_work({.read = {arguments->poses, arguments->tools}, .written = {arguments->output}});
     // Any marker of a body stands for it.

@@ -1,16 +1,15 @@
 #include "app/start/pacs_pane.h"
 
 #include <GLFW/glfw3.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cstdlib>
 #include <string>
 #include <utility>
 
+#include "planning/files/running_process.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::start {
@@ -22,11 +21,10 @@ using widgets::Severity;
 
 namespace {
 
-bool is_running(const std::string& process_id) {
+bool is_of_running_program(const std::string& process_id) {
   int number = 0;
   const char* const end = process_id.data() + process_id.size();
-  if (std::from_chars(process_id.data(), end, number).ptr != end || number <= 0) return false;
-  return ::kill(number, 0) == 0 || errno == EPERM;
+  return std::from_chars(process_id.data(), end, number).ptr == end && files::is_running(number);
 }
 
 }  // namespace
@@ -165,7 +163,7 @@ void PacsPane::forget_outgoing() {
   std::error_code ignored;
   fs::remove_all(outgoing_folder_, ignored);
   for (const auto& left : fs::directory_iterator(outgoing_folder_.parent_path(), ignored))
-    if (!is_running(left.path().filename().string())) fs::remove_all(left.path(), ignored);
+    if (!is_of_running_program(left.path().filename().string())) fs::remove_all(left.path(), ignored);
   fs::remove(outgoing_folder_.parent_path(), ignored);  // which the last one empties
   view_.outgoing.clear();
   view_.outgoing_doubts.clear();

@@ -1,10 +1,8 @@
 #include "navigation/recording/quick_pictures.h"
 
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <opencv2/core.hpp>
@@ -20,6 +18,7 @@
 #include "planning/files/format.h"
 #include "planning/files/free_space.h"
 #include "planning/files/private_folder.h"
+#include "planning/files/running_process.h"
 #include "planning/files/sha256.h"
 #include "planning/geometry/error.h"
 
@@ -52,8 +51,7 @@ std::string unfinished_name(pid_t process) {
 bool another_makes(const std::string& name) {
   int process = 0;
   if (std::sscanf(name.c_str(), "unfinished_%d", &process) != 1 || process <= 0) return false;
-  if (process == ::getpid() || name != unfinished_name(process)) return false;
-  return ::kill(process, 0) == 0 || errno == EPERM;
+  return process != ::getpid() && name == unfinished_name(process) && files::is_running(process);
 }
 
 // Half as wide and half as high.

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <pwd.h>
-#include <signal.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -18,6 +17,7 @@
 #include "planning/files/json_document.h"
 #include "planning/files/local_time.h"
 #include "planning/files/private_folder.h"
+#include "planning/files/running_process.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
@@ -101,9 +101,7 @@ bool is_same(const LockFile& a, const LockFile& b) {
 }
 
 bool lives_here(const LockFile& lock) {
-  if (lock.holder.process <= 0) return false;
-  // EPERM: it lives, as another user's.
-  if (::kill(static_cast<pid_t>(lock.holder.process), 0) != 0 && errno == ESRCH) return false;
+  if (!files::is_running(static_cast<pid_t>(lock.holder.process))) return false;
   const ProcessState now = state_of(lock.holder.process);
   const bool is_another = !lock.start.empty() && !now.start.empty() && lock.start != now.start;
   return !now.is_over && !is_another;

@@ -181,7 +181,8 @@ TEST(MediumCheck, Hazard27AMediumThatChangesIsNoticed) {
   knee.turn_to(kSalineIndex);
   const int turned_at = frame;
   EXPECT_EQ(run_until(MediumFit::Contradicts), MediumFit::Contradicts);
-  EXPECT_LT(frame - turned_at, 90) << "a second and a half: once one vote speaks against it, ten looks a second";
+  EXPECT_LT(frame - turned_at, 90)
+      << "a second and a half: once one vote speaks against it, ten looks a second";
   knee.turn_to(kAirIndex);
   EXPECT_EQ(run_until(MediumFit::Fits), MediumFit::Fits);
 }
