@@ -169,6 +169,11 @@ std::string RunningWorkstation::state(const std::string& key) const {
   return found == states_.end() ? "" : found->second;
 }
 
+std::map<std::string, std::string> RunningWorkstation::states() const {
+  const std::lock_guard lock(mutex_);
+  return states_;
+}
+
 std::map<std::string, Area> RunningWorkstation::widgets() const {
   const std::lock_guard lock(mutex_);
   return widgets_;

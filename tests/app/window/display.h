@@ -70,8 +70,9 @@ class RunningWorkstation {
   // The list of widgets follows the states of the same frame: wait for what is to be used.
   [[nodiscard]] bool wait_for_widget(const std::string& name, double seconds = 40) const;
   [[nodiscard]] std::string state(const std::string& key) const;
-  [[nodiscard]] std::map<std::string, Area> widgets() const;  // of the last complete list
-  [[nodiscard]] std::vector<DrawnFrame> frames() const;       // all that were drawn so far
+  [[nodiscard]] std::map<std::string, std::string> states() const;  // all, as they are now
+  [[nodiscard]] std::map<std::string, Area> widgets() const;        // of the last complete list
+  [[nodiscard]] std::vector<DrawnFrame> frames() const;             // all that were drawn so far
 
   void press(const std::string& key) const;  // as xdotool names it
   // Holds the key down until the state is so, then lets go; false when it did not become so in time.
