@@ -32,6 +32,15 @@ bool uses_tools_file(bool is_simulated, const fs::path& case_folder) {
   return !is_simulated || !fs::exists(cases::camera_file(case_folder)) || has_simulated_camera(case_folder);
 }
 
+// " (end nominal)": what of a tool that was measured was not.
+std::string but_not(const tools::NominalParts& nominal) {
+  std::string parts;
+  for (const auto& [is_nominal, part] :
+       {std::pair(nominal.tip, "tip"), std::pair(nominal.axis, "axis"), std::pair(nominal.end, "end")})
+    if (is_nominal) parts += (parts.empty() ? " (" : ", ") + std::string(part);
+  return parts.empty() ? "" : parts + " nominal)";
+}
+
 }  // namespace
 
 camera::Calibration camera_of(bool is_simulated, const fs::path& case_folder) {
@@ -57,7 +66,7 @@ CaseProvenance provenance_of(bool is_simulated, const fs::path& case_folder) {
     all.camera = camera::read_camera_file(file).provenance;
   }
   for (const tools::Tool& tool : tools_of(is_simulated, case_folder).tools)
-    all.tools.push_back({tool.name, tool.provenance});
+    all.tools.push_back({tool.name, tool.provenance, tool.nominal});
   return all;
 }
 
@@ -101,7 +110,7 @@ std::string calibration_in_words(bool is_simulated, const fs::path& case_folder,
     const std::string how = in_words(tool.provenance, now_utc);
     auto same = std::ranges::find(calibrated, how, &std::pair<std::string, std::string>::first);
     if (same == calibrated.end()) same = calibrated.insert(calibrated.end(), {how, ""});
-    add(same->second, tool.name);
+    add(same->second, tool.name + but_not(tool.nominal));
   }
   for (const auto& [how, names] : calibrated) words += "; " + names + " " + how;
   return nominal.empty() ? words : words + "; nominal: " + nominal;

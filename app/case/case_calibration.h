@@ -27,6 +27,7 @@ inline constexpr const char* kSimulatedScope = "Simulated arthroscope";
 struct NamedProvenance {
   std::string name;  // of the tool
   provenance::Provenance provenance;
+  tools::NominalParts nominal = {};
 };
 struct CaseProvenance {
   provenance::Provenance camera;

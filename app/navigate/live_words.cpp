@@ -211,7 +211,8 @@ Trouble trouble_of(const operation::GuideCheckState& guide, const std::string& n
     case operation::GuideStanding::Trusted:
       return {};
     case operation::GuideStanding::Due:
-      return {"Guide not checked", "The " + name + " is nominal: hold its tip on the control point (A)"};
+      return {"Guide not checked",
+              "Nobody measured where the " + name + " ends: hold its tip on the control point (A)"};
     case operation::GuideStanding::Off:
       return {"Guide is off", "Its tip is " + widgets::fixed(guide.error_mm, 1) +
                                   " mm from the control point: measure the " + name + " in Set up"};

@@ -35,11 +35,15 @@ tools::ToolSet with_result(tools::ToolSet tools, const std::string& tool_name, c
                            const provenance::Provenance& provenance) {
   for (tools::Tool& tool : tools.tools) {
     if (tool.name != tool_name) continue;
+    // What is found now is measured; the rest stays what it was.
+    tool.nominal = tools::nominal_parts(tool);
     if (result.task == ToolTask::Tip) {
+      tool.nominal.tip = false;
       tool.tip_mm = result.tip.tip_in_tool_mm;
       tool.tip_covariance_mm2 = result.tip.tip_error_mm2();
     } else {
       // Turning tells the line, not where on it the guide ends: that stays where it was declared.
+      tool.nominal.axis = false;
       const Eigen::Vector3d& direction = result.axis.axis_direction_in_tool;
       const double along_mm =
           tool.axis ? (tool.axis->point_mm - result.axis.axis_point_in_tool_mm).dot(direction) : 0;

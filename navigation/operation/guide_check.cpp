@@ -19,8 +19,11 @@ void GuideCheck::begin(const pipeline::PipelineOptions& options, const registrat
                        bool is_live) {
   tip_.clear();
   const tools::Tool* const guide = options.tools.find_tool(options.guide_name);
-  const bool is_asked =
-      is_live && guide != nullptr && guide->axis && guide->provenance.origin != provenance::Origin::Measured;
+  const auto is_measured = [&] {
+    const tools::NominalParts nominal = tools::nominal_parts(*guide);
+    return guide->provenance.origin == provenance::Origin::Measured && !nominal.axis && !nominal.end;
+  };
+  const bool is_asked = is_live && guide != nullptr && guide->axis && !is_measured();
   if (!is_asked) {
     subject_.reset();
     state_ = {};

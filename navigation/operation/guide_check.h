@@ -1,11 +1,11 @@
 // Whether a nominal guide was held against a known place before it guides in a live operation.
 //
-// A guide that was calibrated says by a residual how well it is known. One that was taken from a drawing may
-// be another one, or its marker may be glued on elsewhere: everything else would be right, and the tunnel
-// beside the plan. So its tip is held on the control point, which the probe has touched: where the guide's
-// numbers put its tip, and where the probe's put the point, must be the same place. That tells the tip in all
-// three directions; of the axis' direction it says nothing, whose predicted error stays that of a nominal
-// guide.
+// A guide that was calibrated says by a residual how well it is known; one that was turned in its sleeve, of
+// its line alone, and not where on it the guide ends. One that was taken from a drawing may be another one,
+// or its marker may be glued on elsewhere: everything else would be right, and the tunnel beside the plan. So
+// its tip is held on the control point, which the probe has touched: where the guide's numbers put its tip,
+// and where the probe's put the point, must be the same place. That tells the tip in all three directions; of
+// the axis' direction it says nothing, whose predicted error stays that of a nominal guide.
 //
 // Thread-free, deterministic.
 #pragma once
@@ -30,7 +30,7 @@ enum class TouchRefusal {
 [[nodiscard]] TouchRefusal refusal_of(SteadyTip::Reason reason);
 
 enum class GuideStanding {
-  NotAsked,  // no live source, no such guide, or one that was measured
+  NotAsked,  // no live source, no such guide, or one that was measured, its end too
   Due,
   Off,      // held against the control point, and elsewhere
   Checked,  // found there

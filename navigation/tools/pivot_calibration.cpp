@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 
+#include "navigation/tools/grouped_scatter.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
@@ -22,6 +23,10 @@ constexpr int kReweightings = 20;
 constexpr double kTukey = 4.685;
 // Markers are never better than this; below it a perfect synthetic motion would reject its own round-off.
 constexpr double kMinScaleMm = 0.01;
+// Within so much the errors of a marker's poses are taken to be alike.
+constexpr double kAlikeRad = 6 * geometry::kPi / 180;
+// Tukey's estimate is 95 % efficient: what the weights leave out is not lost.
+constexpr double kEfficiency = 0.95;
 // The radius that holds half of a 3D isotropic Gaussian, in units of its sigma per axis.
 constexpr double kMedianRadius = 1.538;
 
@@ -123,14 +128,23 @@ std::optional<Fit> reweighted_fit(const std::vector<Pose>& poses, Fit fit, std::
   return fit;
 }
 
-int count_distinct(const std::vector<Pose>& poses, const std::vector<double>& weights, double step_rad) {
-  std::vector<const Pose*> kept;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (weights[i] <= 0) continue;
-    const auto is_near = [&](const Pose* other) { return angle_between(poses[i], *other) < step_rad; };
-    if (std::none_of(kept.begin(), kept.end(), is_near)) kept.push_back(&poses[i]);
-  }
-  return static_cast<int>(kept.size());
+// The covariance of the tip: the usual one, or that of poses whose errors are alike where they are turned
+// alike, whichever is the larger.
+Eigen::Matrix3d tip_covariance(const std::vector<Pose>& poses, const std::vector<Eigen::Matrix3d>& rotations,
+                               const Fit& fit, const PivotCalibrationSummary& summary, double variance) {
+  const Eigen::Matrix3d information = fit.normal * (summary.inlier_count / fit.weight);
+  const Eigen::Matrix3d usual = variance / kEfficiency * information.inverse();
+  // The pivot is eliminated: the residual moves with the tip by R - M, M the mean rotation.
+  Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (summary.is_inlier[i]) mean += rotations[i] / summary.inlier_count;
+  const PoseGroups groups = group_by_orientation(rotations, summary.is_inlier, kAlikeRad);
+  GroupedScatter scatter(groups, 3);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (summary.is_inlier[i])
+      scatter.add(i, rotations[i] - mean, rotations[i] * fit.tip + poses[i].translation - fit.pivot);
+  const Eigen::Matrix3d grouped = scatter.covariance(information, 3) / kEfficiency;
+  return grouped.trace() > usual.trace() ? grouped : usual;
 }
 
 // The shaft of each pose runs from the tip to the marker.
@@ -167,14 +181,16 @@ double predicted_bias_mm(const PivotCalibrationSummary& summary) {
   return 2 * length * noise_rad * noise_rad / std::max(1 - m * m, 1e-9);
 }
 
-// Below 0: one half alone does not tell a tip.
-double half_change_mm(const std::vector<Pose>& poses, const std::vector<double>& weights) {
+// One half alone may not tell a tip.
+void measure_halves(const std::vector<Pose>& poses, const std::vector<double>& weights,
+                    PivotCalibrationSummary& summary) {
   std::vector<double> first(weights), second(weights);
   const std::size_t middle = weights.size() / 2;
   for (std::size_t i = 0; i < weights.size(); ++i) (i < middle ? second : first)[i] = 0;
   const auto a = fit_tip(poses, first), b = fit_tip(poses, second);
-  if (!a || !b) return -1;
-  return std::max((a->tip - b->tip).norm(), (a->pivot - b->pivot).norm());
+  if (!a || !b) return;
+  summary.tip_change_mm = b->tip - a->tip;
+  summary.half_change_mm = std::max(summary.tip_change_mm.norm(), (a->pivot - b->pivot).norm());
 }
 
 void judge(const PivotCalibrationOptions& options, PivotCalibrationSummary& summary) {
@@ -244,7 +260,13 @@ Eigen::Matrix3d PivotCalibrationSummary::tip_error_mm2() const {
   const double length_mm = tip_in_tool_mm.norm();
   if (!has_tip() || length_mm < 1e-6) return tip_covariance_mm2;
   const Eigen::Vector3d bias = bias_mm * (tip_in_tool_mm / length_mm);
-  return tip_covariance_mm2 + bias * bias.transpose();
+  // By chance alone the square of the halves' difference is four times the covariance: each half has twice
+  // that of the whole. What is more is a tip that moved, and the whole is off by up to half of it.
+  const double change_mm2 = tip_change_mm.squaredNorm(), by_chance_mm2 = 4 * tip_covariance_mm2.trace();
+  Eigen::Matrix3d moved = Eigen::Matrix3d::Zero();
+  if (change_mm2 > by_chance_mm2)
+    moved = (1 - by_chance_mm2 / change_mm2) / 4 * tip_change_mm * tip_change_mm.transpose();
+  return tip_covariance_mm2 + bias * bias.transpose() + moved;
 }
 
 PivotCalibrationSummary calibrate_pivot(std::span<const RigidTransform> fixed_from_tool,
@@ -285,16 +307,18 @@ PivotCalibrationSummary calibrate_pivot(std::span<const RigidTransform> fixed_fr
   summary.rms_mm = std::sqrt(squares / summary.inlier_count);
   // Six unknowns out of three equations a pose.
   const double variance = squares / std::max(1, 3 * summary.inlier_count - 6);
-  // Tukey's estimate is 95 % efficient: what the weights leave out is not lost.
-  summary.tip_covariance_mm2 =
-      variance / 0.95 * (fit->normal * (summary.inlier_count / fit->weight)).inverse();
+  std::vector<Eigen::Matrix3d> rotations;
+  rotations.reserve(poses.size());
+  for (const Pose& pose : poses) rotations.push_back(pose.rotation);
+  summary.tip_covariance_mm2 = tip_covariance(poses, rotations, *fit, summary, variance);
   summary.sigma_mm = std::sqrt(std::max(
       0.0,
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(summary.tip_covariance_mm2).eigenvalues().maxCoeff()));
   measure_cone(poses, *fit, weights, summary);
-  summary.distinct_count = count_distinct(poses, weights, geometry::rad_from_deg(options.min_step_deg));
+  summary.distinct_count = static_cast<int>(
+      group_by_orientation(rotations, summary.is_inlier, geometry::rad_from_deg(options.min_step_deg)).count);
   summary.bias_mm = predicted_bias_mm(summary);
-  summary.half_change_mm = half_change_mm(poses, weights);
+  measure_halves(poses, weights, summary);
   judge(options, summary);
   return summary;
 }

@@ -51,19 +51,22 @@ struct PivotCalibrationSummary {
   // Meaningful when has_tip(); to be used only when is_usable().
   Eigen::Vector3d tip_in_tool_mm = Eigen::Vector3d::Zero();
   Eigen::Vector3d pivot_in_fixed_mm = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d tip_covariance_mm2 = Eigen::Matrix3d::Zero();  // in the tool frame
-  double rms_mm = -1;                                            // 3D residual of the inliers
-  double cone_deg = 0;                                           // half-angle, see the options
+  // In the tool frame; of poses that rest or repeat no smaller than one of each tells, see grouped_scatter.h.
+  Eigen::Matrix3d tip_covariance_mm2 = Eigen::Matrix3d::Zero();
+  double rms_mm = -1;   // 3D residual of the inliers
+  double cone_deg = 0;  // half-angle, see the options
   double sigma_mm = -1, bias_mm = -1;
-  double half_change_mm = -1;  // below 0: not known, since one half alone does not tell a tip
+  // Of tip or pivot, whichever is more; below 0: not known, since one half alone does not tell a tip.
+  double half_change_mm = -1;
+  Eigen::Vector3d tip_change_mm = Eigen::Vector3d::Zero();  // from the first half to the second, in the tool
   int pose_count = 0, inlier_count = 0, distinct_count = 0;
   std::vector<bool> is_inlier;  // one for each pose
   // How the shaft was tilted in each pose from its mean direction, about two fixed axes: the cone as it
   // fills.
   std::vector<Eigen::Vector2d> tilt_deg;
 
-  // What tools.json keeps of how well the tip is known: the covariance, and the predicted bias along the
-  // shaft.
+  // What tools.json keeps of how well the tip is known: the covariance, the predicted bias along the shaft,
+  // and what the halves differ by beyond chance.
   [[nodiscard]] Eigen::Matrix3d tip_error_mm2() const;
   [[nodiscard]] bool has_tip() const { return outcome > Outcome::NoPivot; }
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Ok; }

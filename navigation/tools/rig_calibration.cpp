@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "navigation/tools/grouped_scatter.h"
 #include "navigation/tools/rig_problem.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -25,9 +26,6 @@ constexpr std::size_t kMostFrames = 1500;       // a longer wave is thinned out
 constexpr std::size_t kMostFramesOfPart = 150;  // of what is compared
 constexpr std::size_t kLeastFramesOfPart = 15;
 constexpr double kChangeSigmas = 5;
-// What a tracker does wrong in the same way throughout a wave: the places in rendered pictures were off by
-// two to three times what their residuals say.
-constexpr double kSystematic_mm = 0.002, kSystematic_deg = 0.03;
 
 void check(const RigOptions& options) {
   const auto require = [](bool holds, const std::string& what) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "navigation/tools/grouped_scatter.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
@@ -78,6 +79,39 @@ double turn_deg(const Axis& axis, std::span<const RigidTransform> poses, const s
   return 360 - widest;
 }
 
+// One sigma of each coordinate across the axis, of its direction (rad) and of its point, from poses whose
+// errors are alike where they are turned alike.
+struct Scatter {
+  double direction_rad, point_mm;
+};
+
+Scatter scatter_of(const Axis& axis, std::span<const RigidTransform> poses,
+                   std::span<const Eigen::Matrix3d> rotations, const std::vector<bool>& use,
+                   const PoseGroups& groups) {
+  const auto across = [](const Eigen::Vector3d& direction) {
+    Eigen::Matrix<double, 3, 2> plane;
+    plane.col(0) = direction.unitOrthogonal();
+    plane.col(1) = direction.cross(plane.col(0));
+    return plane;
+  };
+  const Eigen::Matrix<double, 3, 2> tool = across(axis.in_tool), fixed = across(axis.in_fixed);
+  // Direction and point are seen alike: R a = c and R p + t = c, across the fixed axis.
+  GroupedScatter directions(groups, 4), points(groups, 4);
+  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!use[i]) continue;
+    Eigen::Matrix<double, 2, 4> jacobian;
+    jacobian << fixed.transpose() * rotations[i] * tool, -Eigen::Matrix2d::Identity();
+    information += jacobian.transpose() * jacobian;
+    directions.add(i, jacobian, fixed.transpose() * (rotations[i] * axis.in_tool - axis.in_fixed));
+    points.add(i, jacobian, fixed.transpose() * (poses[i] * axis.point_in_tool - axis.point_in_fixed));
+  }
+  const auto sigma = [&](const GroupedScatter& scatter) {
+    return std::sqrt(scatter.covariance(information, 2).topLeftCorner<2, 2>().trace() / 2);
+  };
+  return {sigma(directions), sigma(points)};
+}
+
 void refuse(SpinCalibrationSummary& summary, SpinCalibrationSummary::Outcome outcome, std::string reason) {
   if (summary.is_usable()) summary.outcome = outcome;
   summary.reasons.push_back(std::move(reason));
@@ -89,8 +123,12 @@ SpinCalibrationSummary calibrate_spin(std::span<const RigidTransform> fixed_from
                                       const SpinCalibrationOptions& options) {
   using Outcome = SpinCalibrationSummary::Outcome;
   if (options.min_poses < 3 || !(options.min_turn_deg > 0) || !(options.max_rms_mm > 0) ||
-      !(options.max_direction_sigma_deg > 0) || !(options.outlier_factor > 0)) {
-    throw InvalidInput("spin calibration: every limit must be above 0 and min_poses at least 3");
+      !(options.max_direction_sigma_deg > 0) || !(options.outlier_factor > 0) ||
+      !(options.min_step_deg > 0) || options.min_distinct_places < 3 || !(options.min_inlier_share > 0) ||
+      options.min_inlier_share > 1) {
+    throw InvalidInput(
+        "spin calibration: every limit must be above 0, min_poses and min_distinct_places at least 3, and a "
+        "share at most 1");
   }
   SpinCalibrationSummary summary;
   summary.pose_count = static_cast<int>(fixed_from_tool.size());
@@ -132,18 +170,37 @@ SpinCalibrationSummary calibrate_spin(std::span<const RigidTransform> fixed_from
   summary.rms_mm = std::sqrt(squares / n);
   summary.wobble_deg = geometry::deg_from_rad(std::sqrt(wobble / n));
   summary.turn_deg = turn_deg(axis, fixed_from_tool, use);
+  std::vector<Eigen::Matrix3d> rotations;
+  rotations.reserve(fixed_from_tool.size());
+  for (const RigidTransform& pose : fixed_from_tool) rotations.push_back(pose.matrix());
+  const PoseGroups places =
+      group_by_orientation(rotations, use, geometry::rad_from_deg(options.min_step_deg));
+  summary.place_count = static_cast<int>(places.count);
+  const Scatter scatter = scatter_of(axis, fixed_from_tool, rotations, use, places);
   // The wobble is the noise of two axes; the part of it that turns with the tool is averaged over the sector.
-  summary.direction_sigma_deg = 1.3 * summary.wobble_deg / std::sqrt(static_cast<double>(n));
+  const double usual_deg = 1.3 * summary.wobble_deg / std::sqrt(static_cast<double>(n));
+  summary.direction_sigma_deg =
+      std::hypot(std::max(usual_deg, geometry::deg_from_rad(scatter.direction_rad)), kSystematic_deg);
   // With m the mean of e^(i angle) over the sector, only 1 - m^2 of each pose tells the tool's own offset
   // from the sleeve's; a full turn tells all.
   const double half_rad = std::max(geometry::rad_from_deg(summary.turn_deg) / 2, 1e-3);
   const double mean = std::sin(half_rad) / half_rad;
-  summary.point_sigma_mm = summary.rms_mm / std::sqrt(2.0 * n * (1 - mean * mean));
+  const double usual_mm = summary.rms_mm / std::sqrt(2.0 * n * (1 - mean * mean));
+  summary.point_sigma_mm = std::hypot(std::max(usual_mm, scatter.point_mm), kSystematic_mm);
 
+  if (summary.inlier_count < options.min_inlier_share * summary.pose_count) {
+    refuse(summary, Outcome::TooManyOutliers,
+           files::format("only %d of %d poses agree on one axis", summary.inlier_count, summary.pose_count));
+  }
   if (summary.turn_deg < options.min_turn_deg) {
     refuse(summary, Outcome::TurnTooSmall,
            files::format("the guide was turned by %.0f deg; %.0f deg are needed", summary.turn_deg,
                          options.min_turn_deg));
+  }
+  if (summary.place_count < options.min_distinct_places) {
+    refuse(summary, Outcome::TooFewPlaces,
+           files::format("the guide rested in %d places of its turn; %d are needed, %.0f deg apart or more",
+                         summary.place_count, options.min_distinct_places, options.min_step_deg));
   }
   if (summary.rms_mm > options.max_rms_mm) {
     refuse(summary, Outcome::ResidualTooLarge,

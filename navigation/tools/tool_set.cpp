@@ -122,6 +122,30 @@ ToolKind read_kind(const files::JsonObject& entry) {
   return ToolKind::Drill;
 }
 
+NominalParts read_nominal_parts(const files::JsonObject& entry) {
+  NominalParts parts;
+  for (const std::string& part : entry.texts("nominal")) {
+    if (part == "tip")
+      parts.tip = true;
+    else if (part == "axis")
+      parts.axis = true;
+    else if (part == "end")
+      parts.end = true;
+    else
+      entry.fail("nominal", "must hold \"tip\", \"axis\" or \"end\", holds \"" + part + "\"");
+  }
+  return parts;
+}
+
+// One sigma of each coordinate of what nobody said more of.
+struct DefaultError {
+  double point_sigma_mm, direction_sigma_deg;
+};
+DefaultError default_error(const Tool& tool, bool is_part_nominal) {
+  constexpr DefaultError kMeasured{0.1, 0.2}, kNominal{0.3, 0.5};
+  return tool.residual_mm && !is_part_nominal ? kMeasured : kNominal;
+}
+
 Tool read_tool(const files::JsonObject& entry, Owners& owners) {
   Tool tool;
   tool.name = entry.text("name");
@@ -140,6 +164,7 @@ Tool read_tool(const files::JsonObject& entry, Owners& owners) {
   tool.axis_point_sigma_mm = read_sigma(entry, "axis_point_sigma_mm");
   tool.axis_direction_sigma_deg = read_sigma(entry, "axis_direction_sigma_deg");
   tool.provenance = provenance::read_provenance(entry, provenance::Origin::Nominal);
+  if (entry.has("nominal")) tool.nominal = read_nominal_parts(entry);
   return tool;
 }
 
@@ -207,19 +232,19 @@ bool ToolSet::has_bodies_of_several() const {
          std::any_of(tools.begin(), tools.end(), has_list);
 }
 
-DefaultToolError default_error(const Tool& tool) {
-  constexpr DefaultToolError kMeasured{0.1, 0.2}, kNominal{0.3, 0.5};
-  return tool.residual_mm ? kMeasured : kNominal;
+NominalParts nominal_parts(const Tool& tool) {
+  if (tool.provenance.origin != provenance::Origin::Nominal) return tool.nominal;
+  return {tool.tip_mm.has_value(), tool.axis.has_value(), tool.axis.has_value()};
 }
 
 Eigen::Matrix3d tip_error_mm2(const Tool& tool) {
   if (tool.tip_covariance_mm2) return *tool.tip_covariance_mm2;
-  const double sigma_mm = default_error(tool).point_sigma_mm;
+  const double sigma_mm = default_error(tool, tool.nominal.tip).point_sigma_mm;
   return sigma_mm * sigma_mm * Eigen::Matrix3d::Identity();
 }
 
 AxisError axis_error(const Tool& tool) {
-  const DefaultToolError unsaid = default_error(tool);
+  const DefaultError unsaid = default_error(tool, tool.nominal.axis);
   return {tool.axis_point_sigma_mm.value_or(unsaid.point_sigma_mm),
           geometry::rad_from_deg(tool.axis_direction_sigma_deg.value_or(unsaid.direction_sigma_deg))};
 }
@@ -309,6 +334,13 @@ void write_tools_file(const std::filesystem::path& file, const ToolSet& tools) {
     if (tool.axis_direction_sigma_deg) entry["axis_direction_sigma_deg"] = *tool.axis_direction_sigma_deg;
     entry["origin"] = provenance::to_text(tool.provenance.origin);
     if (!tool.provenance.calibrated_utc.empty()) entry["calibrated_utc"] = tool.provenance.calibrated_utc;
+    if (tool.nominal.any()) {
+      auto parts = nlohmann::ordered_json::array();
+      if (tool.nominal.tip) parts.push_back("tip");
+      if (tool.nominal.axis) parts.push_back("axis");
+      if (tool.nominal.end) parts.push_back("end");
+      entry["nominal"] = std::move(parts);
+    }
     document["tools"].push_back(std::move(entry));
   }
   if (tools.tracker) write_tracker(*tools.tracker, document);

@@ -32,6 +32,14 @@ enum class ToolKind {
   Drill,  // a drill with a marker of its own: what it says about depth is seen, not supposed
 };
 
+// What of a tool that was calibrated nobody measured, and is still as its drawing has it: pivoting tells the
+// tip alone, turning the line of the axis alone, and not where on it the guide ends.
+struct NominalParts {
+  bool tip = false, axis = false, end = false;  // end: how far along the axis its point lies
+  [[nodiscard]] bool any() const { return tip || axis || end; }
+  friend bool operator==(const NominalParts&, const NominalParts&) = default;
+};
+
 // A tool's frame is its marker's, or, where it has several, the one in which their places are said.
 struct Tool {
   std::string name;
@@ -48,6 +56,7 @@ struct Tool {
   std::optional<double> axis_direction_sigma_deg = std::nullopt;  // about each of two axes across it
   // Of tip and axis. A file that does not say means nominal.
   provenance::Provenance provenance = {};
+  NominalParts nominal = {};  // in the file "nominal": some of "tip", "axis", "end"; see nominal_parts()
   // Empty: one marker. Else all of them, marker_id and size_mm those of the first.
   std::vector<BodyMarker> markers = {};
 };
@@ -59,14 +68,13 @@ struct Tool {
 // Where the tool's first marker is in its frame: what stands for "at the handle" where a tool is drawn.
 [[nodiscard]] geometry::RigidTransform first_marker_of(const Tool& tool);
 
-// What is taken for a tool whose file does not say. Measured, that is with a residual: the limits that its
-// calibration had to keep, 0.1 mm and 0.2 degrees. Nominal, taken from a drawing: 0.3 mm and 0.5 degrees,
-// what a marker that is glued or clamped by hand comes to.
-struct DefaultToolError {
-  double point_sigma_mm, direction_sigma_deg;  // of each coordinate
-};
-[[nodiscard]] DefaultToolError default_error(const Tool& tool);
-// As the file says, else the default of one sigma in each coordinate.
+// Of a tool whose origin is nominal, all that it has.
+[[nodiscard]] NominalParts nominal_parts(const Tool& tool);
+
+// What is taken for a part of a tool whose file does not say. Measured, that is with a residual: the limits
+// that its calibration had to keep, 0.1 mm and 0.2 degrees. Nominal, taken from a drawing: 0.3 mm and 0.5
+// degrees, what a marker that is glued or clamped by hand comes to. As the file says, else that of one sigma
+// in each coordinate.
 [[nodiscard]] Eigen::Matrix3d tip_error_mm2(const Tool& tool);
 
 // How far the axis may be off, one sigma of each coordinate across it; errors of point and direction apart.
@@ -100,9 +108,9 @@ struct ToolSet {
 [[nodiscard]] std::string_view standard_guide_name(bones::BoneKind bone);
 
 // Refuses a marker id used twice, ids outside DICT_4X4_50, sizes that are not above 0, a zero axis direction,
-// a drill without tip or axis, an error below 0; "markers" beside marker_id or size_mm, none or more than
-// kMostMarkersOfBody of them, one without a place or whose rotation is none, two that lie on one another; a
-// tracker's name for what is not declared. Throws IoError or InvalidInput.
+// a drill without tip or axis, an error below 0, a nominal part of another name; "markers" beside marker_id
+// or size_mm, none or more than kMostMarkersOfBody of them, one without a place or whose rotation is none,
+// two that lie on one another; a tracker's name for what is not declared. Throws IoError or InvalidInput.
 [[nodiscard]] ToolSet read_tools_file(const std::filesystem::path& file);
 void write_tools_file(const std::filesystem::path& file, const ToolSet& tools);
 

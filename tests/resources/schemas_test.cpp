@@ -92,6 +92,7 @@ TEST_F(Schemas, DescribeTheTools) {
   expect_described(file, "tools", [&] { (void)tools::read_tools_file(file); });
   // And with all that a calibration knows, and a drill.
   set.tools[0].tip_covariance_mm2 = Eigen::Matrix3d::Identity();
+  set.tools[1].nominal = {true, true, true};
   set.tools[1].axis_point_sigma_mm = set.tools[1].axis_direction_sigma_deg = 0.1;
   set.tools[1].tip_mm = set.tools[1].axis->point_mm;
   set.tools[1].kind = tools::ToolKind::Drill;

@@ -273,7 +273,8 @@ TEST(NavigateDisplay, Hazard6ANominalGuideThatWasNotCheckedGivesNoNumber) {
   EXPECT_FALSE(shown.display().guidance_is_valid);
   EXPECT_TRUE(shown.display().plan_is_valid);
   EXPECT_EQ(shown.display().headline, "Guide not checked");
-  EXPECT_EQ(shown.display().detail, "The femoral guide is nominal: hold its tip on the control point (A)");
+  EXPECT_EQ(shown.display().detail,
+            "Nobody measured where the femoral guide ends: hold its tip on the control point (A)");
   guide = {operation::GuideStanding::Off, 3.24};
   EXPECT_EQ(shown.display().headline, "Guide is off");
   EXPECT_EQ(shown.display().detail,

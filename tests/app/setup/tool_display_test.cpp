@@ -131,6 +131,32 @@ TEST(ToolChoices, Hazard6AnAdoptedAxisKeepsItsEndAndItsError) {
   EXPECT_LT((guide.axis->point_mm - Eigen::Vector3d(0.2, -24, -3.1)).norm(), 1e-12);
   EXPECT_EQ(guide.axis_direction_sigma_deg, 0.1);
   EXPECT_NEAR(*guide.axis_point_sigma_mm, std::hypot(0.03, 24 * geometry::rad_from_deg(0.1)), 1e-12);
+  EXPECT_EQ(guide.nominal, tools::NominalParts{.end = true}) << "turning does not tell where it ends";
+}
+
+// What was not measured stays nominal, and is taken to be known no better than a drawing.
+TEST(ToolChoices, Hazard6MeasuringTheTipSaysNothingOfTheAxis) {
+  tools::ToolSet set = tools::standard_tools();
+  set.tools.push_back({"drill", 7, 4.0, Eigen::Vector3d(0, -60, 0), tools::ToolAxis{{0, -60, 0}}});
+  set.tools.back().kind = tools::ToolKind::Drill;
+  const tools::Tool drawn = set.tools.back();
+  const provenance::Provenance measured{provenance::Origin::Measured, "2026-11-21T10:00:00Z"};
+  ToolResult tip, axis;
+  tip.tip.rms_mm = 0.05;
+  tip.tip.tip_in_tool_mm = {0, -60, 0};
+  axis.task = ToolTask::Axis;
+  axis.axis.axis_direction_in_tool = -Eigen::Vector3d::UnitY();
+  axis.axis.rms_mm = 0.05;
+
+  const tools::ToolSet with_tip = with_result(set, "drill", tip, measured);
+  EXPECT_EQ(with_tip.tools.back().nominal, (tools::NominalParts{.axis = true, .end = true}));
+  EXPECT_EQ(tools::axis_error(with_tip.tools.back()).direction_sigma_rad,
+            tools::axis_error(drawn).direction_sigma_rad);
+  const tools::ToolSet with_axis = with_result(set, "drill", axis, measured);
+  EXPECT_EQ(with_axis.tools.back().nominal, (tools::NominalParts{.tip = true, .end = true}));
+  EXPECT_EQ(tools::tip_error_mm2(with_axis.tools.back()), tools::tip_error_mm2(drawn));
+  const tools::ToolSet with_both = with_result(with_tip, "drill", axis, measured);
+  EXPECT_EQ(with_both.tools.back().nominal, tools::NominalParts{.end = true});
 }
 
 }  // namespace

@@ -53,6 +53,17 @@ void bring_to_the_guide(PhantomOperation& run, const SourceSetup& source) {
   run.touch(test::on_bone(trial(), 2), TouchControlPoint{});
 }
 
+// Turned in its sleeve a guide has a line that is known, and an end that is the drawing's.
+TEST(GuideCheck, Hazard6AGuideWhoseEndNobodyMeasuredIsHeldAgainstThePointToo) {
+  SourceSetup spun = nominal_source();
+  spun.pipeline.tools.tools.back().provenance.origin = provenance::Origin::Measured;
+  spun.pipeline.tools.tools.back().nominal.end = true;
+  PhantomOperation run;
+  bring_to_the_guide(run, spun);
+  EXPECT_EQ(run.state()->guide_check.standing, GuideStanding::Due);
+  EXPECT_EQ(shown(run), GuidanceState::GuideNotChecked);
+}
+
 TEST(GuideCheck, Hazard6ANominalGuideGuidesLiveOnlyAfterItsTipWasOnTheControlPoint) {
   PhantomOperation run;
   bring_to_the_guide(run, nominal_source());

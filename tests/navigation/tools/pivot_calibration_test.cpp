@@ -91,6 +91,70 @@ TEST(PivotCalibration, PredictsItsScatter) {
   EXPECT_NEAR(sum / 60, 1.0, 0.35);
 }
 
+// The same poses written sixty times tell no more than once, whatever order they come in: squared error over
+// prediction stays below 2, where it was 64.
+TEST(PivotCalibration, Hazard6RepeatedPosesTellNoMore) {
+  Motion motion;
+  motion.noise_mm = 0.1;
+  motion.noise_deg = 0.1;
+  motion.count = 60;
+  for (const bool in_turn : {false, true}) {
+    double sum = 0;
+    for (unsigned seed = 1; seed <= 60; ++seed) {
+      motion.seed = seed;
+      const auto once = motion.poses();
+      std::vector<RigidTransform> often;
+      for (std::size_t i = 0; i < 60 * once.size(); ++i)
+        often.push_back(once[in_turn ? i % once.size() : i / 60]);
+      const auto summary = calibrate_pivot(often);
+      const Eigen::Vector3d error = summary.tip_in_tool_mm - kTip;
+      sum += error.dot(summary.tip_covariance_mm2.inverse() * error) / 3 / 60;
+    }
+    EXPECT_GT(sum, 0.5) << in_turn;
+    EXPECT_LT(sum, 2.0) << in_turn;
+  }
+}
+
+// Errors that follow the view, 0.1 mm in each patch of five degrees: frames average the patches and not
+// themselves. Squared error over prediction stays below 2, where it was 4.
+TEST(PivotCalibration, Hazard6ErrorsThatFollowTheViewAreNotAveragedAway) {
+  double sum = 0;
+  for (unsigned seed = 1; seed <= 16; ++seed) {
+    Motion motion;
+    motion.count = 4000;
+    motion.seed = seed;
+    auto poses = motion.poses();
+    for (RigidTransform& pose : poses) {
+      const Eigen::AngleAxisd turn(pose.rotation);
+      const Eigen::Vector3d place = turn.angle() * turn.axis() / geometry::rad_from_deg(5);
+      std::seed_seq patch{static_cast<int>(seed), static_cast<int>(std::lround(place.x())),
+                          static_cast<int>(std::lround(place.y())), static_cast<int>(std::lround(place.z()))};
+      std::mt19937 random(patch);
+      std::normal_distribution<double> gauss(0, 0.1);
+      const double x = gauss(random), y = gauss(random), z = gauss(random);
+      pose.translation_mm += Eigen::Vector3d(x, y, z);
+    }
+    const auto summary = calibrate_pivot(poses);
+    const Eigen::Vector3d error = summary.tip_in_tool_mm - kTip;
+    sum += error.dot(summary.tip_covariance_mm2.inverse() * error) / 3 / 16;
+  }
+  EXPECT_LT(sum, 2.0);
+}
+
+// What the halves differ by beyond chance is an error of the tip as well: a tip that slid by 0.2 mm half-way
+// is off by half of that, and its error says at least so much along that way.
+TEST(PivotCalibration, Hazard6TheTipsErrorHoldsWhatTheHalvesDifferBy) {
+  PivotCalibrationSummary summary;
+  summary.outcome = PivotCalibrationSummary::Outcome::Ok;
+  summary.tip_in_tool_mm = {0, -20, 0};
+  summary.tip_covariance_mm2 = 1e-6 * Eigen::Matrix3d::Identity();
+  summary.tip_change_mm = {0.2, 0, 0};
+  EXPECT_NEAR(std::sqrt(summary.tip_error_mm2()(0, 0)), 0.1, 0.001);
+  EXPECT_NEAR(std::sqrt(summary.tip_error_mm2()(2, 2)), 0.001, 1e-6);
+  summary.tip_covariance_mm2 = 0.01 * Eigen::Matrix3d::Identity();
+  EXPECT_NEAR(summary.tip_error_mm2()(0, 0), 0.01, 1e-12) << "no more than chance";
+}
+
 // What tools.json keeps holds the bias along the shaft as well.
 TEST(PivotCalibration, Hazard6TheTipsErrorHoldsTheBias) {
   PivotCalibrationSummary summary;

@@ -77,12 +77,13 @@ TEST(SpinCalibration, AveragesNoise) {
 
 // What is said of the axis is the scatter of repeated calibrations: the mean square of error over prediction
 // lies near 1 for the point, which is of two coordinates, and for the direction, whose figure is of both
-// together and is careful by half. 60 repetitions.
+// together and is careful by half. 60 repetitions, of noise beside which what no number of poses averages
+// away is small.
 TEST(SpinCalibration, Hazard6PredictsItsScatter) {
   for (const double turn_deg : {120.0, 340.0}) {
     double point = 0, direction = 0;
     for (unsigned seed = 1; seed <= 60; ++seed) {
-      const auto summary = calibrate_spin(spin(turn_deg, 0.1, 0.1, 120, seed));
+      const auto summary = calibrate_spin(spin(turn_deg, 0.1, 0.5, 120, seed));
       const double miss_mm = distance_from_axis(summary.axis_point_in_tool_mm);
       const double miss_deg =
           geometry::deg_from_rad(geometry::angle_between_rad(summary.axis_direction_in_tool, kDirection));
@@ -94,6 +95,38 @@ TEST(SpinCalibration, Hazard6PredictsItsScatter) {
     EXPECT_GT(direction, 0.2) << turn_deg;
     EXPECT_LT(direction, 2.0) << turn_deg;
   }
+}
+
+// Two rests have an axis that fits them exactly, whatever it is off by: no number of frames makes it known.
+TEST(SpinCalibration, Hazard6RefusesTwoRestsHoweverManyFrames) {
+  const auto two = spin(100, 0.1, 1, 2);
+  std::vector<RigidTransform> poses;
+  for (int i = 0; i < 40; ++i) poses.push_back(two[static_cast<std::size_t>(i) % 2]);
+  const auto summary = calibrate_spin(poses);
+  EXPECT_FALSE(summary.is_usable());
+  EXPECT_EQ(summary.place_count, 2);
+  EXPECT_NE(summary.message.find("2 places"), std::string::npos) << summary.message;
+  EXPECT_GT(summary.direction_sigma_deg, 0.02);
+}
+
+// A pose that is written sixty times is no more than one: squared error over prediction stays below 2, where
+// it was 60.
+TEST(SpinCalibration, Hazard6RepeatedPosesTellNoMore) {
+  double direction = 0, point = 0;
+  constexpr unsigned kTrials = 60;
+  for (unsigned seed = 1; seed <= kTrials; ++seed) {
+    const auto once = spin(160, 0.1, 0.2, 20, seed);
+    std::vector<RigidTransform> often;
+    for (const RigidTransform& pose : once) often.insert(often.end(), 60, pose);
+    const auto said = calibrate_spin(often);
+    const double miss_mm = distance_from_axis(said.axis_point_in_tool_mm);
+    const double miss_deg =
+        geometry::deg_from_rad(geometry::angle_between_rad(said.axis_direction_in_tool, kDirection));
+    point += miss_mm * miss_mm / (2 * said.point_sigma_mm * said.point_sigma_mm) / kTrials;
+    direction += miss_deg * miss_deg / (2 * said.direction_sigma_deg * said.direction_sigma_deg) / kTrials;
+  }
+  EXPECT_LT(point, 2.0);
+  EXPECT_LT(direction, 2.0);
 }
 
 // Some poses thrown about are left out.

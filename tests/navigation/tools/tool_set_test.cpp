@@ -61,6 +61,7 @@ TEST_F(ToolsFile, Hazard6KeepsHowWellTheToolsAreKnown) {
   written.tools[0].tip_covariance_mm2 = covariance;
   written.tools[1].axis_point_sigma_mm = 0.07;
   written.tools[1].axis_direction_sigma_deg = 0.11;
+  written.tools[1].nominal = {.tip = true, .end = true};
   Tool drill;
   drill.name = "drill";
   drill.marker_id = 7;
