@@ -42,7 +42,7 @@ void digitise(Context& context, const DigitiseArguments& arguments) {
     context.say(line);
   }
   if (curves.empty()) {
-    context.say_unreliable("the curves",
+    context.say_unreliable("what was digitised",
                            {"the world marker and the tool were never seen together over a stroke"});
   }
 }

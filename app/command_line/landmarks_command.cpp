@@ -226,7 +226,7 @@ void add_landmarks_command(CLI::App& app, Context& context) {
                           " gives no landmarks: " + proposal.reason);
       reasons.insert(reasons.end(), proposal.doubts.begin(), proposal.doubts.end());
     }
-    if (!reasons.empty()) context.say_unreliable("The proposed landmarks", reasons);
+    if (!reasons.empty()) context.say_unreliable("The proposal of landmarks", reasons);
   });
 }
 

@@ -123,8 +123,8 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee
 
 // What a new plan takes the place of may be an evening's work, and nobody undoes a command: it is kept as a
 // version, unless one is the same.
-void keep_replaced(const PlanArguments& arguments, const Context& context, const cases::Plan& before,
-                   const cases::Plan& now, PlanVerdict& verdict) {
+void keep_replaced(const PlanArguments& arguments, const cases::Plan& before, const cases::Plan& now,
+                   PlanVerdict& verdict, std::vector<std::string>& notes) {
   std::string replaced;
   for (const auto& difference : cases::compare_plans(now, before))
     if (difference.is_lost_here()) replaced += (replaced.empty() ? "" : "; ") + difference.in_words();
@@ -137,33 +137,32 @@ void keep_replaced(const PlanArguments& arguments, const Context& context, const
   verdict.kept_version =
       same != versions.end() ? same->number : cases::keep_plan_version(arguments.case_folder, before).number;
   const std::string number = std::to_string(verdict.kept_version);
-  if (!arguments.as_json)
-    context.say("The plan that was there is kept as version " + number + ", --take " + number +
-                " brings it back. Against the one that is there now, " + replaced + ".");
+  notes.push_back("The plan that was there is kept as version " + number + ", --take " + number +
+                  " brings it back. Against the one that is there now, " + replaced + ".");
 }
 
 // Tunnels as another program moved them; only those of bones that the case holds.
-void put(const tunnels::Tunnel& tunnel, const std::string& mesh_sha256, const PlanArguments& arguments,
-         const Context& context, cases::Case& knee) {
+void put(const tunnels::Tunnel& tunnel, const std::string& mesh_sha256, cases::Case& knee,
+         std::vector<std::string>& notes) {
   const auto before = knee.plan.of(tunnel.bone);
   knee.plan.put(tunnel, mesh_sha256);
   for (const tunnels::TunnelKey& key : before) {
-    if (!arguments.as_json && !knee.plan.tunnels.contains(key))
-      context.say("The tunnel " + tunnels::name_of(key) +
-                  " is no longer planned: a bone has a single tunnel, or those of bundles.");
+    if (!knee.plan.tunnels.contains(key))
+      notes.push_back("The tunnel " + tunnels::name_of(key) +
+                      " is no longer planned: a bone has a single tunnel, or those of bundles.");
   }
 }
 
-void take_markups(const PlanArguments& arguments, const Context& context, cases::Case& knee) {
+void take_markups(const PlanArguments& arguments, cases::Case& knee, std::vector<std::string>& notes) {
   std::map<bones::BoneKind, geometry::Surface> surfaces;
   const auto surface_of = [&](bones::BoneKind kind) -> const geometry::Surface* {
     const auto bone = knee.bones.find(kind);
     return bone == knee.bones.end() ? nullptr : &surfaces.try_emplace(kind, bone->second.mesh).first->second;
   };
   const plan_export::TakenTunnels taken = plan_export::read_tunnels(arguments.markups, knee.plan, surface_of);
-  if (!taken.note.empty() && !arguments.as_json) context.say("The " + taken.note + ".");
+  if (!taken.note.empty()) notes.push_back("The " + taken.note + ".");
   for (const auto& [key, tunnel] : taken.tunnels)
-    put(tunnel, bones::mesh_sha256(knee.bones.at(key.bone).mesh), arguments, context, knee);
+    put(tunnel, bones::mesh_sha256(knee.bones.at(key.bone).mesh), knee, notes);
 }
 
 void show(const PlanArguments& arguments, const Context& context, const cases::Case& knee,
@@ -177,7 +176,7 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
       throw InvalidInput(arguments.case_folder, "plan.json", "plans a bone that the case lacks");
     has_any = true;
     if (arguments.as_json) {
-      tunnels_json.push_back(tunnel_to_json(knee, review, key, verdict));
+      tunnels_json.push_back(tunnel_to_json(knee, review, key, judged(knee, review, key, doubts, verdict)));
       tunnels_json.back()["bone_doubts"] = doubts[key.bone];
     } else {
       describe_tunnel(context, knee, review, key, verdict);
@@ -352,9 +351,10 @@ void add_plan_command(CLI::App& app, Context& context) {
     // Before anything is written: a file that cannot be read leaves the plan as it was.
     cases::BoneDoubts doubts = cases::load_bone_doubts(arguments->case_folder);
     PlanVerdict verdict;
+    std::vector<std::string> notes;  // said once it is so on the disk
     const cases::Plan before = knee.plan;
     if (!arguments->markups.empty()) {
-      take_markups(*arguments, context, knee);
+      take_markups(*arguments, knee, notes);
     } else if (arguments->version > 0) {
       take_version(*arguments, knee);
     } else if (arguments->removes) {
@@ -368,27 +368,23 @@ void add_plan_command(CLI::App& app, Context& context) {
       const geometry::Surface surface(bone_of_case->second.mesh);
       put(arguments->by_default ? default_tunnel(*arguments, knee, kind, surface, verdict)
                                 : planned_tunnel(*arguments, knee, surface),
-          bones::mesh_sha256(bone_of_case->second.mesh), *arguments, context, knee);
+          bones::mesh_sha256(bone_of_case->second.mesh), knee, notes);
       arguments->names_type = true;  // what was placed is shown
     }
     if (writes) {
-      keep_replaced(*arguments, context, before, knee.plan, verdict);
+      keep_replaced(*arguments, before, knee.plan, verdict, notes);
       cases::name_meshes(knee);
       knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
       if (arguments->by_default) cases::save_case(arguments->case_folder, knee);  // with its landmarks
     }
+    if (!arguments->as_json)
+      for (const std::string& note : notes) context.say(note);
     if (arguments->lists_versions) return list_versions(*arguments, context, knee);
     // What the case lacks is proposed, as the window and the report have it, and not kept.
     cases::Case shown = knee;
     plan_review::propose_landmarks(shown, plan_review::Proposing::WithoutGrid);
     const plan_review::CaseReview review(shown);
-    if (arguments->by_default) {
-      for (std::string& wrong : tunnels::wrong_in_words(review.checks(key_of(*arguments))))
-        verdict.reasons.push_back(std::move(wrong));
-      for (const std::string& doubt : doubts[bones::bone_kind_from_text(arguments->bone)])
-        verdict.reasons.push_back("the " + arguments->bone + ": " + doubt);
-      verdict.is_reliable = verdict.reasons.empty();
-    }
+    if (arguments->by_default) verdict = judged(shown, review, key_of(*arguments), doubts, verdict);
     show(*arguments, context, shown, review, std::move(doubts), verdict);
     if (arguments->keeps) {
       const auto kept = cases::keep_plan_version(arguments->case_folder, knee.plan);

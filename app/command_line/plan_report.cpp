@@ -1,5 +1,6 @@
 #include "app/command_line/plan_report.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -17,8 +18,9 @@ using tunnels::PlanCheck;
 const char* sign_of(PlanCheck::Verdict verdict) {
   switch (verdict) {
     case PlanCheck::Verdict::Look:
-    case PlanCheck::Verdict::Wrong:
       return "  ! ";
+    case PlanCheck::Verdict::Wrong:  // it cannot be drilled like this
+      return "  x ";
     case PlanCheck::Verdict::NotChecked:
       return "  ? ";
     case PlanCheck::Verdict::Note:  // a number that nobody holds against anything: no tick
@@ -39,6 +41,23 @@ const char* state_of_grid(const cases::Case& knee, const plan_review::CaseReview
 }
 
 }  // namespace
+
+PlanVerdict judged(const cases::Case& knee, const plan_review::CaseReview& review,
+                   const tunnels::TunnelKey& key, const cases::BoneDoubts& doubts, PlanVerdict verdict) {
+  const auto add = [&](const std::string& reason) {
+    if (std::ranges::find(verdict.reasons, reason) == verdict.reasons.end())
+      verdict.reasons.push_back(reason);
+  };
+  for (const std::string& wrong : tunnels::wrong_in_words(review.checks(key))) add(wrong);
+  if (const auto of_bone = doubts.find(key.bone); of_bone != doubts.end())
+    for (const std::string& doubt : of_bone->second)
+      add("the " + std::string(bones::to_text(key.bone)) + ": " + doubt);
+  if (const auto fit = cases::plan_fit(knee, key); !fit.is_valid()) add(fit.reason);
+  if (verdict.source.empty() && state_of_grid(knee, review, key.bone) == std::string_view("proposed"))
+    add("landmarks: proposed from the bone's shape, confirmed by nobody");
+  verdict.is_reliable = verdict.reasons.empty();
+  return verdict;
+}
 
 void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,
                      const tunnels::TunnelKey& key, const PlanVerdict& verdict) {
@@ -93,9 +112,6 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review
   }
   node["checks"] = std::move(checks);
   node["landmarks"] = state_of_grid(knee, review, key.bone);
-  auto reasons = verdict.reasons;
-  const auto fit = cases::plan_fit(knee, key);
-  if (!fit.is_valid()) reasons.push_back(fit.reason);
   if (!verdict.source.empty()) {
     node["source"] = verdict.source;
     node["place"] = verdict.place;
@@ -103,8 +119,8 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review
     if (const auto& p = verdict.passing_entry_mm) node["passing_entry_mm"] = {p->x(), p->y(), p->z()};
   }
   if (verdict.kept_version > 0) node["kept_version"] = verdict.kept_version;
-  node["reliable"] = verdict.is_reliable && fit.is_valid();
-  node["reasons"] = reasons;
+  node["reliable"] = verdict.is_reliable;
+  node["reasons"] = verdict.reasons;
   return node;
 }
 

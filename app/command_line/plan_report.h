@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "app/command_line/command.h"
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/plan_review/plan_review.h"
 
 namespace arthronaut::command_line {
 
-// What a default plan says about itself beside the tunnel.
+// What is said of a tunnel beside its numbers, and of a default plan besides.
 struct PlanVerdict {
   bool is_reliable = true;
   std::vector<std::string> reasons;
@@ -20,6 +21,13 @@ struct PlanVerdict {
   std::optional<Eigen::Vector3d> passing_entry_mm;  // see DefaultTunnel
   int kept_version = 0;  // of the plan that the default took the place of; 0: it took none's
 };
+
+// The same with what speaks against the tunnel whether it was made now or years ago: checks that are wrong,
+// doubts about its bone, another bone than it was planned on, and, unless a default says it already,
+// landmarks that nobody confirmed.
+[[nodiscard]] PlanVerdict judged(const cases::Case& knee, const plan_review::CaseReview& review,
+                                 const tunnels::TunnelKey& key, const cases::BoneDoubts& doubts,
+                                 PlanVerdict verdict);
 
 // Lines for the user: entry, direction, what was measured, every check.
 // Precondition of both: the review, which is of this case, has the tunnel.

@@ -35,7 +35,8 @@ void add_report_command(CLI::App& app, Context& context) {
                   "The session's folder name; default: the newest with a drilled tunnel, else with a "
                   "registration");
   sub->add_flag("--with-identity", arguments->options.with_identity,
-                "Name the patient (identity.json of the case); without it the report names nobody");
+                "Name the patient (identity.json of the case); without it nobody is named, unless the case's "
+                "own name does");
   sub->add_option("--paper", arguments->paper, "a4 or letter; default: a4")
       ->check(CLI::IsMember({"a4", "letter"}));
   sub->callback([arguments, &context] {

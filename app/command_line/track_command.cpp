@@ -51,7 +51,8 @@ void track(Context& context, const TrackArguments& arguments) {
   files::write_atomically(arguments.output, strokes::poses_to_text(tracked.rows));
   if (arguments.output != "-") say_statistics(context, tracked.statistics);
   reasons.insert(reasons.end(), tracked.reasons.begin(), tracked.reasons.end());
-  if (!reasons.empty()) context.say_unreliable(arguments.output, reasons);
+  if (!reasons.empty())
+    context.say_unreliable(arguments.output == "-" ? "what was tracked" : arguments.output, reasons);
 }
 
 }  // namespace

@@ -163,8 +163,10 @@ void add_train_command(CLI::App& app, Context& context) {
   sub->add_option("--seed", arguments->seed, "Another knee and other places for each seed")
       ->check(a_seed())
       ->capture_default_str();
-  sub->add_option("--case", arguments->case_folder,
-                  "On this case's bones and plan; what was done becomes a session of the case");
+  sub->add_option(
+      "--case", arguments->case_folder,
+      "On this case's bones and plan, of one without a recorded operation; what was done becomes a session "
+      "of it");
   sub->add_option("--keep-hand", arguments->keep_hand, "Where to keep what was pushed, to do it again")
       ->check(a_name());
   sub->add_flag("--keep", arguments->keep, "Puts the score on the user's own list");

@@ -61,8 +61,11 @@ TEST_F(PlanCommand, SaysThatAnAbsurdPlanIsWrong) {
   knee_.plan.tunnels[bones::BoneKind::Femur].direction = -Eigen::Vector3d::UnitX();
   save(knee_);
   const auto result = run({"plan", "--bone", "femur"});
-  EXPECT_THAT(result.output, HasSubstr("  ! Entry: "));
-  EXPECT_THAT(result.output, HasSubstr("  ! Exit: into the notch"));
+  EXPECT_THAT(result.output, HasSubstr("  x Entry: "));
+  EXPECT_THAT(result.output, HasSubstr("  x Exit: into the notch"));
+  const auto json = nlohmann::json::parse(run({"plan", "--bone", "femur", "--json"}).output);
+  EXPECT_FALSE(json.at("reliable").get<bool>()) << "whoever shows it";
+  EXPECT_THAT(json.at("reasons").dump(), HasSubstr("Exit: into the notch"));
 }
 
 TEST_F(PlanCommand, MakesADefaultPlanAndPrintsIt) {
@@ -213,6 +216,8 @@ TEST_F(PlanCommand, Hazard46SaysWhatSpokeAgainstTheBone) {
   EXPECT_THAT(run({"plan", "--bone", "tibia"}).output, Not(HasSubstr("  ! Bone: ")));
   const auto json = nlohmann::json::parse(run({"plan", "--bone", "femur", "--json"}).output);
   EXPECT_EQ(json.at("bone_doubts").at(0), "the images end within it");
+  EXPECT_FALSE(json.at("reliable").get<bool>());
+  EXPECT_THAT(json.at("reasons").dump(), HasSubstr("the femur: the images end within it"));
   const auto made = run({"plan", "--bone", "femur", "--default"});
   EXPECT_EQ(made.exit_code, 4);
   EXPECT_THAT(made.errors, HasSubstr("the femur: the images end within it"));
