@@ -91,6 +91,10 @@ void read_lanes(const std::uint8_t* from, int step, Words& lanes) {
   } else if (step == 2 && std::endian::native == std::endian::little) {
     std::memcpy(&lanes, from, sizeof lanes);
     lanes &= 0xFF;
+  } else if (step == 4 && std::endian::native == std::endian::little) {
+    Wide apart;
+    std::memcpy(&apart, from, sizeof apart);
+    lanes = __builtin_convertvector(apart & 0xFF, Words);
   } else {
     std::array<std::uint16_t, CodeSearch::kTogether> apart;
     for (int k = 0; k < CodeSearch::kTogether; ++k) apart[k] = from[k * step];

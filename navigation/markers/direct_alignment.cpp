@@ -40,8 +40,10 @@ constexpr double kPixelSigmaPx = 0.29;    // of a pixel's own square
 constexpr double kMomentsPerSigma = 1.6;  // moments of the exposure lie so many sigma apart, at most
 constexpr double kSettledPx = 0.04, kSettledEnoughPx = 0.4;
 constexpr int kCoarseIterations = 2, kMinIterations = 3;
-// From here on a fit is given up that at the rate at which it gets better would not get there in time.
+// From here on a fit is given up that would not get there in time.
 constexpr int kHopefulIterations = 5;
+// The same when it went too far, and so many times its last step in each iteration would not bring it back.
+constexpr double kWayBack = 2;
 // Residuals that still get smaller, though the pose stands, mean that what covers is not out yet.
 constexpr double kSettledShare = 0.95;
 
@@ -87,6 +89,7 @@ DirectFit::DirectFit() : pixels_(kLikelyPixels) {
   residuals_.reserve(kLikelyPixels);
   levels_.reserve(kLikelyPixels / kPixelsTogether + 1);
   light_.reserve(kLikelyPixels);
+  light_rows_.reserve(kLikelyPixels);
   sorted_.reserve(kLikelyPixels);
   edge_gradients_.resize(2 * (kMaxCells + 1) * kMaxCells);
 }
@@ -202,32 +205,36 @@ struct DirectFit::Linearised {
 // What light the start asks for is linear, in light; three times over, so that what is covered drops out.
 void DirectFit::guess_light(State& state) {
   const auto gamma = static_cast<float>(state.gamma);
-  const auto row_of = [&](int i) {
-    const SeenPixels& seen = pixels_.seen(i);
-    const int lane = i % kPixelsTogether;
-    const Terms terms = terms_at({seen.place_x[lane], seen.place_y[lane]});
-    Light row;
-    row << terms.head<kBiasTerms>(), levels_[i / kPixelsTogether].level[lane] * terms.head<kGainTerms>();
-    return row;
-  };
   const int count = pixels_.count();
   residuals_.resize(count);
   light_.resize(count);
-  for (int i = 0; i < count; ++i)
-    light_[i] = 255 * std::pow(pixels_.seen(i).grey[i % kPixelsTogether] / 255, gamma);
+  light_rows_.resize(count);
+  for (int i = 0; i < count; ++i) {
+    const SeenPixels& seen = pixels_.seen(i);
+    const int lane = i % kPixelsTogether;
+    light_[i] = 255 * std::pow(seen.grey[lane] / 255, gamma);
+    const Terms terms = terms_at({seen.place_x[lane], seen.place_y[lane]});
+    const float level = levels_[i / kPixelsTogether].level[lane];
+    for (int k = 0; k < kBiasTerms; ++k) light_rows_[i][k] = terms[k];
+    for (int k = 0; k < kGainTerms; ++k) light_rows_[i][kBiasTerms + k] = level * terms[k];
+  }
   for (int pass = 0; pass < 3; ++pass) {
     using Square = Eigen::Matrix<float, kLightTerms, kLightTerms>;
     Square normal = 1e-2F * Square::Identity();
     Light right = Light::Zero();
     for (int i = 0; i < count; ++i) {
-      const Light row = row_of(i);
-      normal.noalias() += (pixels_.weight(i) * row) * row.transpose();
+      const Light &row = light_rows_[i], weighed = pixels_.weight(i) * row;
+      // By columns from the diagonal on, four rows at a time: the half that is looked at.
+      for (int column = 0; column < kLightTerms; ++column) {
+        const int first = column / 4 * 4;
+        for (int k = first; k < kLightTerms; ++k) normal(k, column) += weighed[k] * row[column];
+      }
       right += pixels_.weight(i) * light_[i] * row;
     }
     state.light = normal.ldlt().solve(right);
     sorted_.clear();
     for (int i = 0; i < count; ++i) {
-      residuals_[i] = light_[i] - state.light.dot(row_of(i));
+      residuals_[i] = light_[i] - state.light.dot(light_rows_[i]);
       sorted_.push_back(std::abs(residuals_[i]));
     }
     const auto scale =
@@ -322,6 +329,10 @@ DirectPose DirectFit::refine(const camera::GrayView& frame, const camera::Camera
   prior[kGamma] = 1 / (kGammaSigma * kGammaSigma);
 
   State state{.exposed = ExposedCode(code, size_mm), .pose = start.pose, .gamma = start.gamma};
+  const auto way_px = [&](const State& there) {
+    return motion_px(geometry::log(start.pose.camera_from_marker.inverse() * there.pose.camera_from_marker),
+                     size_mm, px_per_mm);
+  };
   Linearised at;
   const int coarse_iterations = options.coarse_cells > 0 ? kCoarseIterations : 0;
   double moved_px = 0, certainty = 0, last_scale = 1e9;
@@ -348,7 +359,7 @@ DirectPose DirectFit::refine(const camera::GrayView& frame, const camera::Camera
                             moved_px < kSettledPx && falls > kSettledShare;
     if (is_settled || iteration == options.max_iterations) break;
     if (iteration >= coarse_iterations + kHopefulIterations &&
-        at.scale * std::pow(falls, options.max_iterations - iteration) > kMaxNoiseGrey) {
+        at.scale * std::pow(falls, options.max_iterations - iteration) > options.hopeless_noise_grey) {
       result.outcome = DirectPose::Outcome::Unlike;
       return result;
     }
@@ -359,15 +370,18 @@ DirectPose DirectFit::refine(const camera::GrayView& frame, const camera::Camera
     result.outcome = DirectPose::Outcome::NotSettled;
     if (!state.apply(step)) return result;
     moved_px = motion_px(step.head<6>(), size_mm, px_per_mm);
+    if (iteration >= coarse_iterations + kHopefulIterations &&
+        way_px(state) - options.max_way_cells * cell_px >
+            kWayBack * (options.max_iterations - iteration) * moved_px)
+      return result;
     if (iteration >= coarse_iterations &&
         (moved_px < kRoughlySettledPx || iteration >= coarse_iterations + kHopefulIterations))
       take_all();
   }
   if (!scattered_covariance(at, certainty, result.covariance)) return result;
   result.covariance *= options.shared_errors;
-  const Vector6d way = geometry::log(start.pose.camera_from_marker.inverse() * state.pose.camera_from_marker);
   if ((coarse_iterations == 0 && moved_px > kSettledEnoughPx) ||
-      motion_px(way, size_mm, px_per_mm) > options.max_way_cells * cell_px)
+      way_px(state) > options.max_way_cells * cell_px)
     return result;
   result.pose = state.pose;
   result.sigma_px = start.sigma_px * std::exp(state.smear);

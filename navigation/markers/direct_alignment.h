@@ -41,6 +41,8 @@ struct DirectOptions {
   double max_way_cells = 1.2;  // from the start to the result; farther away another cell may have answered
   int saturated_grey = 250;    // pixels of this grey and above say nothing
   double min_likeness = 0.9;   // to have converged at all
+  // A fit is given up that at the rate at which it gets better would not leave less noise than this.
+  double hopeless_noise_grey = 6;
   // What DirectPose::explains_picture asks for. Fits to something else reach a likeness of 0.99 and a noise
   // of 5 on recorded clips; good ones 0.998 and 4.
   double good_inlier_share = 0.65, good_likeness = 0.9975, good_noise_grey = 4.7;
@@ -95,6 +97,8 @@ class DirectFit {
   PixelBlocks pixels_;
   std::vector<SeenLevels> levels_;  // of the pixels, as the fit stands
   std::vector<float> residuals_, light_, sorted_;
+  // What each pixel's light depends on, linearly: bias and gain as they vary over the marker.
+  std::vector<Eigen::Matrix<float, DirectUnknowns::kLightTerms, 1>> light_rows_;
   std::vector<Row> edge_gradients_;  // by edge
 };
 

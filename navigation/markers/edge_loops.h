@@ -14,10 +14,10 @@ constexpr float kMinContrast = 3;  // in light of 255: what noise and compressio
 constexpr int kMatchPasses = 3;
 constexpr float kMostShift = 1.5F, kMostWay = 2.5F, kSettledShift = 0.01F;
 
-// Of the window: what the cells across the edge look like, dark 0 and bright 1, and its slope.
+// Of the window: what the cells across the edge look like, dark 0 and bright 1, its slope, and how it changes
+// with sigma and with the box.
 struct WindowModel {
-  Floats level[kBlocks], slope[kBlocks];
-  float offset = 0;
+  Floats level[kBlocks], slope[kBlocks], by_sigma[kBlocks], by_box[kBlocks];
 };
 
 struct Step {
@@ -33,38 +33,30 @@ inline float sum_of(const Floats& lanes) {
 
 // A sharp step of light at these distances from it, bright on the positive side, smeared by a box and a
 // Gaussian: the difference of two integrals of the normal distribution.
-inline void smear_step(const Floats& distance, const Step& step, Floats& level, Floats& slope) {
-  const Floats upper = (distance + 0.5F * step.box) * step.scale;
-  const Floats lower = (distance - 0.5F * step.box) * step.scale;
-  Floats upper_density, upper_cumulative, lower_density, lower_cumulative;
-  normal_at(upper, upper_density, upper_cumulative);
-  normal_at(lower, lower_density, lower_cumulative);
-  level =
-      (upper * upper_cumulative + upper_density - lower * lower_cumulative - lower_density) * step.by_both;
-  slope = (upper_cumulative - lower_cumulative) * step.by_box;
-}
+struct SmearedStep {
+  Floats level, slope, by_sigma, by_box;
+};
 
-// How the level changes with sigma and with the box.
-inline void smear_trend(const Floats& distance, const Step& step, Floats& by_sigma, Floats& by_box) {
+inline void smear_step(const Floats& distance, const Step& step, SmearedStep& smeared) {
   const Floats upper = (distance + 0.5F * step.box) * step.scale;
   const Floats lower = (distance - 0.5F * step.box) * step.scale;
   Floats upper_density, upper_cumulative, lower_density, lower_cumulative;
-  normal_at(upper, upper_density, upper_cumulative);
-  normal_at(lower, lower_density, lower_cumulative);
-  const Floats level =
+  normal_along(upper, upper_density, upper_cumulative);
+  normal_along(lower, lower_density, lower_cumulative);
+  smeared.level =
       (upper * upper_cumulative + upper_density - lower * lower_cumulative - lower_density) * step.by_both;
-  by_sigma = (upper_density - lower_density) * step.by_box;
-  by_box = (0.5F * (upper_cumulative + lower_cumulative) - level) * step.by_box;
+  smeared.slope = (upper_cumulative - lower_cumulative) * step.by_box;
+  smeared.by_sigma = (upper_density - lower_density) * step.by_box;
+  smeared.by_box = (0.5F * (upper_cumulative + lower_cumulative) - smeared.level) * step.by_box;
 }
 
 inline void places_from(float first, Floats& places) { places = Floats{0, 1, 2, 3, 4, 5, 6, 7} + first; }
 
 inline void model_window(const EdgeProfile& profile, const Step& step, int blocks, float offset,
                          WindowModel& model) {
-  model.offset = offset;
   for (int block = 0; block < blocks; ++block) {
     model.level[block] = Floats{} + profile.cells[0];
-    model.slope[block] = Floats{};
+    model.slope[block] = model.by_sigma[block] = model.by_box[block] = Floats{};
   }
   for (int edge = 0; edge < 3; ++edge) {
     const float rise = profile.cells[edge + 1] - profile.cells[edge];
@@ -72,11 +64,14 @@ inline void model_window(const EdgeProfile& profile, const Step& step, int block
     const float first =
         static_cast<float>(-profile.reach) - offset - static_cast<float>(edge - 1) * profile.cell_px;
     for (int block = 0; block < blocks; ++block) {
-      Floats distance, level, slope;
+      Floats distance;
+      SmearedStep smeared;
       places_from(first + static_cast<float>(kLanes * block), distance);
-      smear_step(distance, step, level, slope);
-      model.level[block] += rise * level;
-      model.slope[block] += rise * slope;
+      smear_step(distance, step, smeared);
+      model.level[block] += rise * smeared.level;
+      model.slope[block] += rise * smeared.slope;
+      model.by_sigma[block] += rise * smeared.by_sigma;
+      model.by_box[block] += rise * smeared.by_box;
     }
   }
 }
@@ -236,26 +231,12 @@ inline void match_finely(const EdgeProfile& profile, const Step& step, const Win
 
   // What the residuals say of the smear.
   Floats sigma_gain{}, sigma_weight{}, box_gain{}, box_weight{};
-  Floats by_sigma[kBlocks], by_box[kBlocks];
-  for (int block = 0; block < blocks; ++block) by_sigma[block] = by_box[block] = Floats{};
-  for (int edge = 0; edge < 3; ++edge) {
-    const float rise = profile.cells[edge + 1] - profile.cells[edge];
-    if (rise == 0) continue;
-    const float first =
-        static_cast<float>(-profile.reach) - model.offset - static_cast<float>(edge - 1) * profile.cell_px;
-    for (int block = 0; block < blocks; ++block) {
-      Floats distance, sigma_part, box_part;
-      places_from(first + static_cast<float>(kLanes * block), distance);
-      smear_trend(distance, step, sigma_part, box_part);
-      by_sigma[block] += rise * sigma_part;
-      by_box[block] += rise * box_part;
-    }
-  }
   const float by_gain = 1 / solution.gain;
   for (int block = 0; block < blocks; ++block) {
     const Floats residual =
         window.known[block] * ((window.light[block] - solution.bias) * by_gain - model.level[block]);
-    const Floats s = window.known[block] * by_sigma[block], b = window.known[block] * by_box[block];
+    const Floats s = window.known[block] * model.by_sigma[block],
+                 b = window.known[block] * model.by_box[block];
     sigma_gain += residual * s;
     sigma_weight += s * s;
     box_gain += residual * b;

@@ -1,12 +1,14 @@
 #include "navigation/markers/edge_tracker.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "navigation/markers/code_reader.h"
 #include "navigation/markers/code_search.h"
 #include "navigation/markers/corner_search.h"
 #include "navigation/markers/declaration.h"
 #include "navigation/markers/linear_image.h"
+#include "navigation/markers/marker_company.h"
 #include "navigation/markers/marker_track.h"
 #include "navigation/markers/seen_code.h"
 #include "navigation/markers/square_search.h"
@@ -23,12 +25,20 @@ constexpr int kFitsAFrame = 80;
 // Squares with its code in which a marker is looked for, in one frame.
 constexpr int kMostSquares = 3;
 constexpr std::size_t kSearchesForCovered = 3;
+// What a search of the whole frame is made of, in this order; and which of several frames has it where there
+// is no hurry. Squares are sought as usual or as covered ones.
+enum class Search { Usual, OtherContrast, Highlights, Covered, Corners };
+constexpr std::pair<Search, int> kSearchParts[] = {{Search::Usual, 0},
+                                                   {Search::OtherContrast, 1},
+                                                   {Search::Highlights, 2},
+                                                   {Search::Covered, 0},
+                                                   {Search::Corners, 3}};
 constexpr int kMostSupposed = 2;  // squares of which a corner is seen that are measured in one frame
 constexpr std::int64_t kUsualIntervalNs = 33'333'333;
 // A marker that was sought in every frame for so long, and is not there, is sought in every few frames.
 constexpr std::int64_t kSoughtOftenNs = 1'000'000'000;
-// How long a marker that was lost is looked for about where it was, and another one's company counts.
-constexpr std::int64_t kMissedNs = 2'000'000'000, kCompanyNs = 1'000'000'000;
+// How long a marker that was lost is looked for about where it was.
+constexpr std::int64_t kMissedNs = 2'000'000'000;
 // How far about it, in sides: at once, more with every second, and at most.
 constexpr double kReachAtOnce = 0.45, kReachPerSecond = 6, kMaxReach = 1.6;
 // From where a marker is predicted to where its code is found, in cells: more, and the edges are not found
@@ -69,6 +79,7 @@ class EdgeTracker final : public MarkerTracker {
                                fits_left,    codes_};
     candidates_.clear();
     is_looked_at_ = false;
+    std::fill(attempts_.begin(), attempts_.end(), 0);
     // Whose turn is first changes, so that none takes all of a frame's fits for ever.
     ++frames_;
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
@@ -84,18 +95,23 @@ class EdgeTracker final : public MarkerTracker {
       (void)tracks_[i].measure(tracked, *start, false, observations_[i]);
     }
     leave_one_a_place();
-    if (is_any_sought_often(timestamp_ns) || frames_to_search_-- <= 0) {
-      frames_to_search_ = options_.search_every_frames - 1;
-      search(tracked);
-      leave_one_a_place();
+    if (is_any_sought_often(timestamp_ns)) {
+      for (const auto& [what, when] : kSearchParts) search(what, tracked);
+      frames_since_search_ = 1 % options_.search_every_frames;
+    } else {
+      const int every = options_.search_every_frames;
+      for (const auto& [what, when] : kSearchParts)
+        if (when % every == frames_since_search_) search(what, tracked);
+      frames_since_search_ = (frames_since_search_ + 1) % every;
     }
+    leave_one_a_place();
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       if (tracks_[i].is_duplicate && observations_[i].is_tracked())
         observations_[i].state = MarkerState::Duplicate;
       tracks_[i].follow(observations_[i], timestamp_ns);
       if (observations_[i].is_tracked()) sought_since_ns_[i] = timestamp_ns;
     }
-    remember_company(timestamp_ns);
+    company_.remember(observations_, timestamp_ns);
     return observations_;
   }
 
@@ -112,12 +128,12 @@ class EdgeTracker final : public MarkerTracker {
     smear_ = CameraSmear();
     smear_.gamma = options_.gamma;
     smear_.bloom.sigma_px = options_.bloom_sigma_px;
-    frames_to_search_ = 0;
+    frames_since_search_ = 0;
     search_.start_over();
     corner_search_.start_over();
     is_sought_.assign(tracks_.size(), 0);
     seen_.reserve(tracks_.size());
-    company_.assign(tracks_.size(), Company());
+    company_.start_over(tracks_.size());
     attempts_.assign(tracks_.size(), 0);
     sought_since_ns_.assign(tracks_.size(), -1);
     interval_ns_ = kUsualIntervalNs;
@@ -126,35 +142,37 @@ class EdgeTracker final : public MarkerTracker {
   }
 
  private:
-  // Where a marker stood beside another one when both were last seen.
-  struct Company {
-    std::size_t other = 0;
-    geometry::RigidTransform other_from_marker;
-    std::int64_t timestamp_ns = -1;  // below 0: never
-  };
-
-  void search(const TrackedFrame& frame) {
-    std::fill(attempts_.begin(), attempts_.end(), 0);
-    for (MarkerTrack& track : tracks_) track.is_duplicate = false;
-    ++searches_;
+  void search(Search what, const TrackedFrame& frame) {
+    if (what != Search::Usual && !is_missing()) return;
     look_at(frame);
-    // The dearer search takes the place of the other now and then; what was just lost is looked for before.
-    const bool is_for_covered = searches_ % kSearchesForCovered == 0 && is_missing();
-    if (!is_for_covered) {
-      take_squares(search_.find(frame.camera), frame, Pass::Usual);
-      if (is_missing()) {
-        const Contrast other = searches_ % kSearchesForCovered == 1 ? Contrast::Deep : Contrast::Faint;
-        take_squares(search_.find(frame.camera, other), frame, Pass::OtherContrast);
-      }
+    const std::size_t turn = searches_ % kSearchesForCovered;
+    switch (what) {
+      case Search::Usual:
+        for (MarkerTrack& track : tracks_) track.is_duplicate = false;
+        // The dearer search takes the place of the other now and then; what was just lost is looked for
+        // before.
+        is_for_covered_ = ++searches_ % kSearchesForCovered == 0 && is_missing();
+        if (!is_for_covered_) take_squares(search_.find(frame.camera), frame, Pass::Usual);
+        break;
+      case Search::OtherContrast:
+        if (!is_for_covered_)
+          take_squares(search_.find(frame.camera, turn == 1 ? Contrast::Deep : Contrast::Faint), frame,
+                       Pass::OtherContrast);
+        break;
+      case Search::Highlights:
+        take_squares(search_.find_across_highlights(frame.camera), frame, Pass::Covered);
+        for (std::size_t k = 0; k < tracks_.size(); ++k) {
+          const std::size_t i = (frames_ + k) % tracks_.size();
+          if (!observations_[i].is_tracked()) recover(i, frame);
+        }
+        break;
+      case Search::Covered:
+        if (is_for_covered_) take_squares(search_.find_covered(frame.camera), frame, Pass::Covered);
+        break;
+      case Search::Corners:
+        if (turn == 2) take_corners(frame);
+        break;
     }
-    if (is_missing()) take_squares(search_.find_across_highlights(frame.camera), frame, Pass::Covered);
-    for (std::size_t k = 0; k < tracks_.size(); ++k) {
-      const std::size_t i = (frames_ + k) % tracks_.size();
-      if (!observations_[i].is_tracked()) recover(i, frame);
-    }
-    if (!is_missing()) return;
-    if (is_for_covered) take_squares(search_.find_covered(frame.camera), frame, Pass::Covered);
-    if (searches_ % kSearchesForCovered == 2) take_corners(frame);
   }
 
   void look_at(const TrackedFrame& frame) {
@@ -220,7 +238,7 @@ class EdgeTracker final : public MarkerTracker {
       MarkerTrack& track = tracks_[code->index];
       MarkerObservation& known = observations_[code->index];
       if (known.is_tracked()) {
-        track.is_duplicate |= !are_same_place(square, known.corners_px);
+        track.is_duplicate |= !square.is_at(known.corners_px);
         continue;
       }
       if (attempts_[code->index]++ < kMostSquares) acquire(track, square, code->turn, frame, known);
@@ -253,7 +271,7 @@ class EdgeTracker final : public MarkerTracker {
   // By another contrast, in this frame. What a fit has learnt there would be overwritten by the next one.
   [[nodiscard]] bool was_tried(const FoundSquare& square, int id) const {
     return std::any_of(candidates_.begin(), candidates_.end(), [&](const MarkerCandidate& candidate) {
-      return candidate.id == id && are_same_place(square, candidate.corners_px);
+      return candidate.id == id && square.is_at(candidate.corners_px);
     });
   }
 
@@ -278,15 +296,11 @@ class EdgeTracker final : public MarkerTracker {
     CodePlace place = look(predicted.value_or(last->camera_from_marker), reach);
     // What turned back is not where it was going to.
     if (predicted && place.score < CodeSearch::kMinScore) place = look(last->camera_from_marker, reach);
-    if (const Company& company = company_[index];
-        company.timestamp_ns >= 0 && observations_[company.other].is_tracked()) {
-      const std::int64_t age_ns = frame.timestamp_ns - company.timestamp_ns;
-      if (age_ns < kCompanyNs) {
-        const CodePlace beside =
-            look(observations_[company.other].camera_from_marker * company.other_from_marker,
-                 reach_px(kCompanyReach, kCompanyReachPerSecond, 1e-9 * static_cast<double>(age_ns)));
-        if (beside.score > place.score) place = beside;
-      }
+    if (const auto with = company_.place_of(index, observations_, frame.timestamp_ns)) {
+      const CodePlace beside =
+          look(with->camera_from_marker,
+               reach_px(kCompanyReach, kCompanyReachPerSecond, 1e-9 * static_cast<double>(with->age_ns)));
+      if (beside.score > place.score) place = beside;
     }
     if (place.score < CodeSearch::kMinScore || is_taken(place.camera_from_marker, index) ||
         are_alike(place.camera_from_marker, starts_[index]))
@@ -313,7 +327,7 @@ class EdgeTracker final : public MarkerTracker {
 
   [[nodiscard]] bool is_of_another(const FoundSquare& square) const {
     return std::any_of(observations_.begin(), observations_.end(), [&](const MarkerObservation& seen) {
-      return seen.is_tracked() && are_same_place(square, seen.corners_px);
+      return seen.is_tracked() && square.is_at(seen.corners_px);
     });
   }
 
@@ -332,19 +346,6 @@ class EdgeTracker final : public MarkerTracker {
     }
   }
 
-  void remember_company(std::int64_t timestamp_ns) {
-    for (std::size_t i = 0; i < tracks_.size(); ++i) {
-      if (!observations_[i].is_tracked()) continue;
-      for (std::size_t other = 0; other < tracks_.size(); ++other) {
-        if (other == i || !observations_[other].is_tracked()) continue;
-        company_[i] = {
-            other, observations_[other].camera_from_marker.inverse() * observations_[i].camera_from_marker,
-            timestamp_ns};
-        break;
-      }
-    }
-  }
-
   static void acquire(MarkerTrack& track, const FoundSquare& square, int turn, const TrackedFrame& frame,
                       MarkerObservation& observation) {
     for (const RigidTransform& start : poses_of_square(square.tangent, turn, track.marker().size_mm)) {
@@ -356,12 +357,6 @@ class EdgeTracker final : public MarkerTracker {
   static bool are_alike(const RigidTransform& a, const RigidTransform& b) {
     return (a.translation_mm - b.translation_mm).norm() < kSameStart * a.translation_mm.norm() &&
            geometry::rotation_angle_rad(a.rotation.conjugate() * b.rotation) < kSameStartRad;
-  }
-
-  static bool are_same_place(const FoundSquare& square, const Corners& corners_px) {
-    Eigen::Vector2d apart = Eigen::Vector2d::Zero();
-    for (int i = 0; i < 4; ++i) apart += 0.25 * (square.corners_px[i] - corners_px[i]);
-    return apart.norm() < 0.5 * square.longest_side_px;
   }
 
   EdgeTrackerOptions options_;
@@ -376,15 +371,16 @@ class EdgeTracker final : public MarkerTracker {
   CornerSearch corner_search_;
   std::vector<char> is_sought_;  // by marker
   std::vector<Corners> seen_;
-  std::vector<Company> company_;
+  MarkerCompany company_;
   std::vector<int> attempts_;                  // of this frame's search, by marker
   std::vector<std::int64_t> sought_since_ns_;  // by marker: when it was last tracked; below 0: no frame yet
   std::size_t frames_ = 0, searches_ = 0;
   std::int64_t interval_ns_ = kUsualIntervalNs, last_ns_ = -1;
   CameraSmear smear_;
   DirectFit direct_;
-  int frames_to_search_ = 0;
-  bool is_looked_at_ = false;  // this frame, by search_
+  int frames_since_search_ = 0;  // since one began, while there is no hurry
+  bool is_for_covered_ = false;  // this search
+  bool is_looked_at_ = false;    // this frame, by search_
 };
 
 }  // namespace

@@ -23,7 +23,8 @@ struct EdgeTrackerOptions {
       0.2;                   // how far the bloom may be from the camera's mean; hardly above 0 leaves it out
   bool fit_directly = true;  // false: edge profiles alone, also through motion blur; to compare
   MarkerTrackOptions track;
-  // A search of the whole frame: for doubles while every marker is tracked, and for those that are long lost.
+  // A search of the whole frame, by a part in each of so many: for doubles while every marker is tracked, and
+  // for those that are long lost.
   int search_every_frames = 4;
 };
 

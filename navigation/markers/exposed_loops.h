@@ -15,12 +15,27 @@ struct Shares {
 };
 
 inline void find_shares(const Floats& place, const Floats& scale, Shares& shares) {
+  const Floats z[2] = {place * scale, (place - 1.0F) * scale};
+  const Floats away[2] = {z[0] < 0 ? -z[0] : z[0], z[1] < 0 ? -z[1] : z[1]};
+  const Ints is_first = away[0] < away[1];
+  Floats density[2];
+  if (all_of((is_first ? away[1] : away[0]) >= kFarOut)) {
+    // The smear reaches over one line at most.
+    const Floats other = is_first ? z[1] : z[0];
+    Floats near_density, near_level;
+    normal_at(is_first ? z[0] : z[1], near_density, near_level);
+    const Floats far_level = other < 0 ? Floats{} + kFarTail : Floats{} + 1.0F;
+    shares.level[0] = is_first ? near_level : far_level;
+    shares.level[1] = is_first ? far_level : near_level;
+    density[0] = is_first ? near_density : Floats{} + kFarDensity;
+    density[1] = is_first ? Floats{} + kFarDensity : near_density;
+  } else {
+    normal_at(z[0], density[0], shares.level[0]);
+    normal_at(z[1], density[1], shares.level[1]);
+  }
   for (int line = 0; line < 2; ++line) {
-    const Floats z = (place - static_cast<float>(line)) * scale;
-    Floats density;
-    normal_at(z, density, shares.level[line]);
-    shares.by_place[line] = density * scale;
-    shares.by_smear[line] = -z * density;
+    shares.by_place[line] = density[line] * scale;
+    shares.by_smear[line] = -z[line] * density[line];
   }
 }
 
@@ -179,10 +194,10 @@ inline void explain(const FittedLight& light, const SeenPixels& pixels, const Se
   }
 }
 
-// Four columns at a time, which take the same of the rows.
+// Eight columns at a time, which take the same of the rows.
 inline void add_up(const float (&rows)[kPixelsTogether][kProductSize],
                    float (&sum)[kProductSize][kProductSize]) {
-  constexpr int kWide = 8, kColumns = 4;
+  constexpr int kWide = 8, kColumns = 8;
   static_assert(kWide % kColumns == 0);
   for (int column = 0; column < DirectUnknowns::kCount; column += kColumns) {
     for (int first = column / kWide * kWide; first < kProductSize; first += kWide) {

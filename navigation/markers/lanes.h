@@ -12,6 +12,13 @@ using Ints = int __attribute__((vector_size(32)));
 inline void load(const float* from, Floats& to) { __builtin_memcpy(&to, from, sizeof to); }
 inline void store(const Floats& from, float* to) { __builtin_memcpy(to, &from, sizeof from); }
 
+inline bool all_of(const Ints& lanes) {
+  using Pairs = long long __attribute__((vector_size(32)));
+  Pairs pairs;
+  __builtin_memcpy(&pairs, &lanes, sizeof pairs);
+  return (pairs[0] & pairs[1] & pairs[2] & pairs[3]) == -1;
+}
+
 // Two to this power, from -126 to 126; to 1e-6 of it.
 inline void power_of_two(const Floats& power, Floats& result) {
   const Ints whole = __builtin_convertvector(power + (power < 0 ? Floats{} - 0.5F : Floats{} + 0.5F), Ints);
@@ -82,6 +89,22 @@ inline void normal_at(const Floats& z, Floats& density, Floats& cumulative) {
       0.5F * bell * t *
       (0.254829592F + t * (-0.284496736F + t * (1.421413741F + t * (-1.453152027F + t * 1.061405429F))));
   cumulative = z < 0 ? tail : 1.0F - tail;
+}
+
+// So far from the middle the normal distribution is at its end: what normal_at gives from there on.
+constexpr float kFarOut = 6, kFarDensity = 0x1.a18826p-28F, kFarTail = 0x1.1029acp-30F;
+
+// The same to the bit where z rises from lane to lane, for less where all of it is far out on one side.
+inline void normal_along(const Floats& z, Floats& density, Floats& cumulative) {
+  if (z[0] >= kFarOut) {
+    density = Floats{} + kFarDensity;
+    cumulative = Floats{} + 1.0F;
+  } else if (z[7] <= -kFarOut) {
+    density = Floats{} + kFarDensity;
+    cumulative = Floats{} + kFarTail;
+  } else {
+    normal_at(z, density, cumulative);
+  }
 }
 
 }  // namespace

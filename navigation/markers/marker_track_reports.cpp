@@ -13,6 +13,9 @@ using geometry::RigidTransform;
 using geometry::Vector6d;
 
 constexpr double kMaxNewMotionPx = 5;
+// So many times the noise at which the other pose is out of the question, and its fit is given up that would
+// not get below by the end: residuals may yet fall faster.
+constexpr double kHopeless = 1.5;
 // A pose tilted the other way whose edges scatter by less than this share of the fit's is the right one.
 constexpr double kMuchBetter = 0.5;
 // Where fewer edges are found, in the mean of both ways, they scatter by less than this, in their predicted
@@ -89,9 +92,11 @@ void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit
   if (observation.ambiguity_ratio >= options_.clear_ratio) return;
   // Where nothing was known before, the motion is this fit's, and the other pose has its own.
   const bool goes_on = goes_on_from_published(frame, fit.pose.camera_from_marker);
-  const DirectPose other = fit_directly(frame, poses->other->camera_from_marker, fit.pose.velocity,
-                                        goes_on ? options_.direct : unsure(options_.direct));
-  if (!other.is_usable() || other.noise_grey > options_.other_noise * fit.noise_grey) return;
+  DirectOptions by_noise = goes_on ? options_.direct : unsure(options_.direct);
+  const double most_noise_grey = options_.other_noise * fit.noise_grey;
+  by_noise.hopeless_noise_grey = std::min(by_noise.hopeless_noise_grey, kHopeless * most_noise_grey);
+  const DirectPose other = fit_directly(frame, poses->other->camera_from_marker, fit.pose.velocity, by_noise);
+  if (!other.is_usable() || other.noise_grey > most_noise_grey) return;
   if (are_unlike(fit.pose.camera_from_marker, other.pose.camera_from_marker))
     observation.state = MarkerState::Ambiguous;
 }

@@ -80,7 +80,8 @@ class MarkerTracker {
 // measures every edge of the code to a small part of a pixel in linear light on the raw frame, follows the
 // marker through partial cover, glare and motion blur by prediction, and reports a pose only when its edges
 // (or its whole code, when smeared over more than a cell) confirm it both ways. What is tracked comes first;
-// a marker that is lost, or was never seen, is sought in every frame for a second, then in every fourth, and
+// a marker that is lost, or was never seen, is sought in every frame for a second, then in four frames by a
+// part of that search in each, and
 // a square of which a part is hidden is sought in a part of the picture at a time. rms_px is how far the
 // measured corners lie from the pose's. No memory is allocated after the first frames. Throws InvalidInput
 // when a marker is declared twice, an id is outside 0..49 or a size is not above 0.

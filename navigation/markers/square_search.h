@@ -19,6 +19,12 @@ struct FoundSquare {
   Corners corners_px;  // clockwise in the image, any of them first; good to about 2 px
   Corners tangent;     // the same, undistorted
   double longest_side_px = 0;
+  // Something with these corners stands in its place.
+  [[nodiscard]] bool is_at(const Corners& others_px) const {
+    Eigen::Vector2d apart = Eigen::Vector2d::Zero();
+    for (int i = 0; i < 4; ++i) apart += 0.25 * (corners_px[i] - others_px[i]);
+    return apart.norm() < 0.5 * longest_side_px;
+  }
 };
 
 // What counts as dark. Deep: less than usual, for where something half as dark, as blood, lies across the

@@ -84,6 +84,19 @@ TEST_F(DirectAlignment, TakesAccountOfMotionThatChanges) {
   EXPECT_LT((seen - camera_.project(truth_.translation_mm).value()).norm(), 0.35);
 }
 
+// Whoever asks whether another pose explains the picture as well need not wait for the end of a fit that does
+// not: at the noise that is there it ends by itself.
+TEST_F(DirectAlignment, IsGivenUpWhereItWouldNotGetBelowANoise) {
+  const Vector6d velocity = motion_of(camera_, truth_, {14, 3});
+  const auto shown = picture(velocity);
+  const DirectStart from = start(off_, motion_of(camera_, truth_, {4, 9}));
+  const auto whole = refine(shown, from);
+  ASSERT_TRUE(whole.is_usable());
+  EXPECT_TRUE(refine(shown, from, {.hopeless_noise_grey = 1.5 * whole.noise_grey}).is_usable());
+  EXPECT_EQ(refine(shown, from, {.hopeless_noise_grey = 0.5 * whole.noise_grey}).outcome,
+            DirectPose::Outcome::Unlike);
+}
+
 // A spot of glare on a corner and a finger across a side leave the pose alone.
 TEST_F(DirectAlignment, LeavesOutGlareAndWhatCovers) {
   auto shown = picture(motion_of(camera_, truth_, {9, 0}));

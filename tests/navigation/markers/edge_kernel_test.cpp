@@ -7,6 +7,7 @@
 #include <random>
 
 #include "navigation/markers/exposed_kernel.h"
+#include "navigation/markers/exposed_loops.h"
 
 namespace arthronaut::markers {
 namespace {
@@ -144,6 +145,39 @@ TEST(EdgeKernel, GivesTheSameBitsOnEveryProcessor) {
     match_edge(profile, plain);
     match_edge_avx2(profile, wide);
     EXPECT_EQ(std::memcmp(&plain, &wide, sizeof plain), 0) << trial;
+  }
+}
+
+// What is left out far from an edge changes no bit.
+TEST(EdgeKernel, GivesTheSameBitsFarFromAnEdge) {
+  const auto are_same = [](const Floats& a, const Floats& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+  for (float first = -20; first < 20; first += 0.25F) {
+    for (const float step : {0.1F, 0.8F, 3.0F}) {
+      const Floats z = Floats{0, 1, 2, 3, 4, 5, 6, 7} * step + first;
+      Floats density, cumulative, density_along, cumulative_along;
+      normal_at(z, density, cumulative);
+      normal_along(z, density_along, cumulative_along);
+      EXPECT_TRUE(are_same(density, density_along) && are_same(cumulative, cumulative_along)) << first;
+    }
+  }
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> share(0, 1);
+  for (int trial = 0; trial < 500; ++trial) {
+    Floats place{}, scale{};
+    for (int lane = 0; lane < 8; ++lane) {
+      place[lane] = 1.4F * share(random) - 0.2F;
+      scale[lane] = (trial % 2 ? 4.0F : 15.0F) + 10 * share(random);
+    }
+    Shares shares;
+    find_shares(place, scale, shares);
+    for (int line = 0; line < 2; ++line) {
+      const Floats z = (place - static_cast<float>(line)) * scale;
+      Floats density, level;
+      normal_at(z, density, level);
+      EXPECT_TRUE(are_same(shares.level[line], level)) << trial;
+      EXPECT_TRUE(are_same(shares.by_place[line], density * scale)) << trial;
+      EXPECT_TRUE(are_same(shares.by_smear[line], -z * density)) << trial;
+    }
   }
 }
 
