@@ -49,6 +49,11 @@ std::optional<T> only_one(const std::vector<std::string>& words, T first, T seco
   return has_first ? first : second;
 }
 
+// "right", "R"
+bool says_side(const std::string& word, Side side) {
+  return word == bones::to_text(side) || word == bones::to_text(side).substr(0, 1);
+}
+
 std::string formatted_size(const Eigen::Vector3d& size) {
   return files::format("%.1f x %.1f x %.1f mm (left-right x front-back x up-down)", size.x(), size.y(),
                        size.z());
@@ -160,9 +165,39 @@ std::optional<Volume> ct_of(const Volume& labels, const BoneImportOptions& optio
   return grey;
 }
 
+// The words of the segments that are taken may tell the side, as those of the file's name do. Where names
+// tell both, none is believed.
+void take_side_of_segments(const Volume& volume, const std::map<BoneKind, int>& labels,
+                           const BoneImportOptions& options, BoneImport& result) {
+  if (options.side) return;
+  std::vector<std::string> words, names;
+  if (result.side) words.emplace_back(bones::to_text(*result.side));
+  for (const auto& [kind, label] : labels) {
+    if (options.kind && *options.kind != kind) continue;
+    for (const Segment& segment : volume.segments) {
+      if (segment.label != label) continue;
+      const auto in_name = words_in(segment.name);
+      if (std::ranges::none_of(in_name, [](const auto& word) {
+            return says_side(word, Side::Left) || says_side(word, Side::Right);
+          }))
+        continue;
+      words.insert(words.end(), in_name.begin(), in_name.end());
+      names.push_back(segment.name);
+    }
+  }
+  if (names.empty()) return;
+  result.side = only_one(words, Side::Left, Side::Right, says_side);
+  result.side_was_guessed = result.side.has_value();
+  result.lines.push_back(result.side ? "segment \"" + names.front() + "\" says that it is a " +
+                                           std::string(bones::to_text(*result.side)) + " knee"
+                                     : "segment \"" + names.front() +
+                                           "\" and the other names do not say the same side: none is taken");
+}
+
 void import_labels(BoneImages& images, const std::map<BoneKind, int>& labels,
                    const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
   const Volume& volume = images.volume;
+  take_side_of_segments(volume, labels, options, result);
   const std::optional<Volume> ct = ct_of(volume, options, tell);
   for (const auto& [kind, label] : labels) {
     if (options.kind && *options.kind != kind) continue;
@@ -319,9 +354,7 @@ std::optional<BoneKind> bone_kind_in_name(const std::filesystem::path& source) {
 }
 
 std::optional<Side> side_in_name(const std::filesystem::path& source) {
-  return only_one(words_of(source), Side::Left, Side::Right, [](const std::string& word, Side side) {
-    return word == bones::to_text(side) || word == bones::to_text(side).substr(0, 1);
-  });
+  return only_one(words_of(source), Side::Left, Side::Right, says_side);
 }
 
 std::map<BoneKind, int> labels_from_text(const std::string& text) {

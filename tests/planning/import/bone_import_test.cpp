@@ -10,6 +10,7 @@
 #include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
 #include "tests/planning/geometry/shapes.h"
+#include "tests/planning/segmentation/known_mr.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::importing {
@@ -95,9 +96,8 @@ TEST(BoneImport, AxesThatAreNotThePatientsRaiseADoubt) {
   EXPECT_THAT(import_bones(folder / "femur.stl").bones.at(0).doubts, Contains(HasSubstr("axes of the file")));
 }
 
-// A label map of 3D Slicer says by names which label is which bone.
-TEST(BoneImport, SegmentsAreFoundByTheirNames) {
-  const TemporaryFolder folder;
+// Label 9 above label 2, of no bone's shape.
+images::Volume two_blocks() {
   images::Volume volume;
   volume.size = {40, 40, 40};
   volume.lps_from_index.linear() = Eigen::Vector3d(1, 1, 1).asDiagonal();
@@ -108,6 +108,13 @@ TEST(BoneImport, SegmentsAreFoundByTheirNames) {
         volume.values[volume.index(i, j, k)] = k < 15 ? 2.0F : k > 20 ? 9.0F : 0.0F;
     }
   }
+  return volume;
+}
+
+// A label map of 3D Slicer says by names which label is which bone.
+TEST(BoneImport, SegmentsAreFoundByTheirNames) {
+  const TemporaryFolder folder;
+  images::Volume volume = two_blocks();
   volume.segments = {{"Femoral cartilage femur", 1}, {"Right Femur", 9}, {"tibia", 2}};
   images::write_volume(folder / "knee.seg.nrrd", volume);
   const BoneImport import = import_bones(folder / "knee.seg.nrrd");
@@ -117,6 +124,48 @@ TEST(BoneImport, SegmentsAreFoundByTheirNames) {
   EXPECT_EQ(import.bones[1].bone.source, "label 2 of NRRD");
   ASSERT_TRUE(import.image.has_value());
   EXPECT_TRUE(import.image->image.is_label_map);
+}
+
+// The side that a segment's name tells is one by a name: it is said, a person's word goes before it, and two
+// names that contradict each other tell none.
+TEST(BoneImport, ASegmentsNameTellsTheSide) {
+  const TemporaryFolder folder;
+  images::Volume volume = two_blocks();
+  const auto import_as = [&](const char* file, const char* femur, const char* tibia,
+                             const BoneImportOptions& options = {}) {
+    volume.segments = {{femur, 9}, {tibia, 2}};
+    images::write_volume(folder / file, volume);
+    return import_bones(folder / file, options);
+  };
+  const BoneImport right = import_as("knee.seg.nrrd", "Right femur", "tibia");
+  EXPECT_EQ(right.side, Side::Right);
+  EXPECT_TRUE(right.side_was_guessed);
+  EXPECT_THAT(right.lines, Contains("segment \"Right femur\" says that it is a right knee"));
+
+  const BoneImport both = import_as("knee.seg.nrrd", "Right femur", "Left tibia");
+  EXPECT_EQ(both.side, std::nullopt);
+  EXPECT_FALSE(both.side_was_guessed);
+  EXPECT_THAT(both.lines, Contains(HasSubstr("do not say the same side")));
+  const BoneImport by_file = import_as("left.seg.nrrd", "Right femur", "tibia");
+  EXPECT_EQ(by_file.side, std::nullopt);
+
+  BoneImportOptions said;
+  said.side = Side::Left;
+  EXPECT_EQ(import_as("knee.seg.nrrd", "Right femur", "Right tibia", said).side, Side::Left);
+  BoneImportOptions femur_alone;
+  femur_alone.kind = BoneKind::Femur;
+  EXPECT_EQ(import_as("knee.seg.nrrd", "Right femur", "Left tibia", femur_alone).side, Side::Right);
+}
+
+TEST(BoneImport, TheShapeOfAKneeIsHeldAgainstTheSideThatASegmentsNameTells) {
+  const TemporaryFolder folder;
+  images::Volume right_knee = test::known_labels();
+  right_knee.segments = {{"femur", 5}, {"tibia_L", 6}};
+  images::write_volume(folder / "knee.seg.nrrd", right_knee);
+  const BoneImport import = import_bones(folder / "knee.seg.nrrd");
+  EXPECT_EQ(import.side, Side::Left);
+  EXPECT_TRUE(import.side_was_guessed);
+  EXPECT_TRUE(import.side_is_contradicted);
 }
 
 // A knee that fills the images up to their front edge: the bone ends there, flat, and what was in front of it
