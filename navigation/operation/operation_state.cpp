@@ -185,10 +185,10 @@ NextAction next_action_of(const OperationState& state) {
   if (!state.has_source) {
     const bool may_register = in_force.standing != Standing::Stands && may_be_enough(registration);
     if (registration.is_fitting) return NextAction::WaitForRegistration;
-    // A recording shows once what was drilled in it; of a live source that ended nobody knows what comes.
-    const bool was_recording =
-        state.source != nullptr && state.source->kind == sources::SourceKind::Recording;
-    if (was_recording && in_force.standing == Standing::Stands && state.drilled.has_evidence)
+    // A recording shows once what was drilled in it, and so does the simulator's script: what follows it
+    // drills the same tunnel again. Of a live source that ended nobody knows what comes.
+    const bool was_live = state.source == nullptr || state.source->kind == sources::SourceKind::Live;
+    if (!was_live && in_force.standing == Standing::Stands && state.drilled.has_evidence)
       return NextAction::RecordDrilled;
     return may_register ? NextAction::RegisterStrokes : NextAction::StartSource;
   }

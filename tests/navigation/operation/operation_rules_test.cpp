@@ -199,10 +199,11 @@ TEST_F(OperationRules, DrilledThatWasSaidTooEarlyIsTakenBack) {
   EXPECT_EQ(run_.count(JournalKind::Drilled), 2);
 }
 
-// A recording shows once what was drilled in it: when its pictures have ended, that is what is left to say.
-// After a live source the next thing is the source.
-TEST_F(OperationRules, DrilledIsAskedForWhenARecordingHasEnded) {
-  for (const sources::SourceKind kind : {sources::SourceKind::Recording, sources::SourceKind::Live}) {
+// A recording, and the simulator's script, show once what is drilled in them: when their pictures have ended,
+// that is what is left to say. After a live source the next thing is the source.
+TEST_F(OperationRules, DrilledIsAskedForWhenARecordingOrASimulationHasEnded) {
+  using sources::SourceKind;
+  for (const SourceKind kind : {SourceKind::Recording, SourceKind::Simulation, SourceKind::Live}) {
     PhantomOperation run;
     run.start(test::scripted_source(kind));
     run.show(run.frame());
@@ -210,7 +211,7 @@ TEST_F(OperationRules, DrilledIsAskedForWhenARecordingHasEnded) {
     for (int i = 0; i < 60; ++i) run.show_guide(0.2);
     run.operation().end_source();
     EXPECT_EQ(run.state()->next_action,
-              kind == sources::SourceKind::Recording ? NextAction::RecordDrilled : NextAction::StartSource);
+              kind == SourceKind::Live ? NextAction::StartSource : NextAction::RecordDrilled);
     run.apply(TunnelDrilled{});
     EXPECT_EQ(run.state()->drilled.outcome, DrilledState::Outcome::Recorded);
     EXPECT_EQ(run.state()->next_action, NextAction::Finish);
