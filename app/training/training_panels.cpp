@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/training/training_view.h"
+#include "navigation/training/exercise_step.h"
 #include "planning/files/format.h"
 #include "planning/files/local_time.h"
 
@@ -178,8 +179,15 @@ void TrainingView::draw_strip(const widgets::Ui& ui, const widgets::Rect& area) 
   if (!truth)
     words += "finding a place for the scope ...";
   else {
-    words += format("%.0f s   in hand: %s   ", truth->time_s,
+    words += format("%.0f s   in hand: %s", truth->time_s,
                     truth->hand.held == simulator::Held::Probe ? "probe" : "guide");
+    const camera::Calibration& scope = run_->source.pipeline.calibration;
+    const camera::CameraModel lens(scope, scope.lens_angle_rad(truth->hand.mark_angle_deg),
+                                   run_->source.pipeline.refractive_index);
+    const auto bone = opened_->model->shared_surface(run_->setup.exercise.bone);
+    const std::string lost = bone != nullptr ? training::way_back_into_view(truth->hand, lens, *bone) : "";
+    ui.log.note_state("train_lost", lost);
+    words += (lost.empty() ? "" : ", " + lost) + "   ";
     if (truth->hand.held == simulator::Held::Guide && run_->setup.exercise.goal == training::Goal::Drill)
       words += format("depth stop %.0f mm, planned %.0f mm   ", truth->hand.drilled_depth_mm,
                       run_->setup.plan_length_mm);

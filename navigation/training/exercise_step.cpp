@@ -1,6 +1,23 @@
 #include "navigation/training/exercise_step.h"
 
+#include <cmath>
+
 namespace arthronaut::training {
+
+namespace {
+
+// Bone between the lens and the tip, and not only what the tip lies on.
+bool is_behind_bone(const Eigen::Vector3d& tip_mm, const Eigen::Vector3d& lens_mm,
+                    const geometry::Surface& bone) {
+  constexpr double kLiesOn_mm = 2;
+  const Eigen::Vector3d way_mm = tip_mm - lens_mm;
+  const double length_mm = way_mm.norm();
+  if (length_mm < kLiesOn_mm) return false;
+  const auto hit = bone.first_hit(lens_mm, way_mm / length_mm);
+  return hit && hit->distance_mm < length_mm - kLiesOn_mm;
+}
+
+}  // namespace
 
 std::string exercise_step(Goal goal, const operation::OperationState& state,
                           const simulator::HandState& hand) {
@@ -25,6 +42,26 @@ std::string exercise_step(Goal goal, const operation::OperationState& state,
                                                                                  : "";
   }
   return "";
+}
+
+std::string way_back_into_view(const simulator::HandState& hand, const camera::CameraModel& lens,
+                               const geometry::Surface& bone) {
+  constexpr double kNearest_mm = 1;
+  const Eigen::Vector3d tip_mm =
+      hand.held == simulator::Held::Probe ? hand.probe_tip_mm : hand.guide_point_mm;
+  const Eigen::Vector3d in_camera_mm = hand.bone_from_camera.inverse() * tip_mm;
+  if (in_camera_mm.z() < kNearest_mm) return "beside the lens, E brings it back";
+  const auto pixel = lens.project(in_camera_mm);
+  if (pixel && lens.is_inside_view(*pixel))
+    return is_behind_bone(tip_mm, hand.bone_from_camera.translation_mm, bone)
+               ? "behind the bone, Q brings it back"
+               : "";
+  // Beyond what any ray reaches its direction is left.
+  const Eigen::Vector2d aside =
+      pixel ? Eigen::Vector2d(*pixel - lens.boundary().center_px) : Eigen::Vector2d(in_camera_mm.head<2>());
+  if (std::abs(aside.x()) > std::abs(aside.y()))
+    return aside.x() > 0 ? "right of the picture, A brings it back" : "left of the picture, D brings it back";
+  return aside.y() > 0 ? "below the picture, W brings it back" : "above the picture, S brings it back";
 }
 
 }  // namespace arthronaut::training

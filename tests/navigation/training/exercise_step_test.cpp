@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "navigation/simulator/simulated_operation.h"
+
 namespace arthronaut::training {
 namespace {
 
@@ -48,6 +50,35 @@ TEST(ExerciseStep, OfAnOperationIsTheOperationsUntilItIsReached) {
       step(Goal::Drill, Held::Guide,
            [](auto& state, auto&) { state.drilled.outcome = operation::DrilledState::Outcome::Recorded; }),
       "drilled: Enter, done");
+}
+
+// The lens at the origin, a plate of 6 x 6 mm before it at 10 mm.
+std::string way_back(const Eigen::Vector3d& tip_mm, Held held = Held::Probe) {
+  geometry::TriangleMesh plate;
+  plate.vertices_mm = {{-3, -3, 10}, {3, -3, 10}, {3, 3, 10}, {-3, 3, 10}};
+  plate.triangles = {{0, 2, 1}, {0, 3, 2}};
+  simulator::HandState hand;
+  hand.held = held;
+  hand.probe_tip_mm = held == Held::Probe ? tip_mm : Eigen::Vector3d(0, 0, 20);
+  hand.guide_point_mm = held == Held::Guide ? tip_mm : Eigen::Vector3d(0, 0, 20);
+  const camera::Calibration scope = simulator::standard_camera();
+  return way_back_into_view(hand, camera::CameraModel(scope, 0, scope.refractive_index),
+                            geometry::Surface(plate));
+}
+
+// A trainee at the keys does not feel where a tool is that the picture does not show.
+TEST(ExerciseStep, SaysWhichWayAToolWentThatIsNotSeen) {
+  for (const Held held : {Held::Probe, Held::Guide}) {
+    EXPECT_EQ(way_back({0, 0, 9}, held), "");
+    EXPECT_EQ(way_back({8, -1, 20}, held), "") << "beside the plate";
+    EXPECT_EQ(way_back({1, 1, 11.5}, held), "") << "on the plate, as well as that is known";
+    EXPECT_EQ(way_back({1, 1, 20}, held), "behind the bone, Q brings it back");
+    EXPECT_EQ(way_back({40, 5, 15}, held), "right of the picture, A brings it back");
+    EXPECT_EQ(way_back({-40, 5, 15}, held), "left of the picture, D brings it back");
+    EXPECT_EQ(way_back({5, 40, 15}, held), "below the picture, W brings it back");
+    EXPECT_EQ(way_back({5, -400, 15}, held), "above the picture, S brings it back");
+    EXPECT_EQ(way_back({3, 3, -4}, held), "beside the lens, E brings it back");
+  }
 }
 
 }  // namespace
