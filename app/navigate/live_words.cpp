@@ -223,6 +223,9 @@ Trouble trouble_of(const operation::GuideCheckState& guide, const std::string& n
 Trouble trouble_of_end(const operation::OperationState& state) {
   const bool may_be_drilled = state.registration->in_force.standing == Standing::Stands && state.plan &&
                               state.drilled.outcome == operation::DrilledState::Outcome::NotSaid;
+  // What the pedal asks for is not asked for a second time by another key.
+  if (may_be_drilled && state.next_action == NextAction::RecordDrilled)
+    return {"The pictures have ended", "Nothing guides. Not drilled yet: go on with other pictures"};
   return {"The pictures have ended",
           may_be_drilled ? "Nothing guides. Go on with others; is the tunnel drilled already, say so (hold J)"
                          : "This is the last one: nothing guides"};

@@ -82,6 +82,18 @@ TEST(NavigateDisplay, PicturesThatEndBeforeTheTunnelIsSaidLeaveTheWord) {
   }
 }
 
+// One word, one key: what the pedal asks for then is offered by no other.
+TEST(NavigateDisplay, WhatThePedalAsksForAtTheEndIsOfferedByNoOtherKey) {
+  const NavigateDisplay display = display_after([](Shown& shown) {
+    shown.live.phase = Phase::Ended;
+    shown.operation.has_source = false;
+    shown.operation.plan = operation::PlannedTunnel{{}, 30};
+    shown.operation.next_action = operation::NextAction::RecordDrilled;
+    shown.stand(Standing::Stands, {});
+  });
+  EXPECT_EQ(display.detail, "Nothing guides. Not drilled yet: go on with other pictures");
+}
+
 // Numbers that another registration has just taken back were no old poses, and both markers are in view: what
 // is said is true of either.
 TEST(NavigateDisplay, NumbersThatWereTakenBackAreNotCalledOldPoses) {
