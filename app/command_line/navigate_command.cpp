@@ -337,8 +337,9 @@ void add_navigate_command(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"single", "am", "pl"}));
   command->add_option(
       "--registration", arguments->registration,
-      "registration.json to guide by. Default: the newest reliable one of the case for this world "
-      "marker; strokes of the probe give a new one");
+      "registration.json to guide by, as that of an older session. Default: the newest session's of this "
+      "bone, "
+      "if it is reliable and of this world marker, camera and medium; strokes of the probe give a new one");
   add_cartilage_option(*command, arguments->cartilage.mesh, "; copied into the case. Default: the case's");
   add_mesh_options(*command, arguments->cartilage.space, arguments->cartilage.unit, "the cartilage's mesh");
   arguments->probe_option =
@@ -366,8 +367,10 @@ void add_navigate_command(CLI::App& app, Context& context) {
                     "Serve other machines too, and not this one alone: there is no password");
   add_tracker_option(*command, arguments->tracker);
   command
-      ->add_option("--duration-s", arguments->duration_s,
-                   "Stop after so many seconds of pictures; default: at the source's end, or at Ctrl+C")
+      ->add_option(
+          "--duration-s", arguments->duration_s,
+          "Stop after so many seconds of pictures; default: at the source's end, of a live one also at "
+          "Ctrl+C. Of a recording Ctrl+C leaves no session: it can be run again")
       ->check(above_zero());
   command->callback([&context, arguments] {
     std::optional<Interruption> interruption;

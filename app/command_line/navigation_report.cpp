@@ -46,8 +46,8 @@ void say_guidance(const Context& context, const theatre::NavigationSummary& summ
                      std::abs(g.depth_mm), g.depth_mm < 0 ? "short of" : "beyond", g.sigma_offset_mm,
                      g.sigma_angle_deg));
   if (g.drill && g.drill->is_beside_plan())
-    context.say(
-        format("  drill %.1f mm beside the plan: nothing is said of what remains", g.drill->lateral_mm));
+    context.say(format("  drill %.1f mm beside the plan: nothing is said of what remains",
+                       std::max(g.drill->lateral_mm, g.drill->exit_lateral_mm)));
   else if (g.drill)
     context.say(format("  drill %.1f mm deep, %.1f mm remaining, %.1f mm to the exit (+- %.1f mm)",
                        g.drill->depth_mm, g.drill->remaining_mm, g.drill->to_exit_mm, g.drill->sigma_mm));
@@ -81,6 +81,9 @@ void say_source(const Context& context, const theatre::NavigationSummary& summar
 void say_navigation(const Context& context, const theatre::NavigationSummary& summary) {
   if (!summary.ending.empty()) context.say("the source ended: " + summary.ending);
   say_source(context, summary);
+  if (summary.frames_in_other_medium > 0)
+    context.say(format("medium: in %ld of %ld frames %s", summary.frames_in_other_medium,
+                       summary.statistics.frame_count, summary.other_medium.c_str()));
   say_statistics(context, summary.statistics);
   context.say(format("strokes: %.0f mm in %zu points", summary.drawn_length_mm, summary.curves.size()));
   say_registration(context, summary);

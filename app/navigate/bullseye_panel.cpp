@@ -218,10 +218,11 @@ void draw_unverified(const widgets::Ui& ui, widgets::Rect& rest, const NavigateS
   const bool is_skipped = screen.display.is_unverified;
   const float height = widgets::afar_height(ui, rest.width, kWords);
   const float line = ui.theme.afar->FontSize, number = line + ui.theme.number->FontSize;
-  const float depth = screen.display.drill                    ? 2 * number
-                      : screen.live->operation->depth_stop_mm ? number
-                      : has_drill(screen)                     ? line
-                                                              : 0;
+  const auto& drill = screen.display.drill;
+  const bool is_deep = drill && drill->is_at_plan(),
+             has_stop = screen.live->operation->depth_stop_mm.has_value();
+  const float depth =
+      is_deep ? 2 * number : (drill || has_drill(screen) ? line : 0) + (has_stop ? number : 0);
   const bool is_said = is_skipped && rest.height >= height + depth;
   ui.log.note_state("unverified", is_said ? "said" : is_skipped ? "no room" : "no");
   if (is_said) widgets::draw_afar(ui, rest.cut_bottom(height), widgets::kCaution, kWords);
@@ -263,15 +264,16 @@ void draw_depth(const widgets::Ui& ui, widgets::Rect& rest, const NavigateScreen
     draw_number(ui, rest, text.name, text.mm, "mm", guidance_severity::severity_of_drill(*drill));
     draw_number(ui, rest, "Depth", widgets::fixed(drill->depth_mm, 1),
                 "mm " + widgets::plus_minus(drill->sigma_mm), widgets::Severity::Quiet);
-  } else if (const auto& stop_mm = screen.live->operation->depth_stop_mm) {
-    // The surgeon's reading, not a measurement: nothing is reckoned from it, least of all what remains.
-    draw_number(ui, rest, "Depth stop", widgets::fixed(*stop_mm, 1), "mm, read", widgets::Severity::Quiet);
-  } else if (drill) {
-    widgets::draw_afar(ui, rest, widgets::kCaution, "Drill beside the plan");
-  } else if (has_drill(screen)) {
-    // A number that is gone asks for a reason.
-    widgets::draw_afar(ui, rest, widgets::kQuietText, "Drill not seen");
+    return;
   }
+  // A number that is gone asks for a reason, also where the depth stop is known.
+  if (drill)
+    (void)rest.cut_top(widgets::draw_afar(ui, rest, widgets::kCaution, "Drill beside the plan"));
+  else if (has_drill(screen))
+    (void)rest.cut_top(widgets::draw_afar(ui, rest, widgets::kQuietText, "Drill not seen"));
+  // The surgeon's reading, not a measurement: nothing is reckoned from it, least of all what remains.
+  if (const auto& stop_mm = screen.live->operation->depth_stop_mm)
+    draw_number(ui, rest, "Depth stop", widgets::fixed(*stop_mm, 1), "mm, read", widgets::Severity::Quiet);
 }
 
 }  // namespace arthronaut::navigate

@@ -1,5 +1,7 @@
 #include "navigation/guidance/drill_depth.h"
 
+#include <algorithm>
+
 namespace arthronaut::guidance {
 
 std::string_view to_text(Breakout breakout) {
@@ -32,7 +34,14 @@ DrillDepth drill_depth(const tunnels::Tunnel& plan, double planned_length_mm, co
   drill.direction = direction;
   drill.depth_mm = from_entry.dot(along);
   drill.remaining_mm = drill.to_exit_mm = planned_length_mm - drill.depth_mm;
-  drill.lateral_mm = (from_entry - drill.depth_mm * along).norm();
+  const Eigen::Vector3d beside = from_entry - drill.depth_mm * along;
+  drill.lateral_mm = drill.exit_lateral_mm = beside.norm();
+  if (drill.to_exit_mm > 0) {
+    constexpr double kLeastCosine = 0.1;  // what points across the plan misses its exit by far, but finitely
+    const double cosine = std::max(direction.normalized().dot(along), kLeastCosine);
+    const Eigen::Vector3d across = direction.normalized() - direction.normalized().dot(along) * along;
+    drill.exit_lateral_mm = (beside + drill.to_exit_mm / cosine * across).norm();
+  }
   drill.sigma_mm = sigma_mm;
   drill.breakout = breakout_of(drill.to_exit_mm, sigma_mm);
   return drill;

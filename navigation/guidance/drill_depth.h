@@ -28,17 +28,22 @@ struct DrillDepth {
   double remaining_mm = 0;                               // planned length - depth; negative: too deep
   double to_exit_mm = 0;  // the same: a plan's length ends where its axis leaves the bone
   double lateral_mm = 0;  // of the tip from the plan's axis; not a number: not known
+  // Of the drill's axis from the plan's where that leaves the bone, as the drill points now; of a tip that is
+  // there or beyond as lateral_mm. Not a number: not known, in records of before 2026-11-28.
+  double exit_lateral_mm = 0;
   // Predicted, one sigma: of the depth; of where the drill's axis crosses the plane through the entry across
   // the plan, and of its direction, as GuidanceNumbers says them of the guide. Not a number: not known. What
   // was recorded before 2026-11-27 holds the depth's alone, and nothing of where the drill was.
   double sigma_mm = 0;
   double sigma_offset_mm = geometry::kNotKnown, sigma_angle_deg = geometry::kNotKnown;
   Breakout breakout = Breakout::Far;
-  // Farther from the plan's axis than that, the plan's length and exit are not those of what is drilled.
-  // Where it is not known, neither holds.
+  // Farther from the plan's axis than that, or on the way there, the plan's length and exit are not those of
+  // what is drilled. Where the tip's is not known, neither holds.
   static constexpr double kMostLateral_mm = 5;
-  [[nodiscard]] bool is_at_plan() const { return lateral_mm <= kMostLateral_mm; }
-  [[nodiscard]] bool is_beside_plan() const { return lateral_mm > kMostLateral_mm; }
+  [[nodiscard]] bool is_at_plan() const { return lateral_mm <= kMostLateral_mm && !is_beside_plan(); }
+  [[nodiscard]] bool is_beside_plan() const {
+    return lateral_mm > kMostLateral_mm || exit_lateral_mm > kMostLateral_mm;
+  }
 };
 
 // tip_mm, direction: of the drill, in the bone's frame. sigma_mm: of the depth.

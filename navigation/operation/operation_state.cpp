@@ -53,8 +53,9 @@ void add_drill(Digest& digest, const std::optional<guidance::DrillDepth>& drill)
   if (!drill) return;
   digest.add_matrix(drill->tip_mm);
   digest.add_matrix(drill->direction);
-  for (const double number : {drill->depth_mm, drill->remaining_mm, drill->to_exit_mm, drill->lateral_mm,
-                              drill->sigma_mm, drill->sigma_offset_mm, drill->sigma_angle_deg})
+  for (const double number :
+       {drill->depth_mm, drill->remaining_mm, drill->to_exit_mm, drill->lateral_mm, drill->exit_lateral_mm,
+        drill->sigma_mm, drill->sigma_offset_mm, drill->sigma_angle_deg})
     digest.add(number);
 }
 

@@ -52,7 +52,7 @@ strokes::PoseRow pose_at(const Statement& row, const RecordedFrame& frame) {
 // remaining_mm stands in column 14, all else from 18 on.
 std::optional<guidance::DrillDepth> drill_at(const Statement& row) {
   // Of before 2026-11-22 none: what they call remaining was the guide's, nobody saw the drill.
-  constexpr int kColumns = 21, kColumnsWithPlace = 30;
+  constexpr int kColumns = 21, kColumnsWithPlace = 30, kColumnsWithExit = 31;
   if (row.column_count() < kColumns || row.is_null(18)) return std::nullopt;
   guidance::DrillDepth drill;
   drill.depth_mm = row.number(18);
@@ -61,13 +61,14 @@ std::optional<guidance::DrillDepth> drill_at(const Statement& row) {
   drill.sigma_mm = row.number(20);
   drill.breakout = guidance::breakout_of(drill.to_exit_mm, drill.sigma_mm);
   // Of before 2026-11-27 nobody knows where the drill was, so that nothing can rest on it.
-  drill.lateral_mm = geometry::kNotKnown;
+  drill.lateral_mm = drill.exit_lateral_mm = geometry::kNotKnown;
   if (row.column_count() < kColumnsWithPlace) return drill;
   drill.lateral_mm = row.number(21);
   if (!row.is_null(22)) drill.sigma_offset_mm = row.number(22);
   if (!row.is_null(23)) drill.sigma_angle_deg = row.number(23);
   drill.tip_mm = vector_at(row, 24);
   drill.direction = vector_at(row, 27);
+  if (row.column_count() >= kColumnsWithExit) drill.exit_lateral_mm = row.number(30);
   return drill;
 }
 
@@ -123,7 +124,7 @@ FrameInserter::FrameInserter(SessionDatabase& database, const tools::ToolSet& to
       body_(database.prepare("INSERT INTO bodies VALUES(?,?,?,?,?,?,?,?,?)")),
       outside_(database.prepare("INSERT INTO outside VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),
       guidance_(database.prepare("INSERT INTO guidance "
-                                 "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {
+                                 "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {
   const auto add = [&](const auto& body) {
     if (!body.markers.empty()) bodies_of_several_.push_back(body.marker_id);
   };
@@ -172,7 +173,7 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
 
   const guidance::GuidanceNumbers& g = result.guidance;
   guidance_.bind(1, result.frame_index).bind(2, static_cast<int>(g.state));
-  for (int position = 3; position <= 30; ++position) guidance_.bind_null(position);
+  for (int position = 3; position <= 31; ++position) guidance_.bind_null(position);
   if (g.is_valid()) {
     bind_vector(guidance_, 3, g.guide_point_mm);
     bind_vector(guidance_, 6, g.guide_direction);
@@ -188,6 +189,7 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
     guidance_.bind(23, drill.sigma_offset_mm).bind(24, drill.sigma_angle_deg);  // not a number: NULL
     bind_vector(guidance_, 25, drill.tip_mm);
     bind_vector(guidance_, 28, drill.direction);
+    guidance_.bind(31, drill.exit_lateral_mm);
   }
   guidance_.run();
 }

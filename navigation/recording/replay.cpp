@@ -43,6 +43,8 @@ constexpr std::array kDrillPlaceNumbers = {
     Number{"drill sigma of offset", &guidance::DrillDepth::sigma_offset_mm, "mm"},
     Number{"drill sigma of angle", &guidance::DrillDepth::sigma_angle_deg, "deg"}};
 
+constexpr Number kDrillExit{"drill lateral at the exit", &guidance::DrillDepth::exit_lateral_mm, "mm"};
+
 // Compares what a frame said then with what it says now.
 class FrameComparison {
  public:
@@ -119,6 +121,7 @@ class FrameComparison {
       if (!std::isfinite(then->lateral_mm)) return;
       for (const Number<guidance::DrillDepth>& number : kDrillPlaceNumbers)
         compare_number(number, *then, *now);
+      if (std::isfinite(then->exit_lateral_mm)) compare_number(kDrillExit, *then, *now);
       compare_axis("drill", then->tip_mm, then->direction, now->tip_mm, now->direction);
     }
   }

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
+
+#include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::guidance {
 namespace {
@@ -41,6 +44,23 @@ TEST(DrillDepth, Hazard7ADrillBesideThePlanIsNotAtIt) {
   EXPECT_FALSE(at(7).is_at_plan());
   EXPECT_NEAR(at(7).lateral_mm, 7, kRounding);
   EXPECT_NEAR(at(7).depth_mm, 10, kRounding);
+}
+
+// Aslant the plan's length says nothing either, long before the tip has left it: 15 degrees off through the
+// entry the drill comes out 8 mm beside the exit of a tunnel of 30 mm.
+TEST(DrillDepth, Hazard7ADrillThatHeadsElsewhereIsNotAtThePlan) {
+  const Eigen::Vector3d along = plan().direction, side = along.unitOrthogonal();
+  const auto turned = [&](double angle_deg, double depth_mm) {
+    const double angle = geometry::rad_from_deg(angle_deg);
+    const Eigen::Vector3d direction = std::cos(angle) * along + std::sin(angle) * side;
+    return drill_depth(plan(), 30, plan().entry_mm + depth_mm / std::cos(angle) * direction, direction, 0.5);
+  };
+  EXPECT_NEAR(turned(15, 2).exit_lateral_mm, 30 * std::tan(geometry::rad_from_deg(15)), kRounding);
+  EXPECT_NEAR(turned(15, 12).exit_lateral_mm, 30 * std::tan(geometry::rad_from_deg(15)), kRounding);
+  EXPECT_TRUE(turned(15, 2).is_beside_plan());
+  EXPECT_FALSE(turned(15, 2).is_at_plan());
+  EXPECT_TRUE(turned(5, 2).is_at_plan());
+  EXPECT_TRUE(turned(170, 2).is_beside_plan()) << "the wrong way round";
 }
 
 }  // namespace
