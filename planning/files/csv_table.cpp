@@ -46,6 +46,12 @@ CsvTable CsvTable::parse(std::string_view text, const std::filesystem::path& nam
     if (line.empty() && text.empty()) break;
     auto cells = split(line);
     if (is_header) {
+      // As spreadsheets save it where the comma is the decimal sign.
+      if (cells.size() == 1 && cells[0].find_first_of(";\t") != std::string::npos)
+        throw InvalidInput(name, "line 1",
+                           "its columns are separated by " +
+                               std::string(cells[0].find(';') != std::string::npos ? "semicolons" : "tabs") +
+                               ": commas are expected, and a point in numbers");
       table.columns_ = std::move(cells);
       is_header = false;
       continue;

@@ -45,6 +45,14 @@ TEST(CsvTable, EveryErrorNamesFileLineAndColumn) {
   EXPECT_THROW((void)table.number(0, "c"), InvalidInput);
 }
 
+// A spreadsheet of a country whose decimal sign is the comma saves so.
+TEST(CsvTable, AnotherSeparatorIsNamed) {
+  EXPECT_THAT(message_of<InvalidInput>([] { (void)CsvTable::parse("a;b\n1,5;2\n", "p.csv", {"a"}); }),
+              AllOf(HasSubstr("p.csv: line 1"), HasSubstr("semicolons"), HasSubstr("commas are expected")));
+  EXPECT_THAT(message_of<InvalidInput>([] { (void)CsvTable::parse("a\tb\n1\t2\n", "p.csv", {"a"}); }),
+              HasSubstr("tabs: commas are expected"));
+}
+
 // 2^32 + 4 is not 4.
 TEST(CsvTable, AnIntegerThatAnIntDoesNotHoldIsRefused) {
   const CsvTable table = CsvTable::parse("id\n4294967300\n-2147483648\n", "p.csv", {});
