@@ -29,32 +29,81 @@ std::string line_and_column(std::string_view text, std::size_t byte) {
   return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
 
-// Of a number too large for a double nlohmann's exception does not say where it stands; its parser does.
-class OutOfRangePlace : public nlohmann::json_sax<json> {
- public:
-  explicit OutOfRangePlace(std::string_view text) : text_(text) { json::sax_parse(text, this); }
-  [[nodiscard]] const std::string& words() const { return words_; }
+// Where the nth key of a text stands that is valid up to it.
+std::size_t byte_of_key(std::string_view text, std::size_t nth) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '"') continue;
+    const std::size_t start = i;
+    for (++i; i < text.size() && text[i] != '"'; ++i) i += text[i] == '\\' ? 1 : 0;
+    const auto after = text.find_first_not_of(" \t\r\n", i + 1);
+    if (after != std::string_view::npos && text[after] == ':' && --nth == 0) return start + 1;
+  }
+  return text.size();
+}
 
-  bool parse_error(std::size_t byte, const std::string& number, const json::exception&) override {
-    words_ = line_and_column(text_, byte + 1 - std::min(byte, number.size()));
+// Builds what json::parse would, but for an object that has a key twice: of two values nobody knows which is
+// meant, and nlohmann keeps the last. The parser, not its exception, also says where a number stands that is
+// too large for a double.
+class StrictBuilder final : public nlohmann::json_sax<json> {
+ public:
+  explicit StrictBuilder(std::string_view text) : text_(text) { json::sax_parse(text, this); }
+  [[nodiscard]] json take() { return std::move(root_); }
+  // What is wrong, and where; empty where nothing is.
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+  [[nodiscard]] const std::string& place() const { return place_; }
+
+  bool parse_error(std::size_t byte, const std::string& token, const json::exception& error) override {
+    const bool is_number = dynamic_cast<const json::parse_error*>(&error) == nullptr;
+    place_ = line_and_column(text_, is_number ? byte + 1 - std::min(byte, token.size()) : byte);
+    reason_ = is_number ? "holds a number out of range" : "is not valid JSON";
     return false;
   }
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(json::number_integer_t) override { return true; }
-  bool number_unsigned(json::number_unsigned_t) override { return true; }
-  bool number_float(json::number_float_t, const std::string&) override { return true; }
-  bool string(std::string&) override { return true; }
-  bool binary(json::binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return true; }
-  bool key(std::string&) override { return true; }
-  bool end_object() override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
+  bool null() override { return put(nullptr); }
+  bool boolean(bool value) override { return put(value); }
+  bool number_integer(json::number_integer_t value) override { return put(value); }
+  bool number_unsigned(json::number_unsigned_t value) override { return put(value); }
+  bool number_float(json::number_float_t value, const std::string&) override { return put(value); }
+  bool string(std::string& value) override { return put(std::move(value)); }
+  bool binary(json::binary_t&) override { return false; }  // of no text
+  bool start_object(std::size_t) override { return open(json::object()); }
+  bool key(std::string& name) override {
+    ++key_count_;
+    const auto [entry, is_new] = open_.back()->get_ref<json::object_t&>().try_emplace(name);
+    value_of_key_ = &entry->second;
+    if (is_new) return true;
+    place_ = line_and_column(text_, byte_of_key(text_, key_count_));
+    reason_ = "the key " + json(name).dump() + " stands twice in one object";
+    return false;
+  }
+  bool end_object() override { return close(); }
+  bool start_array(std::size_t) override { return open(json::array()); }
+  bool end_array() override { return close(); }
 
  private:
+  json& placed(json value) {
+    if (open_.empty()) return root_ = std::move(value);
+    if (open_.back()->is_object()) return *value_of_key_ = std::move(value);
+    return open_.back()->get_ref<json::array_t&>().emplace_back(std::move(value));
+  }
+  bool put(json value) {
+    placed(std::move(value));
+    return true;
+  }
+  bool open(json value) {
+    open_.push_back(&placed(std::move(value)));
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
   std::string_view text_;
-  std::string words_;
+  json root_;
+  std::vector<json*> open_;  // objects and arrays around the place, outermost first
+  json* value_of_key_ = nullptr;
+  std::size_t key_count_ = 0;
+  std::string reason_, place_;
 };
 
 // nlohmann writes a number that is not finite as null: refuse instead, the reader would.
@@ -208,13 +257,9 @@ JsonObject parse_json(std::string_view text, const std::filesystem::path& name, 
                       int newest_version) {
   JsonObject root;
   root.file_ = name;
-  try {
-    root.document_ = std::make_shared<json>(json::parse(text));
-  } catch (const json::parse_error& error) {
-    throw InvalidInput(name, line_and_column(text, error.byte), "is not valid JSON");
-  } catch (const json::exception&) {
-    throw InvalidInput(name, OutOfRangePlace(text).words(), "holds a number out of range");
-  }
+  StrictBuilder builder(text);
+  if (!builder.reason().empty()) throw InvalidInput(name, builder.place(), builder.reason());
+  root.document_ = std::make_shared<json>(builder.take());
   root.node_ = root.document_.get();
   if (!root.node_->is_object()) throw InvalidInput(name, "", "must hold a JSON object");
   const std::string found = root.text("format");

@@ -67,6 +67,20 @@ TEST(JsonDocument, RefusesAnotherFormatOrANewerVersion) {
   EXPECT_THROW((void)parse(""), InvalidInput);
 }
 
+// Of two values nobody knows which is meant. The same key in two objects is none of that.
+TEST(JsonDocument, AKeyThatStandsTwiceIsRefused) {
+  const std::string start = "{\"format\": \"arthronaut.test\", \"version\": 1,\n";
+  EXPECT_THAT(message_of<InvalidInput>([&] {
+                (void)parse(start +
+                            "\"s\": \"a \\\" \\\\\", \"o\": [{\"size_mm\" : 4},\n {\"size_mm\": 4,\n"
+                            "  \"size_mm\": 40}]}");
+              }),
+              HasSubstr("a.json: line 4, column 3: the key \"size_mm\" stands twice"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)parse(start + "\"version\": 1}"); }),
+              HasSubstr("line 2, column 1"));
+  EXPECT_NO_THROW((void)parse(start + "\"o\": {\"k\": {\"k\": [{\"k\": 1}, {\"k\": 2}]}}, \"k\": null}"));
+}
+
 // An integer beyond 64 bits, signed, would wrap into another number.
 TEST(JsonDocument, IntegersThatDoNotFitAreRefused) {
   const JsonObject root = parse(
