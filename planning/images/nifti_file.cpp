@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/images/volume_bytes.h"
 
@@ -120,6 +121,46 @@ Eigen::Affine3d from_sform(const Header& header) {
   return ras_from_index;
 }
 
+// The codes that say what a form's axes are (NIFTI_XFORM_*): those of the scanner and of another picture of
+// the same patient lie in the patient, those of an atlas (Talairach, MNI, another template) do not: what was
+// brought into one of them was stretched to fit.
+constexpr double kScanner = 1, kAligned = 2;
+bool is_of_patient(double code) { return code == kScanner || code == kAligned; }
+
+// A form that scales otherwise than the voxels' own size has stretched the patient, or one of the two is
+// wrong. A size of 0 says nothing.
+void refuse_other_scale(const std::filesystem::path& file, const Header& header,
+                        const Eigen::Affine3d& ras_from_index) {
+  constexpr double kRounding = 0.01;
+  for (int i = 0; i < 3; ++i) {
+    const double said = std::abs(header.real(header.layout().pixdim, static_cast<std::size_t>(i) + 1)),
+                 formed = ras_from_index.linear().col(i).norm();
+    if (!(said > 0) || std::abs(formed - said) <= kRounding * said) continue;
+    throw InvalidInput(file, "sform",
+                       files::format("makes voxels of %.4g along axis %d, pixdim of %.4g: one of them would "
+                                     "give a bone of the wrong size",
+                                     formed, i + 1, said));
+  }
+}
+
+// The sform before the qform, as the format has it, but for one that is not the patient's.
+Eigen::Affine3d ras_from_index_of(const std::filesystem::path& file, const Header& header) {
+  const double sform = header.code(header.layout().sform), qform = header.code(header.layout().qform);
+  if (is_of_patient(sform)) {
+    const Eigen::Affine3d ras_from_index = from_sform(header);
+    refuse_other_scale(file, header, ras_from_index);
+    return ras_from_index;
+  }
+  if (is_of_patient(qform)) return from_qform(header);
+  if (sform > 0 || qform > 0)
+    throw InvalidInput(
+        file, sform > 0 ? "sform_code" : "qform_code",
+        files::format("is %g: its axes are those of an atlas or template, not of the patient, whose "
+                      "bones they stretch; export the volume in the scanner's own space",
+                      sform > 0 ? sform : qform));
+  throw InvalidInput(file, "", "does not say how it lies in the patient (no sform, no qform)");
+}
+
 double mm_per_unit(const std::filesystem::path& file, const Header& header) {
   switch (header.units() & 7) {
     case 0:  // not said: mm in practice
@@ -153,11 +194,7 @@ Volume parse_nifti(const std::filesystem::path& file, std::string_view text, std
     if (i > 3 && n != 1) throw InvalidInput(file, "", "holds several volumes: export the one that is meant");
     if (i <= 3) volume.size[i - 1] = static_cast<int>(n);
   }
-  const bool has_sform = header.code(header.layout().sform) > 0,
-             has_qform = header.code(header.layout().qform) > 0;
-  if (!has_sform && !has_qform)
-    throw InvalidInput(file, "", "does not say how it lies in the patient (no sform, no qform)");
-  Eigen::Affine3d ras_from_index = has_sform ? from_sform(header) : from_qform(header);
+  Eigen::Affine3d ras_from_index = ras_from_index_of(file, header);
   ras_from_index = Eigen::Scaling(mm_per_unit(file, header)) * ras_from_index;
   volume.lps_from_index = Eigen::Scaling(-1.0, -1.0, 1.0) * ras_from_index;
 
