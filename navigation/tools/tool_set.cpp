@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "planning/files/format.h"
 #include "planning/files/json_covariance.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
@@ -33,6 +34,18 @@ int read_marker_id(const files::JsonObject& entry, const std::string& owner, Own
   return static_cast<int>(id);
 }
 
+// An arthroscope's markers have some millimetres, an outside tracker's body some centimetres. Beyond is a
+// slip of the unit, and puts every pose as far off as the size.
+constexpr double kSmallestMarker_mm = 0.5;
+constexpr double kLargestMarker_mm = 100;
+double read_size_mm(const files::JsonObject& entry) {
+  const double size_mm = entry.positive_number("size_mm");
+  if (size_mm < kSmallestMarker_mm || size_mm > kLargestMarker_mm)
+    entry.fail("size_mm", files::format("is %g mm: the side of a marker must be %g to %g mm", size_mm,
+                                        kSmallestMarker_mm, kLargestMarker_mm));
+  return size_mm;
+}
+
 // One sigma that must not be negative.
 std::optional<double> read_sigma(const files::JsonObject& entry, std::string_view key) {
   if (!entry.has(key)) return std::nullopt;
@@ -44,7 +57,7 @@ std::optional<double> read_sigma(const files::JsonObject& entry, std::string_vie
 BodyMarker read_body_marker(const files::JsonObject& entry, const std::string& owner, Owners& owners) {
   BodyMarker marker;
   marker.marker_id = read_marker_id(entry, owner, owners);
-  marker.size_mm = entry.positive_number("size_mm");
+  marker.size_mm = read_size_mm(entry);
   marker.body_from_marker = entry.rigid_transform("tool_from_marker");
   marker.sigma_mm = read_sigma(entry, "sigma_mm");
   marker.sigma_deg = read_sigma(entry, "sigma_deg");
@@ -56,7 +69,7 @@ template <typename Body>
 void read_markers(const files::JsonObject& entry, const std::string& owner, Owners& owners, Body& body) {
   if (!entry.has("markers")) {
     body.marker_id = read_marker_id(entry, owner, owners);
-    body.size_mm = entry.positive_number("size_mm");
+    body.size_mm = read_size_mm(entry);
     return;
   }
   for (const char* key : {"marker_id", "size_mm"})

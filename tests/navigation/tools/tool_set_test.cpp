@@ -127,6 +127,10 @@ TEST_F(ToolsFile, NamesThePlaceOfWhatItRefuses) {
   EXPECT_NE(refusal().find("marker_id: must be 0 to 49"), std::string::npos) << refusal();
   write("", R"({"name": "probe", "marker_id": 2, "size_mm": 0})");
   EXPECT_NE(refusal().find("tools[0].size_mm"), std::string::npos) << refusal();
+  write("", R"({"name": "probe", "marker_id": 2, "size_mm": 4000})");
+  EXPECT_NE(refusal().find("tools[0].size_mm: is 4000 mm"), std::string::npos) << refusal();
+  write(R"({"bone": "femur", "marker_id": 0, "size_mm": 0.004})", "");
+  EXPECT_NE(refusal().find("world_markers[0].size_mm: is 0.004 mm"), std::string::npos) << refusal();
   write(
       "",
       R"({"name": "guide", "marker_id": 3, "size_mm": 4, "axis_point_mm": [0,0,0], "axis_direction": [0,0,0]})");
