@@ -29,6 +29,16 @@ bool is_simulated_scope(const std::string& name) {
                     [&](char a, char b) { return lower(a) == lower(b); });
 }
 
+// A word or a number: a number in quotes was never written here, and no other program need take it for one.
+double read_medium(const files::JsonObject& root) {
+  const double index = refractive_index_from(root, "medium");
+  if (root.is_number("medium")) return index;
+  const std::string text = root.text("medium");
+  if (text != "air" && text != "water" && text != "saline")
+    root.fail("medium", "must be air, water, saline or a number: \"" + text + "\" stands in quotes");
+  return index;
+}
+
 }  // namespace
 
 CalibrationRecord read_camera_file(const std::filesystem::path& file) {
@@ -52,7 +62,7 @@ CalibrationRecord read_camera_file(const std::filesystem::path& file) {
       ((size - Eigen::Vector2d::Ones()) - c.boundary.center_px).minCoeff() < 0)
     boundary.fail("center_px", "must lie in the image");
   c.boundary.radius_px = boundary.positive_number("radius_px");
-  c.refractive_index = refractive_index_from(root, "medium");
+  c.refractive_index = read_medium(root);
   if (root.has("covariance")) c.covariance = files::read_covariance(root, "covariance", 6);
   if (root.has("rms_px")) record.rms_px = root.number("rms_px");
   if (root.has("date_utc")) record.date_utc = root.text("date_utc");

@@ -103,6 +103,7 @@ TEST_F(CameraFile, RefusalsNameThePlace) {
   expect(with(good, "960.5", "9605"), "boundary.center_px: must lie in the image");
   expect(with(good, "540.2", "-0.2"), "boundary.center_px: must lie in the image");
   expect(with(good, "\"air\"", "\"milk\""), "medium");
+  expect(with(good, "\"air\"", "\"1.3\""), "medium: must be air, water, saline or a number");
   expect(with(good, "1920", "1920.5"), "image_size_px");
   expect(with(good, "1920", "1e304"), "image_size_px");  // beyond every whole number
   expect(good.substr(0, good.size() / 2), "line");
