@@ -65,6 +65,21 @@ std::string wrong_size(double size) {
                          : text + "; say its unit with " + fitting;
 }
 
+// The unit that was said makes it larger than any bone, and another would make a bone of it. What is small
+// may be a piece of one.
+void refuse_wrong_unit(const std::filesystem::path& file, double size, LengthUnit said) {
+  const double size_mm = size * mm_per(said);
+  if (size_mm <= kLargestBone_mm) return;
+  std::string others;
+  for (const LengthUnit fits : units_of_bone(size))
+    others += (others.empty() ? "" : " or ") + std::string(to_text(fits));
+  if (others.empty()) return;
+  throw InvalidInput(file, "",
+                     files::format("is %.3g", size_mm) + " mm large if it is in " +
+                         std::string(kUnits[static_cast<std::size_t>(said)].plural) +
+                         ", which no bone of the knee is; its unit would be " + others);
+}
+
 void to_lps_mm(geometry::TriangleMesh& mesh, Space space, double scale) {
   const double flip = space == Space::RAS ? -1 : 1;
   // A half turn about z: it keeps the orientation of the triangles.
@@ -138,10 +153,11 @@ MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions
   result.space_was_declared = raw.declared_space.has_value();
   result.space_in_file = options.space.value_or(raw.declared_space.value_or(Space::LPS));
   result.unit_in_file = options.unit.value_or(LengthUnit::Millimetre);
-  if (!options.unit) {
-    const double size = geometry::bounds_of(result.mesh).size_mm().maxCoeff();
-    if (!is_size_of_bone(size)) throw UnitUnknown(file, size);
-  }
+  const double size = geometry::bounds_of(result.mesh).size_mm().maxCoeff();
+  if (options.unit)
+    refuse_wrong_unit(file, size, *options.unit);
+  else if (!is_size_of_bone(size))
+    throw UnitUnknown(file, size);
   to_lps_mm(result.mesh, result.space_in_file, mm_per(result.unit_in_file));
   return result;
 }

@@ -32,7 +32,7 @@ struct MeshFileOptions {
   // Overrides what the file says. A file that says nothing is in LPS.
   std::optional<Space> space;
   // Without it the file is taken to be in mm, and refused when no knee bone in mm has that size
-  // (kSmallestBone_mm to kLargestBone_mm, largest extent of the box). With it the size is not questioned.
+  // (kSmallestBone_mm to kLargestBone_mm, largest extent of the box). With it, when it is too large.
   std::optional<LengthUnit> unit;
 };
 inline constexpr double kSmallestBone_mm = 30.0;  // half the width of a child's tibial plateau

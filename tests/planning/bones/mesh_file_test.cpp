@@ -97,6 +97,24 @@ TEST(MeshFile, MetresAreRefusedUntilTheUnitIsSaid) {
   EXPECT_NO_THROW((void)read_mesh(folder / "femur.stl", options));
 }
 
+// 80 m of bone would be told as strokes that fit nowhere.
+TEST(MeshFile, AUnitThatMakesABoneFarTooLargeIsRefused) {
+  const TemporaryFolder folder;
+  test::write_bytes(folder / "femur.stl", test::binary_stl(bone_like()));
+  MeshFileOptions options;
+  for (const LengthUnit unit : {LengthUnit::Metre, LengthUnit::Centimetre, LengthUnit::Inch}) {
+    options.unit = unit;
+    EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_mesh(folder / "femur.stl", options); }),
+                AllOf(HasSubstr("femur.stl"), HasSubstr("mm large if it is in"), HasSubstr("would be mm")));
+  }
+  // A whole leg in millimetres is one in no other unit.
+  geometry::TriangleMesh leg = bone_like();
+  for (auto& v : leg.vertices_mm) v *= 15;
+  test::write_bytes(folder / "leg.stl", test::binary_stl(leg));
+  options.unit = LengthUnit::Millimetre;
+  EXPECT_NO_THROW((void)read_mesh(folder / "leg.stl", options));
+}
+
 // Every format cut off at many places: never a shorter bone, always a message with the file's name.
 TEST(MeshFile, TruncatedFilesAreRefused) {
   const TemporaryFolder folder;
