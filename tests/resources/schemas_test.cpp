@@ -127,6 +127,24 @@ TEST_F(Schemas, DescribeTheCaseAndItsPlan) {
                      [&] { (void)cases::load_case(folder_.path()); });
 }
 
+// As every import of a volume leaves it.
+TEST_F(Schemas, DescribeTheCasesImages) {
+  cases::Case knee = phantom::case_of(phantom::make_phantom_knee(), "phantom");
+  cases::CaseImage image;
+  image.file = "images/1.nrrd";
+  image.modality = "CT";
+  image.source = "DICOM";
+  image.size = {512, 512, 200};
+  image.spacing_mm = {0.5, 0.5, 0.625};
+  knee.images = {image};
+  image.file = "images/2.nrrd";
+  image.is_label_map = true;
+  knee.images.push_back(image);
+  cases::save_case(folder_.path(), knee);
+  ASSERT_EQ(read(folder_ / "case.json").at("images").size(), 2U);
+  expect_described(folder_ / "case.json", "case", [&] { (void)cases::load_case(folder_.path()); });
+}
+
 // Two bundles in one bone, and a single tunnel in the other.
 TEST_F(Schemas, DescribeAPlanOfTwoBundles) {
   cases::Case knee = phantom::case_of(phantom::make_phantom_knee(), "phantom");
