@@ -194,25 +194,35 @@ void ask_commitment(const Peer& peer, const ConnectionOptions& connection, const
   const ActionAnswer answer =
       outcome.good() ? read_until(*association, reports, false, never, stop)
                      : ActionAnswer{.is_broken = true, .status = 0, .note = association->why(outcome)};
-  if (answer.is_broken || answer.status != STATUS_Success) {
+  // What it has said of the files counts, whatever became of its answer to the request.
+  if (!answer.is_broken && answer.status != STATUS_Success && !reports.report()) {
     summary.commitment_note = "the peer refused to commit itself to storage: " + answer.note;
     return;
   }
   const auto until = std::chrono::steady_clock::now() +
                      std::chrono::milliseconds(static_cast<long>(1000 * options.commitment_wait_s));
-  const ActionAnswer end = read_until(*association, reports, true, until, stop);
-  if (end.note.empty()) association->release();
-  // The peer may have ended this connection and be calling on its own.
-  while (listener && !reports.report() && !stop.stop_requested() && std::chrono::steady_clock::now() < until)
+  if (!answer.is_broken) {
+    const ActionAnswer end = read_until(*association, reports, true, until, stop);
+    if (end.note.empty()) association->release();
+  }
+  // The peer may have ended this connection and be calling on its own: about what has reached it.
+  while (outcome.good() && listener && !reports.report() && !stop.stop_requested() &&
+         std::chrono::steady_clock::now() < until)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   if (const auto report = reports.report()) return take_report(*report, summary);
   summary.commitment = Commitment::Awaited;
-  summary.commitment_note = files::format(
-      "the peer will say whether it keeps the files, and has not within %g s", options.commitment_wait_s);
+  summary.commitment_note =
+      answer.is_broken
+          ? "whether the peer keeps the files is not known, its answer to the request was lost (some peers "
+            "end the connection of whom they do not know): " +
+                answer.note
+          : files::format("the peer will say whether it keeps the files, and has not within %g s",
+                          options.commitment_wait_s);
   std::string complaint = association->line().allowance.complaint();
   if (listener && complaint.empty()) complaint = listener->complaint();
   if (!complaint.empty()) summary.commitment_note += "; a connection was cut off: " + complaint;
-  if (!listener) summary.commitment_note += "; it may want to call back: give a port to listen at";
+  if (!listener && !answer.is_broken)
+    summary.commitment_note += "; it may want to call back: give a port to listen at";
 }
 
 }  // namespace arthronaut::pacs

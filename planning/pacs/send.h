@@ -14,7 +14,7 @@ namespace arthronaut::pacs {
 enum class Commitment {
   NotAsked,      // not wanted; or it could not be asked for, which the note says
   NotSupported,  // the peer offers no storage commitment to us, or refused the request
-  Awaited,       // asked for, and taken on; no report came within the time
+  Awaited,       // asked for; no report came within the time, nor a refusal
   Confirmed,     // the peer keeps all that it was sent
   Failed         // it does not keep some
 };

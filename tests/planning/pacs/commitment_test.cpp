@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "planning/pacs/send.h"
+#include "tests/planning/pacs/hostile_peer.h"
 #include "tests/planning/pacs/sent_series.h"
 
 namespace arthronaut::pacs {
@@ -47,12 +48,72 @@ TEST(PacsCommitment, APortThatIsTakenLosesNothingOfTheAccount) {
   EXPECT_THAT(summary.commitment_note, HasSubstr("could not be asked for: "));
 }
 
-// Orthanc commits itself to those alone whom it knows.
-TEST(PacsCommitment, IsSaidNotToBeHad) {
+// Orthanc commits itself to those alone whom it knows, and ends the connection of others without a word:
+// which a line that breaks does, too.
+TEST(PacsCommitment, IsNotKnownWhereThePeerEndsTheConnection) {
   const test::Orthanc orthanc({.knows_us = false});
   const auto summary = sent(orthanc, 0, 1);
   EXPECT_EQ(summary.outcome, SendSummary::Outcome::Stored);
-  EXPECT_EQ(summary.commitment, Commitment::NotSupported) << summary.commitment_note;
+  EXPECT_EQ(summary.commitment, Commitment::Awaited) << summary.commitment_note;
+  EXPECT_THAT(summary.commitment_note, HasSubstr("end the connection of whom they do not know"));
+}
+
+using test::HostilePeer;
+
+// Stores what it is sent, and breaks the connection off at the request, having reported before or not.
+bool break_off_at_the_request(HostilePeer::Request& request, bool reports_before) {
+  if (request.message.CommandField == DIMSE_C_STORE_RQ) {
+    T_DIMSE_C_StoreRSP response{};
+    response.MessageIDBeingRespondedTo = request.message.msg.CStoreRQ.MessageID;
+    response.DataSetType = DIMSE_DATASET_NULL;
+    return DIMSE_sendStoreResponse(&request.association, request.context, &request.message.msg.CStoreRQ,
+                                   &response, nullptr)
+        .good();
+  }
+  if (request.message.CommandField != DIMSE_N_ACTION_RQ) return true;
+  if (!reports_before) return false;
+  T_DIMSE_Message report{};
+  report.CommandField = DIMSE_N_EVENT_REPORT_RQ;
+  T_DIMSE_N_EventReportRQ& event = report.msg.NEventReportRQ;
+  event.MessageID = 7;
+  event.EventTypeID = 1;
+  event.DataSetType = DIMSE_DATASET_PRESENT;
+  OFStandard::strlcpy(event.AffectedSOPClassUID, UID_StorageCommitmentPushModelSOPClass, DIC_UI_LEN + 1);
+  OFStandard::strlcpy(event.AffectedSOPInstanceUID, UID_StorageCommitmentPushModelSOPInstance,
+                      DIC_UI_LEN + 1);
+  // The request names what the report names.
+  (void)DIMSE_sendMessageUsingMemoryData(&request.association, request.context, &report, nullptr,
+                                         &request.data, nullptr, nullptr);
+  T_DIMSE_Message answer{};
+  T_ASC_PresentationContextID context = 0;
+  DcmDataset* detail = nullptr;
+  (void)DIMSE_receiveCommand(&request.association, DIMSE_NONBLOCKING, 10, &context, &answer, &detail);
+  delete detail;
+  return false;
+}
+
+SendSummary sent_to_one_that_breaks_off(bool reports_before) {
+  const HostilePeer peer(
+      [=](HostilePeer::Request& request) { return break_off_at_the_request(request, reports_before); });
+  const test::TemporaryFolder folder;
+  test::write_dicom_series(folder / "ct", test::ellipsoid_ct());
+  return send_files(peer.peer(), quick_connection(), files_to_send({folder / "ct"}),
+                    {.commitment_wait_s = 1});
+}
+
+// Its answer to the request is lost, but it has said what it keeps.
+TEST(PacsCommitment, AReportBeforeTheConnectionBreaksCounts) {
+  const auto summary = sent_to_one_that_breaks_off(true);
+  EXPECT_EQ(summary.outcome, SendSummary::Outcome::Stored);
+  EXPECT_EQ(summary.commitment, Commitment::Confirmed) << summary.commitment_note;
+  for (const SentFile& file : summary.files) EXPECT_TRUE(file.is_committed) << file.file;
+}
+
+TEST(PacsCommitment, AConnectionThatBreaksIsNoRefusal) {
+  const auto summary = sent_to_one_that_breaks_off(false);
+  EXPECT_EQ(summary.outcome, SendSummary::Outcome::Stored);
+  EXPECT_EQ(summary.commitment, Commitment::Awaited) << summary.commitment_note;
+  EXPECT_THAT(summary.commitment_note, HasSubstr("its answer to the request was lost"));
 }
 
 }  // namespace
