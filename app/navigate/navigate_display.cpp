@@ -179,6 +179,10 @@ bool explain(NavigateDisplay& display, const theatre::LiveState& live) {
       display.headline = "Picture torn";
       display.detail = "It holds parts of two moments";
       break;
+    case GuidanceState::ErrorUnknown:
+      display.headline = "Too near the rim";
+      display.detail = "How far off the pose is cannot be said there: bone marker and guide into the middle";
+      break;
     case GuidanceState::LensStale:
       display.headline = "Lens angle unknown";
       display.detail = trouble_of(result.lens).advice;

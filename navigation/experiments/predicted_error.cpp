@@ -149,9 +149,11 @@ class Operation {
     }
     const auto pose = markers::refine_square_pose(taken, corners, size_mm, camera_from_marker);
     if (!pose) return std::nullopt;
+    const auto per_camera_error = guidance::twist_per_camera_error(pose->camera_from_marker, size_mm, taken);
+    if (!per_camera_error) return std::nullopt;
     Seen seen;
     seen.pose = {pose->camera_from_marker, 0, true, markers::square_covariance(*pose, corner_sigma_px_)};
-    seen.per_camera_error = guidance::twist_per_camera_error(pose->camera_from_marker, size_mm, taken);
+    seen.per_camera_error = *per_camera_error;
     return seen;
   }
 

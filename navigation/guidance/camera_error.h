@@ -3,6 +3,7 @@
 // either.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "navigation/camera/camera_model.h"
@@ -14,14 +15,16 @@ namespace arthronaut::guidance {
 using TwistPerCameraError = Eigen::Matrix<double, 6, 6>;
 
 // First order, by the corners: the pose found through a camera that is off by d is T * exp(result * d), where
-// T is the pose that it would find without. Zero where a corner has no image. `camera` is that of the frame,
-// with its lens turned. Allocates nothing.
+// T is the pose that it would find without. Empty where it cannot be said: a corner has no image, as past the
+// rim of the field of view, or the corners do not hold a pose. That is not "exact": what follows from such a
+// pose has no error that could be told, and must not be shown. `camera` is that of the frame, with its lens
+// turned. Allocates nothing.
 // For a body of several markers: its corners, all alike in weight, in its frame.
-[[nodiscard]] TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camera_from_body,
-                                                         std::span<const Eigen::Vector3d> corners_mm,
-                                                         const camera::CameraModel& camera);
+[[nodiscard]] std::optional<TwistPerCameraError> twist_per_camera_error(
+    const geometry::RigidTransform& camera_from_body, std::span<const Eigen::Vector3d> corners_mm,
+    const camera::CameraModel& camera);
 // For one marker.
-[[nodiscard]] TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camera_from_marker,
-                                                         double size_mm, const camera::CameraModel& camera);
+[[nodiscard]] std::optional<TwistPerCameraError> twist_per_camera_error(
+    const geometry::RigidTransform& camera_from_marker, double size_mm, const camera::CameraModel& camera);
 
 }  // namespace arthronaut::guidance

@@ -33,6 +33,8 @@ GuidanceState missing_input(const GuidanceInput& input) {
   if (!input.camera_from_guide.is_valid) return GuidanceState::GuideLost;
   if (world == GuidanceState::Stale || !input.camera_from_guide.is_usable_at(input.now_ns, input.max_age_ns))
     return GuidanceState::Stale;
+  if (!input.world_marker_per_camera_error || !input.guide_per_camera_error)
+    return GuidanceState::ErrorUnknown;
   return GuidanceState::Valid;
 }
 
@@ -66,7 +68,7 @@ struct Placed {
   geometry::RigidTransform bone_from_tool;
   TwistBudget budget;
 };
-// Empty where the two markers were seen in different frames.
+// Empty where the two markers were seen in different frames. What the camera's error does to both is known.
 std::optional<Placed> place(const GuidanceInput& input, const TrackedPose& camera_from_tool,
                             const TwistPerCameraError& tool_per_camera_error) {
   const TrackedPose marker_from_tool = compose(inverse(input.camera_from_world_marker), camera_from_tool);
@@ -75,7 +77,7 @@ std::optional<Placed> place(const GuidanceInput& input, const TrackedPose& camer
   return Placed{input.registration->marker_from_bone.inverse() * marker_from_tool.target_from_source,
                 twist_budget(*input.registration, marker_from_tool,
                              relative_twist_per_camera_error(marker_from_tool.target_from_source,
-                                                             input.world_marker_per_camera_error,
+                                                             *input.world_marker_per_camera_error,
                                                              tool_per_camera_error),
                              input.known_errors != nullptr ? *input.known_errors : kExact)};
 }
@@ -112,9 +114,10 @@ AxisErrors predict_errors(const PlacedAxis& axis, const TwistBudget& budget, con
 std::optional<DrillDepth> seen_drill(const GuidanceInput& input) {
   if (input.plan == nullptr || input.drill == nullptr || !input.drill->tip_mm || !input.drill->axis ||
       missing_world(input) != GuidanceState::Valid ||
-      !input.camera_from_drill.is_usable_at(input.now_ns, input.max_age_ns))
+      !input.camera_from_drill.is_usable_at(input.now_ns, input.max_age_ns) ||
+      !input.world_marker_per_camera_error || !input.drill_per_camera_error)
     return std::nullopt;
-  const auto placed = place(input, input.camera_from_drill, input.drill_per_camera_error);
+  const auto placed = place(input, input.camera_from_drill, *input.drill_per_camera_error);
   if (!placed) return std::nullopt;
   const Eigen::Matrix3d turned = placed->bone_from_tool.matrix();
   const Eigen::Vector3d tip = placed->bone_from_tool * *input.drill->tip_mm;
@@ -165,6 +168,8 @@ std::string_view to_text(GuidanceState state) {
       return "nominal drill guide not checked";
     case GuidanceState::PictureTorn:
       return "picture torn";
+    case GuidanceState::ErrorUnknown:
+      return "error of the pose not known";
   }
   return "unknown";
 }
@@ -197,7 +202,7 @@ GuidanceNumbers compute_guidance(const GuidanceInput& input) {
   numbers.drill = seen_drill(input);
   numbers.state = missing_input(input);
   if (numbers.state != GuidanceState::Valid) return numbers;
-  const auto placed = place(input, input.camera_from_guide, input.guide_per_camera_error);
+  const auto placed = place(input, input.camera_from_guide, *input.guide_per_camera_error);
   if (!placed) {
     numbers.state = GuidanceState::Stale;
     return numbers;

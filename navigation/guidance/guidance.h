@@ -31,8 +31,9 @@ enum class GuidanceState {
   NotConfirmed,     // the time-out of a live operation is still to be done
   GuideNotChecked,  // a live operation's guide is nominal and was not held against a known point yet
   PictureTorn,      // it is of two moments: its parts are not to be set against each other
+  ErrorUnknown,     // a marker stands where nobody can say what the camera's error does to its pose
 };
-inline constexpr GuidanceState kLastGuidanceState = GuidanceState::PictureTorn;  // records keep the number
+inline constexpr GuidanceState kLastGuidanceState = GuidanceState::ErrorUnknown;  // records keep the number
 [[nodiscard]] std::string_view to_text(GuidanceState state);
 
 struct GuidanceInput {
@@ -52,9 +53,10 @@ struct GuidanceInput {
   // What the predicted error is made of beside the poses and the registration; zero: exact.
   const KnownErrors* known_errors = nullptr;  // null: all exact
   tools::AxisError axis_error;
-  TwistPerCameraError world_marker_per_camera_error = TwistPerCameraError::Zero();
-  TwistPerCameraError guide_per_camera_error = TwistPerCameraError::Zero();
-  TwistPerCameraError drill_per_camera_error = TwistPerCameraError::Zero();
+  // Empty: cannot be said, which leaves no number that follows from that pose.
+  std::optional<TwistPerCameraError> world_marker_per_camera_error = TwistPerCameraError::Zero();
+  std::optional<TwistPerCameraError> guide_per_camera_error = TwistPerCameraError::Zero();
+  std::optional<TwistPerCameraError> drill_per_camera_error = TwistPerCameraError::Zero();
 };
 
 struct GuidanceNumbers {

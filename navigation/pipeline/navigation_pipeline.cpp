@@ -125,9 +125,10 @@ struct NavigationPipeline::State {
     }
   }
 
-  // What the camera's error does to the pose of a body in this frame, by the corners that the pose is from.
-  [[nodiscard]] guidance::TwistPerCameraError camera_error_of_body(const FrameResult& result,
-                                                                   std::size_t body) const {
+  // What the camera's error does to the pose of a body in this frame, by the corners that the pose is from;
+  // nothing to no pose. Empty where it cannot be said.
+  [[nodiscard]] std::optional<guidance::TwistPerCameraError> camera_error_of_body(const FrameResult& result,
+                                                                                  std::size_t body) const {
     if (is_outside()) return guidance::TwistPerCameraError::Zero();
     const markers::BodyObservation& seen = result.bodies[body];
     if (!result.intrinsics_are_known || !seen.is_tracked()) return guidance::TwistPerCameraError::Zero();
@@ -139,18 +140,23 @@ struct NavigationPipeline::State {
         seen.camera_from_body, std::span<const Eigen::Vector3d>(used_mm.data(), count), result.camera);
   }
 
-  [[nodiscard]] guidance::TwistPerCameraError camera_error(const FrameResult& result,
-                                                           std::size_t tool) const {
+  [[nodiscard]] std::optional<guidance::TwistPerCameraError> camera_error(const FrameResult& result,
+                                                                          std::size_t tool) const {
     return camera_error_of_body(result, body_of_tool(tool));
   }
 
-  [[nodiscard]] guidance::TwistPerCameraError camera_error_of_world(const FrameResult& result) const {
+  [[nodiscard]] std::optional<guidance::TwistPerCameraError> camera_error_of_world(
+      const FrameResult& result) const {
     return camera_error_of_body(result, world);
   }
 
   void place_tip(FrameResult& result) const {
     result.tip_is_valid =
         probe && options.tools.tools[*probe].tip_mm && result.tools[*probe].world_from_tool.is_valid;
+    if (!result.tip_is_valid) return;
+    const auto of_world = camera_error_of_world(result), of_probe = camera_error(result, *probe);
+    // A tip of which nobody can say how far it is off is none.
+    result.tip_is_valid = of_world && of_probe;
     if (!result.tip_is_valid) return;
     const geometry::TrackedPose& world_from_probe = result.tools[*probe].world_from_tool;
     const Eigen::Vector3d& tip_in_probe_mm = *options.tools.tools[*probe].tip_mm;
@@ -168,8 +174,7 @@ struct NavigationPipeline::State {
     shared.tip_mm = result.tip_in_world_mm;
     shared.per_tip_error = rotation;
     shared.per_camera_error = move * guidance::relative_twist_per_camera_error(
-                                         world_from_probe.target_from_source, camera_error_of_world(result),
-                                         camera_error(result, *probe));
+                                         world_from_probe.target_from_source, *of_world, *of_probe);
     result.tip_covariance_mm2 =
         jacobian * world_from_probe.covariance * jacobian.transpose() +
         rotation * known_errors.probe_tip_mm2 * rotation.transpose() +

@@ -39,7 +39,8 @@ TEST(NavigateDisplay, EveryInvalidStateHidesTheNumbersAndSaysWhy) {
   for (const GuidanceState state :
        {GuidanceState::NoPlan, GuidanceState::NoRegistration, GuidanceState::RegistrationUnreliable,
         GuidanceState::WorldMarkerLost, GuidanceState::GuideLost, GuidanceState::LensStale,
-        GuidanceState::Stale, GuidanceState::NoGuide, GuidanceState::PictureTorn}) {
+        GuidanceState::Stale, GuidanceState::NoGuide, GuidanceState::PictureTorn,
+        GuidanceState::ErrorUnknown}) {
     const NavigateDisplay display =
         display_after([&](Shown& shown) { shown.operation.frame.guidance.state = state; });
     EXPECT_FALSE(display.guidance_is_valid) << to_text(state);

@@ -68,7 +68,7 @@ TEST(CameraError, Hazard6MovesThePoseAsASolutionThroughAWrongCamera) {
       Eigen::Quaterniond(Eigen::AngleAxisd(2.6, Eigen::Vector3d(1, 0.3, 0.2).normalized())), {4, -3, 22}};
   for (const camera::Calibration& calibration : {scope(), on_the_centre}) {
     const camera::CameraModel camera(calibration, kLens_rad, kSaline);
-    const TwistPerCameraError jacobian = twist_per_camera_error(truth, kSize_mm, camera);
+    const TwistPerCameraError jacobian = twist_per_camera_error(truth, kSize_mm, camera).value();
     Eigen::Matrix<double, 6, 1> step;
     step << 0.5, 1e-3, 0.3, 0.3, 0.3, 0.3;
     for (int i = 0; i < 6; ++i) {
@@ -79,6 +79,27 @@ TEST(CameraError, Hazard6MovesThePoseAsASolutionThroughAWrongCamera) {
       EXPECT_LT((jacobian * error - moved).norm(), 0.02 * moved.norm() + 1e-9) << "error " << i;
     }
   }
+}
+
+// Where it is largest, at the rim, it must not fall to nothing: past it a corner has no image, and of too few
+// corners there is no pose.
+TEST(CameraError, Hazard6IsNotSaidToBeNothingWhereItCannotBeSaid) {
+  const camera::CameraModel camera(scope(), 0.6, 1.3345);
+  const auto at = [&](const Eigen::Vector3d& place_mm) {
+    return twist_per_camera_error(
+        RigidTransform{Eigen::Quaterniond(Eigen::AngleAxisd(2.6, Eigen::Vector3d::UnitX())), place_mm}, 4.0,
+        camera);
+  };
+  const auto middle = at({0, 0, 22});
+  ASSERT_TRUE(middle);
+  EXPECT_GT(middle->norm(), 0);
+  EXPECT_FALSE(at({400, 0, 22}));
+  EXPECT_FALSE(at({0, 0, -22}));
+  const std::array<Eigen::Vector3d, 2> two{Eigen::Vector3d(-2, 0, 0), Eigen::Vector3d(2, 0, 0)};
+  EXPECT_FALSE(
+      twist_per_camera_error(RigidTransform{Eigen::Quaterniond::Identity(), {0, 0, 22}}, two, camera));
+  EXPECT_FALSE(twist_per_camera_error(RigidTransform{Eigen::Quaterniond::Identity(), {0, 0, 22}},
+                                      std::span<const Eigen::Vector3d>(), camera));
 }
 
 // Registration and guide are seen through the same camera: a focal length that is off moves both the same way

@@ -68,6 +68,9 @@ struct Scene {
     input.drill = drill ? &*drill : nullptr;
     input.known_errors = &known;
     input.axis_error = axis_error;
+    input.world_marker_per_camera_error = world_per_camera_error;
+    input.guide_per_camera_error = guide_per_camera_error;
+    input.drill_per_camera_error = drill_per_camera_error;
     input.lens_is_stale = lens_is_stale;
     input.now_ns = now_ns;
     return compute_guidance(input);
@@ -83,6 +86,9 @@ struct Scene {
   std::optional<tools::Tool> drill;
   KnownErrors known;
   tools::AxisError axis_error;
+  std::optional<TwistPerCameraError> world_per_camera_error = TwistPerCameraError::Zero(),
+                                     guide_per_camera_error = TwistPerCameraError::Zero(),
+                                     drill_per_camera_error = TwistPerCameraError::Zero();
   bool lens_is_stale = false;
   std::int64_t now_ns = 1'010'000'000;
 };
@@ -100,6 +106,24 @@ TEST(Guidance, OnThePlanAllIsZero) {
   EXPECT_NEAR(numbers.angle_deg, 0, 1e-6);
   EXPECT_NEAR(numbers.depth_mm, 0, kRounding);
   EXPECT_NEAR(numbers.offset_mm, 0, kRounding);
+}
+
+// Without an error that can be told there is no number: of the guide, and of a drill that is seen.
+TEST(Guidance, Hazard6APoseWhoseErrorCannotBeSaidGivesNoNumber) {
+  Scene scene;
+  scene.hold_drill(scene.plan.entry_mm);
+  ASSERT_TRUE(scene.compute().drill);
+  scene.guide_per_camera_error.reset();
+  EXPECT_EQ(scene.compute().state, GuidanceState::ErrorUnknown);
+  EXPECT_TRUE(scene.compute().drill);
+  scene.guide_per_camera_error = TwistPerCameraError::Zero();
+  scene.drill_per_camera_error.reset();
+  EXPECT_TRUE(scene.compute().is_valid());
+  EXPECT_FALSE(scene.compute().drill);
+  scene.drill_per_camera_error = TwistPerCameraError::Zero();
+  scene.world_per_camera_error.reset();
+  EXPECT_EQ(scene.compute().state, GuidanceState::ErrorUnknown);
+  EXPECT_FALSE(scene.compute().drill);
 }
 
 // Along the plan only the depth changes; across it only the offset, in the axis that it was moved along.
