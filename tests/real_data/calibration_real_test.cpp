@@ -9,12 +9,12 @@
 
 #include "navigation/calibration/calibration.h"
 #include "navigation/calibration/fluid_check.h"
-#include "navigation/calibration/held_out.h"
 #include "navigation/calibration/ruler_sightings.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
 #include "navigation/markers/marker_tracker.h"
 #include "navigation/sources/frame_source.h"
+#include "tests/real_data/held_out.h"
 #include "tests/real_data/real_data.h"
 
 namespace arthronaut {
@@ -114,6 +114,10 @@ TEST(CalibrationOnPictures, FindsTheTrueCamera) {
     EXPECT_GT(held.corner_count, 400U);
     EXPECT_GT(held.rms_px, 0);
     EXPECT_LE(held.rms_px, 0.35);
+    // Without the mark the lens could stand anyhow: no angle is made up.
+    calibration::CalibrationPicture unmarked = observe(file);
+    unmarked.lens.mark = lens::MarkState::Covered;
+    EXPECT_LT(calibration::check_held_out(unmarked, summary.record.calibration, 1.5).rms_px, 0);
   }
 }
 

@@ -7,12 +7,13 @@
 namespace arthronaut::calibration {
 
 struct HeldOut {
-  double rms_px = -1;  // length of the reprojection errors; -1: no board, or no pose fits
+  // Length of the reprojection errors; -1: not measurable, as no lens mark, no board or no pose was found.
+  double rms_px = -1;
   std::size_t corner_count = 0;
   geometry::RigidTransform camera_from_board;
 };
 
-// The lens angle is that of the picture's mark where it was found, else the calibration's reference.
+// At the lens angle of the picture's mark.
 [[nodiscard]] HeldOut check_held_out(const CalibrationPicture& picture,
                                      const camera::Calibration& calibration, double square_mm);
 

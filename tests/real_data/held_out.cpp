@@ -1,4 +1,4 @@
-#include "navigation/calibration/held_out.h"
+#include "tests/real_data/held_out.h"
 
 #include "navigation/calibration/adjustment.h"
 #include "navigation/calibration/conformal_map.h"
@@ -8,6 +8,7 @@ namespace arthronaut::calibration {
 HeldOut check_held_out(const CalibrationPicture& picture, const camera::Calibration& calibration,
                        double square_mm) {
   HeldOut held;
+  if (picture.lens.mark != lens::MarkState::Found) return held;
   Estimate estimate;
   estimate.focal_px = calibration.focal_px;
   estimate.xi = calibration.distortion_xi;
@@ -15,8 +16,7 @@ HeldOut check_held_out(const CalibrationPicture& picture, const camera::Calibrat
   estimate.rotation_center_px = calibration.rotation_center_px;
   estimate.circle_center_px = calibration.boundary.center_px;
   estimate.reference_mark_angle_deg = calibration.reference_mark_angle_deg;
-  const bool has_angle = picture.lens.mark == lens::MarkState::Found;
-  const double angle_rad = has_angle ? calibration.lens_angle_rad(picture.lens.mark_angle_deg) : 0.0;
+  const double angle_rad = calibration.lens_angle_rad(picture.lens.mark_angle_deg);
   estimate.lens_angle_rad = {angle_rad};
 
   // Corners on the plane Z = 1 through the known camera, then the homography's pose.
