@@ -104,6 +104,9 @@ pipeline::PipelineOptions pipeline_options(const NavigateArguments& arguments, c
   return options;
 }
 
+// The newest session alone is asked: what an older one says of the bone may have been overtaken by it.
+constexpr const char* kOlder = "; --registration takes an older session's registration.json";
+
 // A registration that was given by name and is of something else is refused; one of the case is passed over.
 std::optional<operation::GiveRegistration> known_registration(const Context& context,
                                                               const NavigateArguments& arguments,
@@ -128,12 +131,12 @@ std::optional<operation::GiveRegistration> known_registration(const Context& con
   const std::string session = known->session_folder.filename().string();
   for (const std::string& broken : known->passed_over) context.say("registration: passed over " + broken);
   if (!known->is_usable()) {
-    context.say("registration: that of session " + session + " is not used: " + known->refusal);
+    context.say("registration: that of session " + session + " is not used: " + known->refusal + kOlder);
     return std::nullopt;
   }
   if (const auto mismatch = known->of ? registration::mismatch_of(*known->of, now) : std::nullopt) {
     context.say("registration: that of session " + session +
-                " is not used: " + registration::in_words(*mismatch, *known->of, now));
+                " is not used: " + registration::in_words(*mismatch, *known->of, now) + kOlder);
     return std::nullopt;
   }
   context.say("registration: of session " + session);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/report/report_words.h"
+#include "app/report/session_rows.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
 #include "planning/files/format.h"
@@ -59,7 +60,9 @@ void take_session(const std::filesystem::path& folder, Content& content) {
     const bool has_tunnel = !operation::achieved_files(folder).empty();
     if (!has_tunnel && (content.session || !std::filesystem::exists(folder / "session.json"))) return;
     ReadSession read = read_session(folder);
-    if (has_tunnel || read.session->registration()) put(std::move(read), content);
+    // One that found no pose is none.
+    const auto registration = registration_that_counts(*read.session);
+    if (has_tunnel || (registration && registration->has_pose)) put(std::move(read), content);
   });
 }
 

@@ -143,14 +143,17 @@ std::vector<Step> steps_of(const recording::RecordedSession& session) {
   // What is recorded last where the marker was taken out registers nothing.
   const bool ends_void = session.registration() && !session.registration()->has_pose;
   const recording::SessionEvent* newest = nullptr;
+  int registrations = 0;
   for (const recording::SessionEvent& event : session.events())
-    if (event.kind == recording::kRegistrationEvent) newest = &event;
+    if (event.kind == recording::kRegistrationEvent) newest = &event, ++registrations;
   for (const recording::SessionEvent& event : session.events()) {
     const auto* const step =
         std::find_if(kSteps.begin(), kSteps.end(), [&](const auto& one) { return one.first == event.kind; });
     if (step == kSteps.end()) continue;
     const bool is_void = ends_void && &event == newest;
-    const std::string_view words = is_void ? "nothing is registered any more" : step->second;
+    const std::string_view words = !is_void            ? step->second
+                                   : registrations > 1 ? "nothing is registered any more"
+                                                       : "no place of the bone was found";
     const double at_s = time_s(session, event.timestamp_ns);
     if (!runs.empty() && runs.back().words == words) {
       runs.back().last_s = at_s;

@@ -163,7 +163,8 @@ std::string tools_identity(const tools::ToolSet& tools, bones::BoneKind bone, st
       const auto found = tools.tracker->devices.find(body);
       if (found != tools.tracker->devices.end()) text += found->second + " ";
     };
-    text += "outside ";
+    // Another tracker may have its frame elsewhere under the same names.
+    text += "outside " + tools.tracker->address + " ";
     add_device(std::string(bones::to_text(bone)));
     add_device(std::string(probe_name));
   }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "navigation/registration/provenance.h"
+#include "navigation/tools/tool_set.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
@@ -139,6 +141,18 @@ TEST(RegistrationFile, RefusesWhatIsNoCovariance) {
   std::string values = "1";
   for (int i = 1; i < 36; ++i) values += i % 7 == 0 ? ", 1" : i == 4 || i == 24 ? ", 5" : ", 0";
   EXPECT_THROW((void)read_text_of(folder, R"(, "covariance": [)" + values + "]"), InvalidInput);
+}
+
+// Its frame may lie elsewhere under the same names.
+TEST(Provenance, AnotherOutsideTrackerIsNotTheOneRegisteredWith) {
+  const auto identity_at = [](const std::string& address) {
+    tools::ToolSet tools;
+    tools.tracker.emplace().address = address;
+    return tools_identity(tools, bones::BoneKind::Femur, "Probe");
+  };
+  EXPECT_EQ(identity_at("igtl://one:18944"), identity_at("igtl://one:18944"));
+  EXPECT_NE(identity_at("igtl://one:18944"), identity_at("igtl://two:18944"));
+  EXPECT_NE(identity_at("igtl://one:18944"), identity_at("igtl://one:18945"));
 }
 
 }  // namespace
