@@ -68,10 +68,13 @@ fs::path file_to_use(const std::string& given, const fs::path& of_case, const st
   throw InvalidInput(of_case, "", "is not in the case yet: give " + option);
 }
 
-void adopt(const std::string& given, const fs::path& of_case) {
+void adopt(const Context& context, const std::string& given, const fs::path& of_case) {
   if (given.empty() || fs::absolute(given).lexically_normal() == fs::absolute(of_case).lexically_normal())
     return;
-  files::write_atomically(of_case, files::read_text(given));
+  const std::string text = files::read_text(given);
+  const bool is_replaced = fs::exists(of_case) && files::read_text(of_case) != text;
+  files::write_atomically(of_case, text);
+  if (is_replaced) context.say("The case's " + of_case.filename().string() + " is now " + given + ".");
 }
 
 fs::path camera_file_of(const NavigateArguments& arguments) {
@@ -292,8 +295,8 @@ void navigate(Context& context, const NavigateArguments& arguments,
     }
     summary = theatre::navigate_source(source, options, record, observer);
   }
-  adopt(arguments.camera, cases::camera_file(arguments.case_folder));
-  adopt(arguments.tools, cases::tools_file(arguments.case_folder));
+  adopt(context, arguments.camera, cases::camera_file(arguments.case_folder));
+  adopt(context, arguments.tools, cases::tools_file(arguments.case_folder));
   if (!arguments.cartilage.mesh.empty()) cases::save_cartilage(arguments.case_folder, kind, *cartilage);
   session.keep();
 

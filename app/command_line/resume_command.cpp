@@ -85,8 +85,10 @@ void resume(Context& context, const ResumeArguments& arguments) {
   else if (found)
     say(context, *found);
   if (!found)
-    context.say_unreliable("what can be resumed",
-                           {"no operation on the " + arguments.bone + " was left in the middle"});
+    context.say_unreliable(
+        "what can be resumed",
+        {"no operation on the " + arguments.bone +
+         " was left in the middle; what navigate ran on a recording is run again, not resumed"});
   else if (!found->refusal.empty())
     context.say_unreliable("the registration", {"is not brought back: " + found->refusal});
 }

@@ -293,6 +293,8 @@ void Report::navigate_page() {
       {"Lens mark found", number(figures.mark_percent, " % of the frames")},
       {"Record by its hashes", recording::check_words(content_.check)},
       {"Last hash of the record", content_.last_hash.empty() ? "none" : in_groups(content_.last_hash)}};
+  if (figures.other_medium_percent > 0)
+    rows.push_back({"WRONG MEDIUM by the markers", number(figures.other_medium_percent, " % of the frames")});
   if (const std::string guided = guided_bundles(session); !guided.empty())
     rows.push_back({"Guided to the tunnel", guided});
   for (auto& row : safety_rows(session)) rows.push_back(std::move(row));

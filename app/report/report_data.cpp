@@ -88,6 +88,7 @@ ordered_json session_of(const Content& content, const ReportOptions& options) {
                        {"frames", figures.frames},
                        {"world_marker_tracked_percent", figures.world_percent},
                        {"lens_mark_found_percent", figures.mark_percent},
+                       {"medium_contradicted_percent", figures.other_medium_percent},
                        {"is_as_recorded", nullptr},  // no hashes tell
                        {"record", recording::check_words(content.check)},
                        {"last_hash", content.last_hash}};

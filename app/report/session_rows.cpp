@@ -93,7 +93,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
 }
 
 SessionFigures figures_of(const recording::RecordedSession& session) {
-  long with_world = 0, with_mark = 0;
+  long with_world = 0, with_mark = 0, in_other_medium = 0;
   const auto options = session.pipeline_options();
   const auto* world = options.tools.find_world_marker(session.header().bone);
   const bool is_of_several = world != nullptr && !world->markers.empty();
@@ -104,12 +104,13 @@ SessionFigures figures_of(const recording::RecordedSession& session) {
     if (options.tools.tracker && world != nullptr)
       with_world += tracker::state_of(frame.outside, world->marker_id) == tracker::BodyState::Tracked;
     with_mark += frame.lens.mark == lens::MarkState::Found;
+    in_other_medium += frame.guidance.state == guidance::GuidanceState::WrongMedium;
   }
   const double frames = std::max<double>(1, static_cast<double>(session.frames().size()));
   const double length_s =
       session.frames().empty() ? 0 : time_s(session, session.frames().back().timestamp_ns);
   return {session.frames().size(), length_s, 100 * static_cast<double>(with_world) / frames,
-          100 * static_cast<double>(with_mark) / frames};
+          100 * static_cast<double>(with_mark) / frames, 100 * static_cast<double>(in_other_medium) / frames};
 }
 
 double time_s(const recording::RecordedSession& session, std::int64_t timestamp_ns) {

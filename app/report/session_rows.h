@@ -30,6 +30,7 @@ struct SessionFigures {
   std::size_t frames = 0;
   double length_s = 0;                         // from the first to the last
   double world_percent = 0, mark_percent = 0;  // of the frames: world marker tracked, lens mark found
+  double other_medium_percent = 0;             // of them: nothing stood, since the medium was contradicted
 };
 [[nodiscard]] SessionFigures figures_of(const recording::RecordedSession& session);
 

@@ -94,6 +94,7 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
   };
   const std::shared_ptr<sources::FrameSource> guide_video = sources::open_video(guide_clip / "clip.mkv");
   const theatre::NavigationSummary guided = theatre::navigate_source(guide_video, drill, {}, observer);
+  EXPECT_EQ(scratched.frames_in_other_medium + guided.frames_in_other_medium, 0);
   ASSERT_GT(guided.frames_with_guidance, 30);  // of 40: the guide is free in all of them
   const std::size_t last = gt.row_count() - 1;
   std::printf(
@@ -104,6 +105,26 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
       root_mean_square(offset_errors), root_mean_square(angle_errors), guided.last_guidance.tip_to_entry_mm,
       gt.number(last, "tip_to_entry_mm"), guided.last_guidance.axis_to_entry_mm,
       gt.number(last, "axis_to_entry_mm"), guided.last_guidance.angle_deg, gt.number(last, "angle_deg"));
+}
+
+// In the wrong medium nothing is navigated, and that is what is said: not the lens, not a probe that drew
+// nothing.
+TEST(NavigateReal, Hazard27TheMediumIsTheReason) {
+  ARTHRONAUT_REQUIRE_DATA(guide_clip, "arthroscopy/guide_wet");
+  ARTHRONAUT_REQUIRE_DATA(probe_clip, "arthroscopy/probe_wet");
+  for (const std::filesystem::path& clip : {guide_clip, probe_clip}) {
+    const std::string name = clip.filename();
+    theatre::NavigateOptions options = options_of(clip, true_plan(guide_clip));
+    options.source.pipeline.refractive_index = camera::kAirIndex;
+    options.duration_s = 1;
+    const std::shared_ptr<sources::FrameSource> video = sources::open_video(clip / "clip.mkv");
+    const theatre::NavigationSummary summary = theatre::navigate_source(video, options);
+    EXPECT_GT(2 * summary.frames_in_other_medium, summary.statistics.frame_count) << name;
+    EXPECT_EQ(summary.frames_with_guidance, 0) << name;
+    ASSERT_EQ(summary.reasons.size(), 1U) << name;
+    EXPECT_NE(summary.reasons.front().find("not as in air"), std::string::npos) << summary.reasons.front();
+    EXPECT_EQ(summary.statistics.frames_with_unknown_lens, 0) << name;
+  }
 }
 
 // Frames that the recorder encodes itself, as it does for a camera, keep the luma that was tracked: run again

@@ -54,5 +54,26 @@ TEST(SessionRows, ATunnelIsToldOfByTheRegistrationThatItWasDrilledBy) {
   EXPECT_EQ(steps.back().words, "nothing is registered any more");
 }
 
+// Hazard 27: that nothing stood since the markers looked as in another medium is told of the session
+// afterwards.
+TEST(SessionRows, Hazard27AMediumThatWasContradictedIsToldOf) {
+  const test::TemporaryFolder folder;
+  {
+    pipeline::PipelineOptions options;
+    options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+    options.tools = tools::standard_tools();
+    recording::SessionRecorder recorder(folder.path(), {}, options);
+    for (int i = 0; i < 8; ++i) {
+      pipeline::FrameResult frame;
+      frame.frame_index = i;
+      frame.timestamp_ns = i * 16'000'000;
+      if (i >= 2) frame.guidance.state = guidance::GuidanceState::WrongMedium;
+      recorder.append(frame);
+    }
+    recorder.finish();
+  }
+  EXPECT_EQ(figures_of(recording::RecordedSession(folder.path())).other_medium_percent, 75);
+}
+
 }  // namespace
 }  // namespace arthronaut::report
