@@ -54,15 +54,17 @@ void put(ReadSession read, Content& content) {
   content.achieved = std::move(read.achieved);
 }
 
-// Where it has a drilled tunnel; where it has a registration alone, only while no other one is taken.
-void take_session(const std::filesystem::path& folder, Content& content) {
+enum class Registration { Found, Tried };
+
+// Where it has a drilled tunnel; where it has such a registration alone, only while no other one is taken.
+void take_session(const std::filesystem::path& folder, Registration least, Content& content) {
   unless_unreadable(folder, content, [&] {
     const bool has_tunnel = !operation::achieved_files(folder).empty();
     if (!has_tunnel && (content.session || !std::filesystem::exists(folder / "session.json"))) return;
     ReadSession read = read_session(folder);
-    // One that found no pose is none.
     const auto registration = registration_that_counts(*read.session);
-    if (has_tunnel || (registration && registration->has_pose)) put(std::move(read), content);
+    const bool is_enough = registration && (registration->has_pose || least == Registration::Tried);
+    if (has_tunnel || is_enough) put(std::move(read), content);
   });
 }
 
@@ -225,10 +227,13 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   if (options.with_identity && !options.is_deidentified) content.identity = cases::load_identity(folder);
   auto sessions = recording::operation_folders(folder);
   if (!options.session.empty()) take_named(options.session, sessions, content);
-  // The newest session with a drilled tunnel; failing that, the newest with a registration.
-  if (options.session.empty())
-    for (auto it = sessions.rbegin(); it != sessions.rend() && content.achieved.empty(); ++it)
-      take_session(*it, content);
+  // The newest session with a drilled tunnel; failing that, the newest with a registration, at last with one
+  // that found no pose.
+  if (options.session.empty()) {
+    for (const Registration least : {Registration::Found, Registration::Tried})
+      for (auto it = sessions.rbegin(); it != sessions.rend() && content.achieved.empty(); ++it)
+        if (!content.session || least == Registration::Found) take_session(*it, least, content);
+  }
   plan_review::propose_landmarks(content.knee, plan_review::Proposing::WithoutGrid);
   content.review = std::make_unique<const plan_review::CaseReview>(content.knee);
   add_earlier(sessions, content);

@@ -17,6 +17,22 @@
 namespace arthronaut::report {
 namespace {
 
+// An attempt that found no pose is no registration: the one before it is told of, unless none did better.
+TEST_F(Report, TakesASessionWhoseRegistrationFoundAPose) {
+  const auto json_file = pdf().parent_path() / "report.json";
+  const auto told = [&] {
+    write(json_file);
+    return nlohmann::json::parse(files::read_text(json_file)).at("session").at("id").get<std::string>();
+  };
+  const auto newest = [&] { return cases::session_folders(knee_folder()).back().filename().string(); };
+  (void)text_of_session("live", {}, false);
+  EXPECT_EQ(told(), newest());
+  (void)text_of_session("live", {});
+  const std::string found = newest();
+  (void)text_of_session("live", {}, false);
+  EXPECT_EQ(told(), found);
+}
+
 // The same numbers for other programs: whatever the table says, the document says.
 TEST_F(Report, GivesTheSameNumbersAsJsonAndAsATable) {
   cases::save_identity(knee_folder(), {"Muster^Anna", "4711", "19900131"});

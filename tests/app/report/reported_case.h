@@ -51,7 +51,8 @@ class Report : public ::testing::Test {
 
   // The report of a session of this kind of source with a registration, and with these events after it.
   std::string text_of_session(const std::string& source_kind,
-                              const std::vector<std::pair<std::string_view, std::string>>& events) const {
+                              const std::vector<std::pair<std::string_view, std::string>>& events,
+                              bool finds_pose = true) const {
     const auto session_folder = cases::create_session_folder(knee_folder());
     pipeline::PipelineOptions options;
     options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
@@ -60,8 +61,8 @@ class Report : public ::testing::Test {
     header.id = session_folder.filename().string();
     header.source_kind = source_kind;
     registration::RegistrationSummary registration;
-    registration.has_pose = registration.reliable = true;
-    registration.reasons.clear();
+    registration.has_pose = registration.reliable = finds_pose;
+    if (finds_pose) registration.reasons.clear();
     recording::SessionRecorder recorder(session_folder, header, options);
     recorder.set_registration(registration);
     for (const auto& [kind, text] : events) recorder.add_event({0, std::string(kind), text, -1});
