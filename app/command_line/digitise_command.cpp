@@ -3,6 +3,7 @@
 
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
+#include "navigation/strokes/body_rows.h"
 #include "navigation/strokes/curves.h"
 #include "navigation/strokes/stroke_tangents.h"
 #include "planning/geometry/error.h"

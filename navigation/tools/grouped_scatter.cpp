@@ -1,6 +1,7 @@
 #include "navigation/tools/grouped_scatter.h"
 
 #include <Eigen/LU>
+#include <cmath>
 #include <limits>
 
 namespace arthronaut::tools {
