@@ -7,6 +7,7 @@
 #include "planning/bones/mesh_hash.h"
 #include "planning/files/json_covariance.h"
 #include "planning/files/json_document.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::registration {
 
