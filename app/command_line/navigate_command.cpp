@@ -343,9 +343,8 @@ void add_navigate_command(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"single", "am", "pl"}));
   command->add_option(
       "--registration", arguments->registration,
-      "registration.json to guide by, as that of an older session. Default: the newest session's of this "
-      "bone, "
-      "if it is reliable and of this world marker, camera and medium; strokes of the probe give a new one");
+      "registration.json to guide by, as that of an older session. Default: that of the newest session of "
+      "this bone, if it is reliable and of this world marker, camera and medium; strokes give a new one");
   add_cartilage_option(*command, arguments->cartilage.mesh, "; copied into the case. Default: the case's");
   add_mesh_options(*command, arguments->cartilage.space, arguments->cartilage.unit, "the cartilage's mesh");
   arguments->probe_option =

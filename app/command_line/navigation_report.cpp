@@ -83,7 +83,7 @@ void say_navigation(const Context& context, const theatre::NavigationSummary& su
   say_source(context, summary);
   if (summary.frames_in_other_medium > 0)
     context.say(format("medium: in %ld of %ld frames %s", summary.frames_in_other_medium,
-                       summary.statistics.frame_count, summary.other_medium.c_str()));
+                       summary.statistics.frame_count, pipeline::reason_text(summary.other_medium).c_str()));
   say_statistics(context, summary.statistics);
   context.say(format("strokes: %.0f mm in %zu points", summary.drawn_length_mm, summary.curves.size()));
   say_registration(context, summary);

@@ -176,7 +176,9 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
       throw InvalidInput(arguments.case_folder, "plan.json", "plans a bone that the case lacks");
     has_any = true;
     if (arguments.as_json) {
-      tunnels_json.push_back(tunnel_to_json(knee, review, key, judged(knee, review, key, doubts, verdict)));
+      const bool is_judged = !verdict.source.empty();  // the default that was made now
+      tunnels_json.push_back(tunnel_to_json(
+          knee, review, key, is_judged ? verdict : judged(knee, review, key, doubts, verdict)));
       tunnels_json.back()["bone_doubts"] = doubts[key.bone];
     } else {
       describe_tunnel(context, knee, review, key, verdict);

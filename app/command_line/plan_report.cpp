@@ -1,8 +1,8 @@
 #include "app/command_line/plan_report.h"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
 
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
@@ -44,18 +44,15 @@ const char* state_of_grid(const cases::Case& knee, const plan_review::CaseReview
 
 PlanVerdict judged(const cases::Case& knee, const plan_review::CaseReview& review,
                    const tunnels::TunnelKey& key, const cases::BoneDoubts& doubts, PlanVerdict verdict) {
-  const auto add = [&](const std::string& reason) {
-    if (std::ranges::find(verdict.reasons, reason) == verdict.reasons.end())
-      verdict.reasons.push_back(reason);
-  };
-  for (const std::string& wrong : tunnels::wrong_in_words(review.checks(key))) add(wrong);
+  std::vector<std::string>& reasons = verdict.reasons;
+  for (std::string& wrong : tunnels::wrong_in_words(review.checks(key))) reasons.push_back(std::move(wrong));
   if (const auto of_bone = doubts.find(key.bone); of_bone != doubts.end())
     for (const std::string& doubt : of_bone->second)
-      add("the " + std::string(bones::to_text(key.bone)) + ": " + doubt);
-  if (const auto fit = cases::plan_fit(knee, key); !fit.is_valid()) add(fit.reason);
+      reasons.push_back("the " + std::string(bones::to_text(key.bone)) + ": " + doubt);
+  if (const auto fit = cases::plan_fit(knee, key); !fit.is_valid()) reasons.push_back(fit.reason);
   if (verdict.source.empty() && state_of_grid(knee, review, key.bone) == std::string_view("proposed"))
-    add("landmarks: proposed from the bone's shape, confirmed by nobody");
-  verdict.is_reliable = verdict.reasons.empty();
+    reasons.push_back("landmarks: proposed from the bone's shape, confirmed by nobody");
+  verdict.is_reliable = reasons.empty();
   return verdict;
 }
 

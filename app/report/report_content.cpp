@@ -230,9 +230,10 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   // The newest session with a drilled tunnel; failing that, the newest with a registration, at last with one
   // that found no pose.
   if (options.session.empty()) {
-    for (const Registration least : {Registration::Found, Registration::Tried})
-      for (auto it = sessions.rbegin(); it != sessions.rend() && content.achieved.empty(); ++it)
-        if (!content.session || least == Registration::Found) take_session(*it, least, content);
+    for (auto it = sessions.rbegin(); it != sessions.rend() && content.achieved.empty(); ++it)
+      take_session(*it, Registration::Found, content);
+    for (auto it = sessions.rbegin(); it != sessions.rend() && !content.session; ++it)
+      take_session(*it, Registration::Tried, content);
   }
   plan_review::propose_landmarks(content.knee, plan_review::Proposing::WithoutGrid);
   content.review = std::make_unique<const plan_review::CaseReview>(content.knee);

@@ -146,7 +146,10 @@ std::vector<Step> steps_of(const recording::RecordedSession& session) {
   const recording::SessionEvent* newest = nullptr;
   int registrations = 0;
   for (const recording::SessionEvent& event : session.events())
-    if (event.kind == recording::kRegistrationEvent) newest = &event, ++registrations;
+    if (event.kind == recording::kRegistrationEvent) {
+      newest = &event;
+      ++registrations;
+    }
   for (const recording::SessionEvent& event : session.events()) {
     const auto* const step =
         std::find_if(kSteps.begin(), kSteps.end(), [&](const auto& one) { return one.first == event.kind; });

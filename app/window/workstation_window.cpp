@@ -106,6 +106,7 @@ void WorkstationWindow::add_actions() {
   start_.add_actions(actions_);
   paint_.add_actions(actions_);
   for (const auto& mode : modes_) mode->add_actions(actions_);
+  if (!options_.list_widgets) return;
   for (const widgets::Action& action : actions_.all())
     if (action.key != 0)
       log_.note_state("key." + action.id, widgets::key_name(action.key, action.mods) + " " + action.label);

@@ -29,7 +29,7 @@ struct DrillDepth {
   double to_exit_mm = 0;  // the same: a plan's length ends where its axis leaves the bone
   double lateral_mm = 0;  // of the tip from the plan's axis; not a number: not known
   // Of the drill's axis from the plan's where that leaves the bone, as the drill points now; of a tip that is
-  // there or beyond as lateral_mm. Not a number: not known, in records of before 2026-11-28.
+  // there or beyond as lateral_mm. Not a number: not known, in older records.
   double exit_lateral_mm = 0;
   // Predicted, one sigma: of the depth; of where the drill's axis crosses the plane through the entry across
   // the plan, and of its direction, as GuidanceNumbers says them of the guide. Not a number: not known. What

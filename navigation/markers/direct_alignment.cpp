@@ -223,7 +223,8 @@ void DirectFit::guess_light(State& state) {
     Square normal = 1e-2F * Square::Identity();
     Light right = Light::Zero();
     for (int i = 0; i < count; ++i) {
-      const Light &row = light_rows_[i], weighed = pixels_.weight(i) * row;
+      const Light& row = light_rows_[i];
+      const Light weighed = pixels_.weight(i) * row;
       // By columns from the diagonal on, four rows at a time: the half that is looked at.
       for (int column = 0; column < kLightTerms; ++column) {
         const int first = column / 4 * 4;

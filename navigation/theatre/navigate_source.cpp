@@ -50,9 +50,9 @@ std::unique_ptr<RegistrationService> registration_of(const NavigateOptions& opti
                               operation::work_options(setup_of(options)));
 }
 
-// From a tenth of the frames on the medium is the reason of all else; a scope that is drawn out at the end is
-// none.
-constexpr long kMostShareInOtherMedium = 10;
+// Where more of the frames are in another medium, that is the reason of all else; a scope that is drawn out
+// at the end is none.
+constexpr double kMostInOtherMedium = 0.1;
 
 // One operation on its way through the source.
 class Navigation {
@@ -103,10 +103,9 @@ class Navigation {
     summary_.frames_bone_otherwise += state->contour.state == contour::ContourState::LooksOtherwise;
     if (state->medium.fit == pipeline::MediumFit::Contradicts) {
       ++summary_.frames_in_other_medium;
-      summary_.other_medium = pipeline::reason_text(state->medium);
+      summary_.other_medium = state->medium;
       // That nothing stands is the medium's doing, not the lens'.
-      if (!frame.intrinsics_are_known && frame.lens.mark == lens::MarkState::Found)
-        --summary_.statistics.frames_with_unknown_lens;
+      if (!frame.intrinsics_are_known) --summary_.statistics.frames_with_unknown_lens;
     }
     if (frame.guidance.is_valid()) {
       ++summary_.frames_with_guidance;
@@ -206,8 +205,9 @@ class Navigation {
     std::vector<std::string>& reasons = summary_.reasons;
     if (summary_.statistics.frame_count == 0) {
       reasons.emplace_back("the video has no frame");
-    } else if (kMostShareInOtherMedium * summary_.frames_in_other_medium > summary_.statistics.frame_count) {
-      reasons.emplace_back(summary_.other_medium);
+    } else if (static_cast<double>(summary_.frames_in_other_medium) >
+               kMostInOtherMedium * static_cast<double>(summary_.statistics.frame_count)) {
+      reasons.push_back(pipeline::reason_text(summary_.other_medium));
     } else if (const std::string why = reason_of_tracker(); !summary_.registration && !why.empty()) {
       reasons.emplace_back(why);
     } else if (!is_outside_ &&

@@ -71,9 +71,9 @@ struct NavigationSummary {
   // Frames in which a registration stood, and those of them whose picture was seen to show the bone where it
   // lay.
   long frames_registered = 0, frames_bone_seen = 0, frames_bone_otherwise = 0;
-  // Frames whose markers look as in another medium than the one in force, and what was said of it last.
+  // Frames whose markers look as in another medium than the one in force, and the last verdict that says so.
   long frames_in_other_medium = 0;
-  std::string other_medium;
+  pipeline::MediumVerdict other_medium;
   guidance::GuidanceNumbers last_guidance;  // the last valid one; not valid when there was none
   guidance::GuidanceState last_state = guidance::GuidanceState::NoPlan;
   operation::DrilledState drilled;

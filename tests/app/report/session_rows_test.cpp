@@ -8,6 +8,13 @@
 namespace arthronaut::report {
 namespace {
 
+pipeline::PipelineOptions options() {
+  pipeline::PipelineOptions options;
+  options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+  options.tools = tools::standard_tools();
+  return options;
+}
+
 // A file may be called after its patient; nothing else is.
 TEST(SessionRows, Hazard19ARecordingsFileIsNotNamed) {
   const auto neutral = [](const char* kind, const char* source) {
@@ -30,10 +37,7 @@ TEST(SessionRows, Hazard19ARecordingsFileIsNotNamed) {
 TEST(SessionRows, ATunnelIsToldOfByTheRegistrationThatItWasDrilledBy) {
   const test::TemporaryFolder folder;
   {
-    pipeline::PipelineOptions options;
-    options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
-    options.tools = tools::standard_tools();
-    recording::SessionRecorder recorder(folder.path(), {}, options);
+    recording::SessionRecorder recorder(folder.path(), {}, options());
     registration::RegistrationSummary registration;
     registration.has_pose = registration.reliable = true;
     registration.reasons.clear();
@@ -59,10 +63,7 @@ TEST(SessionRows, ATunnelIsToldOfByTheRegistrationThatItWasDrilledBy) {
 TEST(SessionRows, Hazard27AMediumThatWasContradictedIsToldOf) {
   const test::TemporaryFolder folder;
   {
-    pipeline::PipelineOptions options;
-    options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
-    options.tools = tools::standard_tools();
-    recording::SessionRecorder recorder(folder.path(), {}, options);
+    recording::SessionRecorder recorder(folder.path(), {}, options());
     for (int i = 0; i < 8; ++i) {
       pipeline::FrameResult frame;
       frame.frame_index = i;

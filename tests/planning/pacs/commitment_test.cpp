@@ -62,28 +62,10 @@ using test::HostilePeer;
 
 // Stores what it is sent, and breaks the connection off at the request, having reported before or not.
 bool break_off_at_the_request(HostilePeer::Request& request, bool reports_before) {
-  if (request.message.CommandField == DIMSE_C_STORE_RQ) {
-    T_DIMSE_C_StoreRSP response{};
-    response.MessageIDBeingRespondedTo = request.message.msg.CStoreRQ.MessageID;
-    response.DataSetType = DIMSE_DATASET_NULL;
-    return DIMSE_sendStoreResponse(&request.association, request.context, &request.message.msg.CStoreRQ,
-                                   &response, nullptr)
-        .good();
-  }
+  if (request.message.CommandField == DIMSE_C_STORE_RQ) return test::take_file(request);
   if (request.message.CommandField != DIMSE_N_ACTION_RQ) return true;
   if (!reports_before) return false;
-  T_DIMSE_Message report{};
-  report.CommandField = DIMSE_N_EVENT_REPORT_RQ;
-  T_DIMSE_N_EventReportRQ& event = report.msg.NEventReportRQ;
-  event.MessageID = 7;
-  event.EventTypeID = 1;
-  event.DataSetType = DIMSE_DATASET_PRESENT;
-  OFStandard::strlcpy(event.AffectedSOPClassUID, UID_StorageCommitmentPushModelSOPClass, DIC_UI_LEN + 1);
-  OFStandard::strlcpy(event.AffectedSOPInstanceUID, UID_StorageCommitmentPushModelSOPInstance,
-                      DIC_UI_LEN + 1);
-  // The request names what the report names.
-  (void)DIMSE_sendMessageUsingMemoryData(&request.association, request.context, &report, nullptr,
-                                         &request.data, nullptr, nullptr);
+  (void)test::report_commitment(request, request.data);  // the request names what the report names
   T_DIMSE_Message answer{};
   T_ASC_PresentationContextID context = 0;
   DcmDataset* detail = nullptr;

@@ -119,6 +119,30 @@ unsigned store(const HostilePeer::Request& request, DcmDataset& image) {
   return outcome.good() ? response.DimseStatus : 0xFFFF;
 }
 
+bool take_file(const HostilePeer::Request& request) {
+  T_DIMSE_C_StoreRSP response{};
+  response.MessageIDBeingRespondedTo = request.message.msg.CStoreRQ.MessageID;
+  response.DataSetType = DIMSE_DATASET_NULL;
+  return DIMSE_sendStoreResponse(&request.association, request.context, &request.message.msg.CStoreRQ,
+                                 &response, nullptr)
+      .good();
+}
+
+bool report_commitment(const HostilePeer::Request& request, DcmDataset& data) {
+  T_DIMSE_Message report{};
+  report.CommandField = DIMSE_N_EVENT_REPORT_RQ;
+  T_DIMSE_N_EventReportRQ& event = report.msg.NEventReportRQ;
+  event.MessageID = 7;
+  event.EventTypeID = 1;
+  event.DataSetType = DIMSE_DATASET_PRESENT;
+  OFStandard::strlcpy(event.AffectedSOPClassUID, UID_StorageCommitmentPushModelSOPClass, DIC_UI_LEN + 1);
+  OFStandard::strlcpy(event.AffectedSOPInstanceUID, UID_StorageCommitmentPushModelSOPInstance,
+                      DIC_UI_LEN + 1);
+  return DIMSE_sendMessageUsingMemoryData(&request.association, request.context, &report, nullptr, &data,
+                                          nullptr, nullptr)
+      .good();
+}
+
 void end_get(const HostilePeer::Request& request, int failed) {
   T_DIMSE_C_GetRSP response{};
   response.MessageIDBeingRespondedTo = request.message.msg.CGetRQ.MessageID;

@@ -48,6 +48,10 @@ bool answer_find(const HostilePeer::Request& request, DcmDataset* answer, unsign
 // The file to the peer, as part of a C-GET; the status that it is answered with, 0xFFFF when it could not be
 // sent.
 unsigned store(const HostilePeer::Request& request, DcmDataset& image);
+// Says that it has stored the file of a C-STORE; false when that could not be sent.
+bool take_file(const HostilePeer::Request& request);
+// An N-EVENT-REPORT of storage commitment; false when it could not be sent.
+bool report_commitment(const HostilePeer::Request& request, DcmDataset& data);
 void end_get(const HostilePeer::Request& request, int failed);
 
 }  // namespace arthronaut::test

@@ -185,16 +185,9 @@ TEST(PacsHostile, APeerThatGoesOnSendingItIsGivenUp) {
 TEST(PacsHostile, AReportWithoutMeasureIsNotTakenIntoMemory) {
   const std::string endless(8 << 20, 'x');
   const HostilePeer peer([&](Request& request) {
-    T_DIMSE_Message answer{};
-    if (request.message.CommandField == DIMSE_C_STORE_RQ) {
-      T_DIMSE_C_StoreRSP response{};
-      response.MessageIDBeingRespondedTo = request.message.msg.CStoreRQ.MessageID;
-      response.DataSetType = DIMSE_DATASET_NULL;
-      return DIMSE_sendStoreResponse(&request.association, request.context, &request.message.msg.CStoreRQ,
-                                     &response, nullptr)
-          .good();
-    }
+    if (request.message.CommandField == DIMSE_C_STORE_RQ) return test::take_file(request);
     if (request.message.CommandField != DIMSE_N_ACTION_RQ) return true;
+    T_DIMSE_Message answer{};
     answer.CommandField = DIMSE_N_ACTION_RSP;
     answer.msg.NActionRSP.MessageIDBeingRespondedTo = request.message.msg.NActionRQ.MessageID;
     answer.msg.NActionRSP.DataSetType = DIMSE_DATASET_NULL;
@@ -202,23 +195,12 @@ TEST(PacsHostile, AReportWithoutMeasureIsNotTakenIntoMemory) {
                                          nullptr, nullptr)
             .bad())
       return false;
-    T_DIMSE_Message report{};
-    report.CommandField = DIMSE_N_EVENT_REPORT_RQ;
-    T_DIMSE_N_EventReportRQ& event = report.msg.NEventReportRQ;
-    event.MessageID = 7;
-    event.EventTypeID = 1;
-    event.DataSetType = DIMSE_DATASET_PRESENT;
-    OFStandard::strlcpy(event.AffectedSOPClassUID, UID_StorageCommitmentPushModelSOPClass, DIC_UI_LEN + 1);
-    OFStandard::strlcpy(event.AffectedSOPInstanceUID, UID_StorageCommitmentPushModelSOPInstance,
-                        DIC_UI_LEN + 1);
     OFString transaction;
     request.data.findAndGetOFString(DCM_TransactionUID, transaction);
     DcmDataset data;
     data.putAndInsertString(DCM_TransactionUID, transaction.c_str());
     data.putAndInsertString(DCM_TextValue, endless.c_str());
-    return DIMSE_sendMessageUsingMemoryData(&request.association, request.context, &report, nullptr, &data,
-                                            nullptr, nullptr)
-        .good();
+    return test::report_commitment(request, data);
   });
   const test::TemporaryFolder folder;
   test::write_dicom_series(folder / "ct", test::ellipsoid_ct());
