@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/review/freed_memory.h"
+#include "app/widgets/list_rows.h"
 #include "app/widgets/source_banner.h"
 #include "navigation/recording/cut_short.h"
 #include "planning/cases/case.h"
@@ -169,7 +170,11 @@ void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_origin(ui, rest.cut_top(ui.theme.px(58), gap));
   // The numbers first: what was achieved stands below the moment's, and is to be read without scrolling.
   const widgets::Rect numbers = rest.cut_right(ui.theme.px(430), gap);
-  const widgets::Rect line = rest.cut_bottom(ui.theme.px(330), gap);
+  const widgets::Rect line = rest.cut_bottom(ui.theme.px(300), gap);
+  // What moves along the time line stands above it.
+  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(48), ui.theme.px(8)),
+                        {"review.play", "review.loop", "review.slower", "review.faster",
+                         "review.event_before", "review.event_after"});
   const widgets::Rect picture = rest.cut_left((rest.width - gap) / 2, gap);
   draw_picture(ui, picture);
   draw_scene(ui, rest);
@@ -266,9 +271,6 @@ void ReviewView::draw_buttons(const widgets::Ui& ui) {
     widgets::action_button(ui, right, width);
   };
   pair("review.newer", "review.older");
-  pair("review.play", "review.loop");
-  pair("review.slower", "review.faster");
-  pair("review.event_before", "review.event_after");
   pair("review.mark", "review.unmark");
   pair("review.today", "review.achieved");
   widgets::action_button(ui, "review.report", width);

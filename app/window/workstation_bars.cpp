@@ -38,7 +38,9 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
     widgets::action_button(ui, mode->title().action, width, height);
     x += width + ui.theme.px(8);
   }
-  if (case_ != nullptr) {
+  if (case_ == nullptr || opens_another()) {
+    ui.log.note_state("whose", "");
+  } else {
     const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
     const float right = area.x + area.width - ui.theme.px(458), room = right - x - ui.theme.px(8);
     const std::vector<WhoseLine> lines = whose_knee(case_->identity(), knee.name, knee.side);
@@ -86,15 +88,14 @@ std::pair<std::string, bool> WorkstationWindow::status_words() {
   const std::string copied = copies_.words(widgets::GraphicsWindow::now_s());
   if (!notice.empty()) return {copied.empty() ? notice : notice + ".  " + copied, true};
   if (!copied.empty()) return {copied, true};
-  const std::string access = case_ == nullptr        ? std::string()
-                             : case_->is_read_only() ? "READ-ONLY: the case " + case_->read_only_reason()
-                                                     : case_->notice();
+  if (case_ == nullptr || opens_another()) return {room_.trouble(), !room_.trouble().empty()};
+  const std::string access =
+      case_->is_read_only() ? "READ-ONLY: the case " + case_->read_only_reason() : case_->notice();
   // A pedal that will not do what it was told to is not to be found out in the operation.
   const std::string trouble = room_.trouble();
-  const bool is_read_only = case_ != nullptr && case_->is_read_only();
-  if (!trouble.empty() && !is_read_only) return {trouble, true};
+  if (!trouble.empty() && !case_->is_read_only()) return {trouble, true};
   if (!access.empty()) return {access, true};
-  return {case_ != nullptr ? case_->folder().string() : std::string(), false};
+  return {case_->folder().string(), false};
 }
 
 void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& area) {

@@ -52,6 +52,8 @@ class WorkstationWindow {
   void open(const std::filesystem::path& folder);
   void take_opened_case();
   [[nodiscard]] bool can_stop_opening() const;
+  // Another case than the open one, which is nobody's on the screen meanwhile.
+  [[nodiscard]] bool opens_another() const { return opening_ != nullptr && lender_ != case_.get(); }
   void draw_opening(const widgets::Ui& ui, const widgets::Rect& area) const;
   void let_go(std::unique_ptr<open_case::CaseOpening> closed);
   void take_dropped();

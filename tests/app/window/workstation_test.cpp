@@ -129,7 +129,7 @@ TEST_P(WorkstationLayout, HoldsAtEverySize) {
     const std::map<std::string, std::string> own{{"plan", "plan.undo"},
                                                  {"set up", "setup.next"},
                                                  {"navigate", "navigate.next"},
-                                                 {"review", "review.play"}};
+                                                 {"review", "review.report"}};
     ASSERT_TRUE(app.wait_for_widget(own.at(mode)));
     const auto widgets = app.widgets();
     for (auto a = widgets.begin(); a != widgets.end(); ++a) {
