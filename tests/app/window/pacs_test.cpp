@@ -3,13 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
 #include "planning/pacs/query.h"
+#include "planning/pacs/web.h"
 #include "planning/phantom/phantom_case.h"
 #include "tests/app/window/display.h"
+#include "tests/planning/pacs/certificates.h"
 #include "tests/planning/pacs/sent_series.h"
+#include "tests/planning/pacs/tls_front.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::test {
@@ -22,13 +26,40 @@ class PacsWindow : public ::testing::Test {
   void SetUp() override {
     if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
   }
-  void write_peers(const Orthanc& orthanc) const {
+  // more: of the peer, in JSON, with a comma before it.
+  void write_peers(const std::string& address, const std::string& more = "") const {
     fs::create_directories(folder_ / "arthronaut");
     files::write_atomically(
         folder_ / "arthronaut/pacs.json",
-        R"({"format": "arthronaut.pacs_peers", "version": 1, "peers": [{"name": "Archive", "peer": ")" +
-            pacs::to_text(orthanc.peer()) + R"(", "our_ae_title": "ARTHRONAUT", "listening_port": )" +
-            std::to_string(our_port_) + "}]}");
+        R"({"format": "arthronaut.pacs_peers", "version": 2, "peers": [{"name": "Archive", "peer": ")" +
+            address + R"(", "our_ae_title": "ARTHRONAUT", "listening_port": )" + std::to_string(our_port_) +
+            more + "}]}");
+  }
+  void write_peers(const Orthanc& orthanc) const { write_peers(pacs::to_text(orthanc.peer())); }
+  void save_knee() const {
+    cases::save_case(folder_ / "Knee.arthro",
+                     phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3}), "Knee of a test"));
+  }
+  // From the open case: listed first, then a key held. `stored`: how many patients the PACS has.
+  static void send_results(RunningWorkstation& app, const std::function<std::size_t()>& stored) {
+    ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+    app.press("F5");
+    ASSERT_TRUE(app.wait_for_state("case_selected", "Knee of a test"));
+    app.press("p");
+    ASSERT_TRUE(app.wait_for_state("pacs_light", "good")) << app.state("pacs_says");
+    app.press("r");
+    ASSERT_TRUE(app.wait_for_state("pacs", "send"));
+    ASSERT_TRUE(app.wait_for_state("pacs_sends", "the open case"));
+    app.press("d");
+    app.press("Return");
+    ASSERT_TRUE(app.wait_for_state("pacs_work", "write-done", 120) ||
+                app.state("pacs_work") == "write-unreliable")
+        << app.state("pacs_says");
+    EXPECT_NE(app.state("pacs_outgoing"), "0");
+    app.press("Return");  // a press is not enough
+    EXPECT_EQ(stored(), 0U);
+    ASSERT_TRUE(app.hold_until("Return", "pacs_work", "send-done", 120)) << app.state("pacs_says");
+    EXPECT_EQ(stored(), 1U);
   }
   const TemporaryFolder folder_;
   const int our_port_ = free_port();
@@ -109,37 +140,60 @@ TEST_F(PacsWindow, SaysThatThePacsIsAway) {
 TEST_F(PacsWindow, SendsTheResultsOfTheOpenCase) {
   const Orthanc orthanc({.our_port = our_port_});
   write_peers(orthanc);
-  cases::save_case(folder_ / "Knee.arthro",
-                   phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3}), "Knee of a test"));
+  save_knee();
   const VirtualDisplay display(1280, 720);
   // By another way: it is the open one all the same.
   std::filesystem::create_directory_symlink(folder_ / "Knee.arthro", folder_ / "Way.arthro");
   RunningWorkstation app(display, folder_.path(), {(folder_ / "Way.arthro").string()});
-  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
-  app.press("F5");
-  ASSERT_TRUE(app.wait_for_state("case_selected", "Knee of a test"));
-  app.press("p");
-  ASSERT_TRUE(app.wait_for_state("pacs_light", "good"));
-  app.press("r");
-  ASSERT_TRUE(app.wait_for_state("pacs", "send"));
-  ASSERT_TRUE(app.wait_for_state("pacs_sends", "the open case"));
-  app.press("d");
-  app.press("Return");
-  ASSERT_TRUE(app.wait_for_state("pacs_work", "write-done", 120) ||
-              app.state("pacs_work") == "write-unreliable")
-      << app.state("pacs_says");
-  EXPECT_NE(app.state("pacs_outgoing"), "0");
-  const auto stored = [&] {
-    return pacs::find(orthanc.peer(), quick_connection(), {.study_date = "19000101-20991231"})
-        .patients.size();
-  };
-  app.press("Return");  // a press is not enough
-  EXPECT_EQ(stored(), 0U);
-  ASSERT_TRUE(app.hold_until("Return", "pacs_work", "send-done", 120)) << app.state("pacs_says");
+  send_results(app, [&] {
+    return pacs::find(orthanc.peer(), quick_connection(), {.patient_name = "*"}).patients.size();
+  });
   EXPECT_EQ(app.state("pacs_commitment"), "confirmed");
   app.press("Escape");
   ASSERT_TRUE(app.wait_for_state("pacs", "search"));
   EXPECT_FALSE(fs::exists(folder_ / "arthronaut/outgoing"));
+}
+
+// The line is encrypted both ways: the PACS calls us with what it keeps, and is shown our certificate.
+TEST_F(PacsWindow, SendsByTls) {
+  Authority authority("Hospital authority");
+  const std::string theirs = authority.sign("PACS", "IP:127.0.0.1").string();
+  const Orthanc orthanc({.our_port = our_port_,
+                         .certificate = theirs + ".pem",
+                         .key = theirs + ".key",
+                         .authority = authority.certificate()});
+  pacs::ConnectionOptions connection = quick_connection();
+  connection.tls = authority.ours();
+  write_peers(pacs::to_text(orthanc.peer()),
+              R"(, "tls": {"certificate": ")" + connection.tls->certificate.string() + R"(", "key": ")" +
+                  connection.tls->key.string() + R"(", "authority": ")" + connection.tls->authority.string() +
+                  R"(", "key_password_file": "", "name": ""})");
+  save_knee();
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {(folder_ / "Knee.arthro").string()});
+  send_results(app,
+               [&] { return pacs::find(orthanc.peer(), connection, {.patient_name = "*"}).patients.size(); });
+  EXPECT_EQ(app.state("pacs_commitment"), "confirmed");
+}
+
+// By DICOMweb, encrypted, as a user with a password from a file. It has no storage commitment.
+TEST_F(PacsWindow, SendsByDicomWeb) {
+  Authority authority("Hospital authority");
+  const Orthanc orthanc({.offers_web = true, .web_user = "theatre", .web_password = "secret-7"});
+  const TlsFront front(authority.sign("server", "IP:127.0.0.1"), orthanc.web_port());
+  files::write_atomically(folder_ / "password", "secret-7\n");
+  fs::permissions(folder_ / "password", fs::perms::owner_read | fs::perms::owner_write);
+  const pacs::WebServer server{
+      .url = front.url(), .authority = authority.certificate(), .user = "theatre", .password = "secret-7"};
+  write_peers(server.url, R"(, "web": {"authority": ")" + server.authority.string() +
+                              R"(", "user": "theatre", "password_file": ")" +
+                              (folder_ / "password").string() + R"("})");
+  save_knee();
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {(folder_ / "Knee.arthro").string()});
+  send_results(app, [&] {
+    return pacs::find(orthanc.peer(), quick_connection(), {.patient_name = "*"}).patients.size();
+  });
 }
 
 // The case that is selected in the list is what is sent: where it is not the open one, that is said.
