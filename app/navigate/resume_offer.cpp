@@ -4,6 +4,7 @@
 
 #include "app/case/case_calibration.h"
 #include "navigation/registration/provenance.h"
+#include "navigation/worker/freed_memory.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
 #include "planning/log/log.h"
@@ -63,6 +64,7 @@ ResumeOffer::Found ResumeOffer::search(const Search& search) {
       log::error(std::string("nothing can be resumed: ") + error.what());
     }
   }
+  worker::give_freed_memory_back();  // whole sessions were read
   return all;
 }
 

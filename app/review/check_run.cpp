@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "navigation/worker/freed_memory.h"
+
 namespace arthronaut::review {
 
 CheckRun::CheckRun(const std::filesystem::path& session_folder, std::function<void()> on_news)
@@ -18,6 +20,7 @@ CheckRun::CheckRun(const std::filesystem::path& session_folder, std::function<vo
                 [&] { return inbox.stops(); });
             progress.result = std::move(result);
             inbox.publish(progress);
+            worker::give_freed_memory_back();
           },
           std::move(on_news)) {}
 

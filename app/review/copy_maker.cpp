@@ -5,7 +5,7 @@
 
 namespace arthronaut::review {
 
-CopyMaker::CopyMaker(const recording::SessionOverview& session,
+CopyMaker::CopyMaker(const std::shared_ptr<const recording::SessionOverview>& session,
                      const std::vector<recording::QuickPictures::Name>& names)
     : worker_(
           worker::Backlog::NewestWins,

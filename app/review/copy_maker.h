@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "navigation/recording/quick_pictures.h"
@@ -13,7 +14,7 @@ namespace arthronaut::review {
 
 class CopyMaker {
  public:
-  CopyMaker(const recording::SessionOverview& session,
+  CopyMaker(const std::shared_ptr<const recording::SessionOverview>& session,
             const std::vector<recording::QuickPictures::Name>& names);
   // From now on those nearest to that frame first.
   void make_about(std::int64_t frame) { worker_.post(frame); }

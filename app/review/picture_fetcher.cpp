@@ -50,9 +50,8 @@ std::vector<recording::QuickPictures::Name> names_of(const std::vector<recording
 
 std::function<PictureReader()> opening(const SessionReview& review) {
   return [session = review.session, timeline = review.timeline, opened = review.pictures]() -> PictureReader {
-    const auto pictures =
-        opened != nullptr ? opened : std::make_shared<recording::RecordedPictures>(*session);
-    const auto copies = std::make_shared<recording::QuickPictures>(*session, names_of(timeline->frames()));
+    const auto pictures = opened != nullptr ? opened : std::make_shared<recording::RecordedPictures>(session);
+    const auto copies = std::make_shared<recording::QuickPictures>(session, names_of(timeline->frames()));
     const auto making = std::make_shared<std::unique_ptr<CopyMaker>>();
     return {[pictures, timeline](const PictureWish& wish, const sources::OnTheWay& on_the_way) {
               return pictures->picture(wish.frame, wish.timestamp_ns, [&](const auto& passed) {
@@ -63,7 +62,7 @@ std::function<PictureReader()> opening(const SessionReview& review) {
             [copies](const PictureWish& wish) { return copies->picture(wish.frame); },
             [making, session, timeline](const PictureWish& wish) {
               if (*making == nullptr)
-                *making = std::make_unique<CopyMaker>(*session, names_of(timeline->frames()));
+                *making = std::make_unique<CopyMaker>(session, names_of(timeline->frames()));
               (*making)->make_about(wish.frame);
             }};
   };

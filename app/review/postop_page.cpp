@@ -7,8 +7,8 @@
 #include <cctype>
 #include <utility>
 
-#include "app/review/freed_memory.h"
 #include "app/widgets/list_rows.h"
+#include "navigation/worker/freed_memory.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/plan_review/proposed_landmarks.h"
@@ -106,7 +106,7 @@ void PostopPage::take_answer() {
   problem_ = run_->error();
   PostopProgress progress = run_->progress();
   run_.reset();
-  give_freed_memory_back();
+  worker::give_freed_memory_back();
   if (!problem_.empty()) return;
   which_ = std::move(progress.which);
   auto answer = std::move(progress.answer);

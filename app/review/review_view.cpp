@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/review/freed_memory.h"
 #include "app/widgets/list_rows.h"
 #include "app/widgets/source_banner.h"
 #include "navigation/recording/cut_short.h"
+#include "navigation/worker/freed_memory.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 
@@ -59,7 +59,7 @@ void ReviewView::case_opened(const mode::OpenCase& opened) {
 }
 
 void ReviewView::enter() {
-  give_freed_memory_back();  // of what was shown before: here are two hours, and pictures
+  worker::give_freed_memory_back();  // of what was shown before: here are two hours, and pictures
   sessions_.read();
   const auto& folders = sessions_.folders();
   if (folders.empty()) {
@@ -101,7 +101,7 @@ void ReviewView::take_opened() {
     notice_ = error.what();
     return;
   }
-  give_freed_memory_back();
+  worker::give_freed_memory_back();
   OpenSession& open = *open_;
   open.marks = MarkBook(open.review.folder, read_only_);
   open.check = std::make_unique<CheckRun>(open.review.folder, wake_);

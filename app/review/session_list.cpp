@@ -8,6 +8,7 @@
 #include "app/widgets/list_rows.h"
 #include "app/widgets/wrapped_text.h"
 #include "navigation/recording/session_facts.h"
+#include "navigation/worker/freed_memory.h"
 #include "planning/cases/case.h"
 #include "planning/files/local_time.h"
 #include "planning/files/within_folder.h"
@@ -67,6 +68,7 @@ void SessionList::read() {
           line.words = files::within_folder(folder, std::move(line.words));
           lines.emplace(folder, std::move(line));
         }
+        worker::give_freed_memory_back();
         return lines;
       },
       wake_);

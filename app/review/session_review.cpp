@@ -42,7 +42,8 @@ std::shared_ptr<const registration::RegistrationSummary> registration_of(const r
   }
 }
 
-std::shared_ptr<recording::RecordedPictures> opened(const recording::SessionOverview& session) {
+std::shared_ptr<recording::RecordedPictures> opened(
+    const std::shared_ptr<const recording::SessionOverview>& session) {
   try {
     return std::make_shared<recording::RecordedPictures>(session);
   } catch (const std::runtime_error&) {
@@ -93,7 +94,7 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
   review.folder = session_folder;
   review.session =
       std::make_shared<const recording::SessionOverview>(recording::read_overview(session_folder));
-  auto pictures = std::async(std::launch::async, [session = review.session] { return opened(*session); });
+  auto pictures = std::async(std::launch::async, [session = review.session] { return opened(session); });
   review.timeline = std::make_shared<const recording::SessionTimeline>(session_folder);
   review.pictures = pictures.get();
   const recording::SessionOverview& session = *review.session;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "app/review/review_panels.h"
@@ -66,7 +67,45 @@ float height_of(const Row& row, double offset_mm) {
   return row.bottom() - share * (row.bottom() - row.top());
 }
 
-// The offset as the surgeon saw it, and as today's program computes it: the range in every pixel.
+struct Column {  // of pixels
+  float x, top, bottom;
+};
+
+// What falls on one column is drawn once, as its range, however often it comes and goes there: of two hours
+// hundreds of frames do.
+class Columns {
+ public:
+  // The one before, when this begins another.
+  std::optional<Column> add(float x, float y) {
+    if (!last_ || last_->x != x) return std::exchange(last_, Column{x, y, y});
+    last_->top = std::min(last_->top, y);
+    last_->bottom = std::max(last_->bottom, y);
+    return std::nullopt;
+  }
+  [[nodiscard]] const std::optional<Column>& last() const { return last_; }
+
+ private:
+  std::optional<Column> last_;
+};
+
+void draw_today(ImDrawList& draw, const Scale& scale, const Row& row, const ReviewScreen& screen) {
+  Columns columns;
+  const auto draw_column = [&](const std::optional<Column>& column) {
+    if (column)
+      draw.AddRectFilled({column->x - 1, column->top - 1}, {column->x + 1, column->bottom + 1},
+                         widgets::kCaution);
+  };
+  for (const TodayFrame& frame : screen.today->frames) {
+    if (frame.state != guidance::GuidanceState::Valid) continue;
+    const auto at = static_cast<double>(screen.timeline().at_index(frame.index));
+    if (scale.shows(at))
+      draw_column(
+          columns.add(std::floor(scale.x_of(at)), height_of(row, static_cast<double>(frame.offset_mm))));
+  }
+  draw_column(columns.last());
+}
+
+// The offset as the surgeon saw it, and as today's program computes it.
 void draw_offsets(const widgets::Ui& ui, ImDrawList& draw, const Scale& scale, const Row& row,
                   const ReviewScreen& screen) {
   draw.AddRectFilled({scale.left, row.top()}, {scale.left + scale.width, row.bottom()}, kTrough);
@@ -75,44 +114,29 @@ void draw_offsets(const widgets::Ui& ui, ImDrawList& draw, const Scale& scale, c
                ui.theme.px(1));
   const auto& frames = screen.timeline().frames();
   const auto last = static_cast<std::size_t>(std::min(scale.to, static_cast<double>(frames.size() - 1)));
-  // Of one pixel column: the range; columns of frames that follow each other are joined.
-  float column = -1, low = 0, high = -1, before_x = -1, before_y = 0;
-  const auto flush = [&] {
-    if (high < low) return;
-    if (before_x >= 0)
-      draw.AddLine({before_x, before_y}, {column, (low + high) / 2}, widgets::kAccent, ui.theme.px(2));
-    draw.AddLine({column, high + ui.theme.px(1.5F)}, {column, low}, widgets::kAccent, ui.theme.px(2));
-    before_x = column;
-    before_y = (low + high) / 2;
+  Columns columns;
+  std::optional<ImVec2> before;  // the middle of the column that the next one is joined to
+  const auto draw_column = [&](const std::optional<Column>& column) {
+    if (!column) return;
+    const ImVec2 middle{column->x, (column->top + column->bottom) / 2};
+    if (before) draw.AddLine(*before, middle, widgets::kAccent, ui.theme.px(2));
+    draw.AddLine({column->x, column->bottom + ui.theme.px(1.5F)}, {column->x, column->top}, widgets::kAccent,
+                 ui.theme.px(2));
+    before = middle;
   };
+  std::optional<std::size_t> guided;
   for (auto i = static_cast<std::size_t>(scale.from); i <= last; ++i) {
-    if (!frames[i].is_guided()) {
-      flush();
-      before_x = -1;
-      low = 0;
-      high = -1;
-      column = -1;
-      continue;
-    }
+    if (!frames[i].is_guided()) continue;
     const float x = std::floor(scale.x_of(static_cast<double>(i)));
-    const float y = height_of(row, static_cast<double>(frames[i].offset_mm));
-    if (x != column) {
-      flush();
-      column = x;
-      low = high = y;
-    }
-    low = std::min(low, y);
-    high = std::max(high, y);
+    // Nothing is joined over a column that has no guidance.
+    const bool is_joined =
+        guided && (i == *guided + 1 || x <= std::floor(scale.x_of(static_cast<double>(*guided))) + 1);
+    draw_column(columns.add(x, height_of(row, static_cast<double>(frames[i].offset_mm))));
+    if (!is_joined) before.reset();
+    guided = i;
   }
-  flush();
-  if (screen.today == nullptr) return;
-  for (const TodayFrame& frame : screen.today->frames) {
-    if (frame.state != guidance::GuidanceState::Valid) continue;
-    const auto at = static_cast<double>(screen.timeline().at_index(frame.index));
-    if (!scale.shows(at)) continue;
-    const float x = scale.x_of(at), y = height_of(row, static_cast<double>(frame.offset_mm));
-    draw.AddRectFilled({x - 1, y - 1}, {x + 1, y + 1}, widgets::kCaution);
-  }
+  draw_column(columns.last());
+  if (screen.today != nullptr) draw_today(draw, scale, row, screen);
 }
 
 ImU32 color_of(MomentKind kind) {

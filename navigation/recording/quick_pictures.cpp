@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "navigation/recording/kept_pictures.h"
 #include "navigation/recording/recorded_pictures.h"
@@ -74,8 +75,9 @@ camera::Frame halved(const camera::Frame& picture) {
 }  // namespace
 
 struct QuickPictures::State {
-  State(const SessionOverview& of, const std::vector<Name>& frames)
-      : session(of), folder(of.folder / "quick") {
+  State(std::shared_ptr<const SessionOverview> whole, const std::vector<Name>& frames)
+      : session(std::move(whole)), folder(session->folder / "quick") {
+    const SessionOverview& of = *session;
     std::vector<fs::path> files;
     for (const VideoPart& part : parts_of(of.header)) files.push_back(of.folder / part.file);
     if (files.empty()) {
@@ -140,7 +142,7 @@ struct QuickPictures::State {
     return encoder.has_value();
   }
 
-  SessionOverview session;
+  std::shared_ptr<const SessionOverview> session;
   fs::path folder;
   std::vector<Name> names;       // of the frames with pictures
   std::string mark;              // of the video that the copies are of
@@ -151,8 +153,8 @@ struct QuickPictures::State {
   std::size_t video_of = 0;
 };
 
-QuickPictures::QuickPictures(const SessionOverview& session, const std::vector<Name>& of)
-    : state_(std::make_unique<State>(session, of)) {}
+QuickPictures::QuickPictures(std::shared_ptr<const SessionOverview> session, const std::vector<Name>& of)
+    : state_(std::make_unique<State>(std::move(session), of)) {}
 
 QuickPictures::~QuickPictures() = default;
 
@@ -186,7 +188,7 @@ camera::FramePtr QuickPictures::picture(std::int64_t frame) {
 bool QuickPictures::make_next(std::int64_t near_frame, const std::function<bool()>& goes_on) {
   State& s = *state_;
   const auto stretch = s.next_near(near_frame);
-  if (!stretch || !goes_on() || files::free_bytes_at(s.session.folder) < kLeftFree) return false;
+  if (!stretch || !goes_on() || files::free_bytes_at(s.session->folder) < kLeftFree) return false;
   files::create_private_folder(s.folder);
   const fs::path unfinished = s.folder / unfinished_name(::getpid());
   s.remove_strangers();

@@ -23,8 +23,9 @@ class QuickPictures {
   struct Name {
     std::int64_t frame = 0, timestamp_ns = 0;
   };
-  // of: the session's frames, in order; those without a picture are left out. Throws nothing.
-  QuickPictures(const SessionOverview& session, const std::vector<Name>& of);
+  // of: the session's frames, in order; those without a picture are left out. Throws nothing. Precondition:
+  // not null.
+  QuickPictures(std::shared_ptr<const SessionOverview> session, const std::vector<Name>& of);
   ~QuickPictures();
 
   // Null: it was not made yet, or there is none.

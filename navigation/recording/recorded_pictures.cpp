@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "navigation/recording/cut_short.h"
@@ -79,7 +81,7 @@ struct RecordedPictures::State {
   }
 
   [[nodiscard]] std::unique_ptr<sources::KeptStream> open_stream() const {
-    return std::make_unique<sources::KeptStream>(kept_stream_file(folder, parts, part, pictures),
+    return std::make_unique<sources::KeptStream>(kept_stream_file(folder, parts, part, session->pictures),
                                                  sources::KeptStream::Use::ToLookAt);
   }
 
@@ -130,9 +132,10 @@ struct RecordedPictures::State {
     (void)video_before->picture_at(wanted, [&goes_on](const auto& /*passed*/) { return goes_on(); });
   }
 
+  std::shared_ptr<const SessionOverview> session;
   std::filesystem::path folder;
-  std::vector<VideoPart> parts;       // empty: the source's own video
-  std::vector<KeptPicture> pictures;  // by rising frames
+  std::vector<VideoPart> parts;           // empty: the source's own video
+  std::span<const KeptPicture> pictures;  // of the session, by rising frames
   bool is_cut_short = false;
   std::size_t part = 0;
   // Of the part in hand, or the source's own. `before`: the same file, at what lies before; null: nobody went
@@ -142,8 +145,14 @@ struct RecordedPictures::State {
   std::unique_ptr<sources::KeptStream> stream, stream_before;
 };
 
-RecordedPictures::RecordedPictures(const SessionOverview& session) : state_(std::make_unique<State>()) {
+RecordedPictures::RecordedPictures(SessionOverview session)
+    : RecordedPictures(std::make_shared<const SessionOverview>(std::move(session))) {}
+
+RecordedPictures::RecordedPictures(std::shared_ptr<const SessionOverview> of)
+    : state_(std::make_unique<State>()) {
   State& s = *state_;
+  s.session = std::move(of);
+  const SessionOverview& session = *s.session;
   if (session.video().empty()) throw InvalidInput(session.folder, "", "no video was kept of this session");
   s.folder = session.folder;
   s.parts = parts_of(session.header);
@@ -153,7 +162,7 @@ RecordedPictures::RecordedPictures(const SessionOverview& session) : state_(std:
     s.open(0);
     return;
   }
-  s.open_video = [session] { return open_own(session); };
+  s.open_video = [whole = s.session] { return open_own(*whole); };
   s.video = s.open_video();
 }
 

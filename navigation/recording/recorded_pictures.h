@@ -19,8 +19,9 @@ namespace arthronaut::recording {
 // Threads: one at a time.
 class RecordedPictures {
  public:
-  // Throws IoError or InvalidInput; InvalidInput when no video was kept.
-  explicit RecordedPictures(const SessionOverview& session);
+  // Throws IoError or InvalidInput; InvalidInput when no video was kept. Precondition: not null.
+  explicit RecordedPictures(std::shared_ptr<const SessionOverview> session);
+  explicit RecordedPictures(SessionOverview session);
   ~RecordedPictures();
 
   // Of the frame with this index and timestamp; null where none was kept or the video is broken there.

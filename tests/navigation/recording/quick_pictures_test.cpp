@@ -31,7 +31,7 @@ int number_of_copy(const camera::Frame& copy) {
 TEST(QuickPictures, AreEachOfItsOwnPicture) {
   const test::TemporaryFolder folder;
   ASSERT_NO_FATAL_FAILURE(copy_numbered_video(folder / "a.mp4", "mp4v", folder / "session"));
-  const SessionOverview session = read_overview(folder / "session");
+  const auto session = std::make_shared<const SessionOverview>(read_overview(folder / "session"));
   std::vector<QuickPictures::Name> names;
   for (int i = 0; i < kFrames; ++i) names.push_back({i, test::frame_result(i).timestamp_ns});
   QuickPictures reads(session, names), makes(session, names);
@@ -50,7 +50,7 @@ TEST(QuickPictures, AreEachOfItsOwnPicture) {
     EXPECT_EQ(copy->timestamp_ns, names[static_cast<std::size_t>(i)].timestamp_ns);
   }
   EXPECT_EQ(reads.picture(kFrames), nullptr);
-  fs::last_write_time(session.video(), fs::last_write_time(session.video()) + std::chrono::seconds(1));
+  fs::last_write_time(session->video(), fs::last_write_time(session->video()) + std::chrono::seconds(1));
   QuickPictures of_another(session, names);
   EXPECT_EQ(of_another.picture(5), nullptr);
   EXPECT_TRUE(of_another.make_next(5, [] { return true; }));
@@ -72,7 +72,7 @@ TEST(QuickPictures, LeaveWhatAnotherWindowIsMaking) {
     return quick / ("unfinished_" + std::to_string(process) + ".mkv");
   };
   for (const pid_t process : {::getppid(), gone}) std::ofstream(unfinished(process)) << "x";
-  const SessionOverview session = read_overview(folder / "session");
+  const auto session = std::make_shared<const SessionOverview>(read_overview(folder / "session"));
   std::vector<QuickPictures::Name> names;
   for (int i = 0; i < kFrames; ++i) names.push_back({i, test::frame_result(i).timestamp_ns});
   QuickPictures copies(session, names);
@@ -85,8 +85,8 @@ TEST(QuickPictures, LeaveWhatAnotherWindowIsMaking) {
 TEST(QuickPictures, ThereAreNoneOfACutVideo) {
   const test::TemporaryFolder folder;
   ASSERT_NO_FATAL_FAILURE(copy_numbered_video(folder / "c.mkv", "mp4v", folder / "session"));
-  const SessionOverview session = read_overview(folder / "session");
-  fs::resize_file(session.video(), fs::file_size(session.video()) / 2);
+  const auto session = std::make_shared<const SessionOverview>(read_overview(folder / "session"));
+  fs::resize_file(session->video(), fs::file_size(session->video()) / 2);
   std::vector<QuickPictures::Name> names;
   for (int i = 0; i < kFrames; ++i) names.push_back({i, test::frame_result(i).timestamp_ns});
   QuickPictures copies(session, names);

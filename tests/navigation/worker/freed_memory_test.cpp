@@ -1,4 +1,4 @@
-#include "app/review/freed_memory.h"
+#include "navigation/worker/freed_memory.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace arthronaut::review {
+namespace arthronaut::worker {
 namespace {
 
 double resident_mb() {
@@ -32,4 +32,4 @@ TEST(FreedMemory, IsGivenBack) {
 }
 
 }  // namespace
-}  // namespace arthronaut::review
+}  // namespace arthronaut::worker
