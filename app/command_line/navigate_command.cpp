@@ -68,14 +68,26 @@ fs::path file_to_use(const std::string& given, const fs::path& of_case, const st
   throw InvalidInput(of_case, "", "is not in the case yet: give " + option);
 }
 
-void adopt(const Context& context, const std::string& given, const fs::path& of_case) {
-  if (given.empty() || fs::absolute(given).lexically_normal() == fs::absolute(of_case).lexically_normal())
-    return;
-  const std::string text = files::read_text(given);
-  const bool is_replaced = fs::exists(of_case) && files::read_text(of_case) != text;
-  files::write_atomically(of_case, text);
-  if (is_replaced) context.say("The case's " + of_case.filename().string() + " is now " + given + ".");
-}
+// A file that is given, to become the case's: as it was before the run, whatever becomes of it meanwhile.
+class Adopted {
+ public:
+  Adopted(std::string given, fs::path of_case) : given_(std::move(given)), of_case_(std::move(of_case)) {
+    const bool is_the_cases = given_.empty() || fs::absolute(given_).lexically_normal() ==
+                                                    fs::absolute(of_case_).lexically_normal();
+    if (!is_the_cases) text_ = files::read_text(given_);
+  }
+  void write(const Context& context) const {
+    if (!text_) return;
+    const bool is_replaced = fs::exists(of_case_) && files::read_text(of_case_) != *text_;
+    files::write_atomically(of_case_, *text_);
+    if (is_replaced) context.say("The case's " + of_case_.filename().string() + " is now " + given_ + ".");
+  }
+
+ private:
+  std::string given_;
+  fs::path of_case_;
+  std::optional<std::string> text_;
+};
 
 fs::path camera_file_of(const NavigateArguments& arguments) {
   return file_to_use(arguments.camera, cases::camera_file(arguments.case_folder), "--camera");
@@ -238,6 +250,8 @@ void navigate(Context& context, const NavigateArguments& arguments,
   const cases::CaseLock lock = cases::lock_or_refuse(arguments.case_folder);
   if (!lock.notice().empty()) context.say(lock.notice() + ".");
   const cases::Case knee = cases::load_case(arguments.case_folder);
+  const Adopted camera(arguments.camera, cases::camera_file(arguments.case_folder));
+  const Adopted tools(arguments.tools, cases::tools_file(arguments.case_folder));
   theatre::NavigateOptions options = navigate_options(context, arguments, knee);
   std::vector<std::string> doubts = camera_doubts(camera_file_of(arguments));  // before it becomes the case's
   const bones::BoneKind kind = options.operation.bone;
@@ -295,13 +309,12 @@ void navigate(Context& context, const NavigateArguments& arguments,
     }
     summary = theatre::navigate_source(source, options, record, observer);
   }
-  adopt(context, arguments.camera, cases::camera_file(arguments.case_folder));
-  adopt(context, arguments.tools, cases::tools_file(arguments.case_folder));
-  if (!arguments.cartilage.mesh.empty()) cases::save_cartilage(arguments.case_folder, kind, *cartilage);
-  session.keep();
-
+  session.keep();  // whole, whatever cannot be written beside it
   say_navigation(context, summary);
   context.say("session: " + session.folder().string());
+  camera.write(context);
+  tools.write(context);
+  if (!arguments.cartilage.mesh.empty()) cases::save_cartilage(arguments.case_folder, kind, *cartilage);
   std::vector<std::string> reasons = std::move(doubts);
   reasons.insert(reasons.end(), summary.reasons.begin(), summary.reasons.end());
   for (std::string& reason : record_reasons(summary)) reasons.push_back(std::move(reason));

@@ -73,7 +73,9 @@ void ScreenDrawing::draw() {
 }
 
 void ScreenDrawing::show() {
-  if (copy_part_ == nullptr) return glfwSwapBuffers(window_);
+  // Mesa looks for the window's size where buffers are swapped, and nowhere else: before, parts would be
+  // copied from where they lay in a buffer of another height, which is nowhere on the screen.
+  if (copy_part_ == nullptr || frames_to_draw_whole_ > 0) return glfwSwapBuffers(window_);
   if (shown_.size() == 0) return;
   // In one piece: what belongs together is seen together.
   copy_part_(display_, drawable_, shown_.left, known_.bottom - shown_.bottom, shown_.right - shown_.left,

@@ -25,7 +25,8 @@ class ScreenDrawing {
   [[nodiscard]] long drawn_px() const { return drawn_px_; }
 
  private:
-  // A window system takes a frame or two to have a buffer of the window's new size.
+  // A window system takes a frame or two to have a buffer of the window's new size. All but the last are
+  // swapped, whose buffer is anybody's afterwards.
   static constexpr int kFramesToDrawWhole = 3;
   using CopyPart = void (*)(void* display, unsigned long drawable, int x, int y, int width, int height);
 

@@ -9,6 +9,7 @@
 #include "navigation/recording/event_comparison.h"
 #include "navigation/recording/rerun.h"
 #include "navigation/recording/session_overview.h"
+#include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
 #include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
@@ -161,6 +162,19 @@ class FrameComparison {
   std::vector<strokes::PoseRow> rows_;
 };
 
+// Where registrations are compared: at the plan's entry, else where the bone was touched, as predicted_tre_mm
+// is told. The bone's own origin is the scanner's, which may lie a metre away.
+Eigen::Vector3d target_of(const RecordedSession& session, const registration::RegistrationSummary& then,
+                          const operation::OperationState& now, const ReplayOptions& options) {
+  if (now.plan) return now.plan->tunnel.entry_mm;
+  if (session.curves().empty())
+    return options.surface != nullptr ? geometry::bounds_of(options.surface->mesh()).center_mm()
+                                      : Eigen::Vector3d::Zero().eval();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const strokes::CurvePoint& point : session.curves()) sum += point.position_mm;
+  return then.marker_from_bone.inverse() * (sum / static_cast<double>(session.curves().size())).eval();
+}
+
 void compare_registration(const RecordedSession& session, const operation::OperationState& now,
                           const ReplayOptions& options, ReplaySummary& summary) {
   const auto& then = session.registration();
@@ -176,8 +190,7 @@ void compare_registration(const RecordedSession& session, const operation::Opera
   // registration.json always holds a transform, also where none was found: only a reliable one is worth
   // comparing.
   if (!then->reliable || !is_reliable_now) return;
-  const Eigen::Vector3d target_in_bone =
-      now.plan ? now.plan->tunnel.entry_mm : Eigen::Vector3d::Zero().eval();
+  const Eigen::Vector3d target_in_bone = target_of(session, *then, now, options);
   const double error_mm =
       (then->marker_from_bone * target_in_bone - found->marker_from_bone * target_in_bone).norm();
   summary.registration_mm = error_mm;
@@ -297,6 +310,12 @@ ReplayOptions replay_options_of(const std::filesystem::path& case_folder, const 
   ReplayOptions options;
   const auto found = knee.bones.find(session.header().bone);
   if (found == knee.bones.end()) return options;
+  const std::string& recorded = session.header().mesh_sha256;
+  if (!recorded.empty() && recorded != bones::mesh_sha256(found->second.mesh)) {
+    options.other_bone = "the case's " + std::string(bones::to_text(found->first)) +
+                         " is not the mesh that this session was recorded with: nothing is registered again";
+    return options;
+  }
   options.bone = std::make_shared<const registration::SurfaceIndex>(
       found->second.mesh, cases::surface_index_file(case_folder, found->first));
   options.surface = std::make_shared<const geometry::Surface>(found->second.mesh);
@@ -376,6 +395,7 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   states.add_to(summary);
   // Without its bone no registration is found again, and nothing that follows from one; records of before the
   // journal hold no decisions.
+  if (!options.other_bone.empty()) summary.differences.push_back({-1, "bone", 0, "", options.other_bone});
   if (options.bone != nullptr && !session.header().source_kind.empty())
     compare_events(session, rerun.journal(), summary);
   compare_registration(session, *rerun.state(), options, summary);

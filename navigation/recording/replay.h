@@ -21,6 +21,9 @@ namespace arthronaut::recording {
 struct ReplayOptions {
   // The bone to register to. Null: nothing is registered again.
   operation::SurfaceIndexPtr bone;
+  // Why the case's bone is not the session's, in words: a difference of the session. Empty: it is, or nobody
+  // knows.
+  std::string other_bone = {};
   std::shared_ptr<const geometry::Surface> surface;                       // of the same mesh, for the touches
   std::optional<registration::CartilageRegion> cartilage = std::nullopt;  // of the bone
   // What passes for the same, on a copied video: far above rounding, far below anything that matters.
@@ -37,8 +40,9 @@ struct ReplayOptions {
   std::function<bool()> stops = {};
 };
 
-// The bone of the session and what belongs to it, from the case: seconds. Of a case without that bone nothing
-// is registered again. Throws what reading the case throws.
+// The bone of the session and what belongs to it, from the case: seconds. Of a case without that bone, or
+// with another mesh of it than the session was recorded with, nothing is registered again. Throws what
+// reading the case throws.
 [[nodiscard]] ReplayOptions replay_options_of(const std::filesystem::path& case_folder,
                                               const RecordedSession& session);
 

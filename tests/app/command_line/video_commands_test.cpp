@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "navigation/strokes/poses_file.h"
+#include "planning/cases/case.h"
+#include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
 #include "tests/app/command_line/marker_clip.h"
 #include "tests/temporary_folder.h"
@@ -139,6 +141,19 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   EXPECT_EQ(verified.exit_code, 0) << verified.errors;
   EXPECT_THAT(verified.output, HasSubstr("as recorded"));
 
+  // The bone was made anew since: that is what differs, not the program.
+  const std::string other = folder_ / "other.arthro";
+  std::filesystem::copy(knee, other, std::filesystem::copy_options::recursive);
+  cases::Case moved = cases::load_case(other);
+  for (Eigen::Vector3d& vertex : moved.bones.at(bones::BoneKind::Femur).mesh.vertices_mm) vertex.x() += 3;
+  cases::save_case(other, moved);
+  const auto of_other = run_program({"replay", other});
+  EXPECT_EQ(of_other.exit_code, 4) << of_other.errors;
+  EXPECT_THAT(
+      of_other.output,
+      HasSubstr("session: bone: the case's femur is not the mesh that this session was recorded with"));
+  EXPECT_THAT(of_other.output, Not(HasSubstr("registration")));
+
   // Nobody was at its pedal: there is no operation to go on with.
   const auto resumed = run_program({"resume", knee, "--json"});
   EXPECT_EQ(resumed.exit_code, 4) << resumed.errors;
@@ -213,14 +228,18 @@ TEST_F(VideoCommands, NavigateKeepsWhatALiveSourceGaveUntilCtrlC) {
       return {};
     return *std::filesystem::directory_iterator(knee + "/sessions");
   };
+  const std::string given = files::read_text(folder_ / "camera.json");
   const auto result = run_program(
       {"navigate", knee, "--video",
        "gst:videotestsrc is-live=true ! video/x-raw,width=640,height=480,framerate=30/1 ! appsink",
        "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json", "--fixed-lens", "--no-copy"},
       {.interrupts_when = [&] {
         const auto folder = session();
-        return !folder.empty() && std::filesystem::exists(folder / "session.sqlite");
+        const bool runs = !folder.empty() && std::filesystem::exists(folder / "session.sqlite");
+        if (runs) test::write_file(folder_ / "camera.json", "somebody calibrates meanwhile");
+        return runs;
       }});
+  EXPECT_EQ(files::read_text(knee + "/camera.json"), given);
   EXPECT_EQ(result.exit_code, 4) << result.errors;  // no marker was seen
   EXPECT_THAT(result.output, HasSubstr("the source ended: stopped by hand"));
   EXPECT_TRUE(std::filesystem::exists(session() / "poses.csv"));

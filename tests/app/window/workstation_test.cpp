@@ -2,10 +2,11 @@
 // happens, not how fast.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
-#include "tests/app/window/display.h"
+#include "tests/app/window/theatre.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::test {
@@ -115,6 +116,39 @@ bool overlap(const Area& a, const Area& b) {
 }
 
 // At every size of screen all buttons lie inside the window and none over another, in all modes.
+// A window that was made smaller and larger again is drawn anew each time, over all of itself.
+TEST_F(Workstation, IsDrawnInWhateverSizeItIsGiven) {
+  const VirtualDisplay display(1920, 1080);
+  RunningWorkstation app(display, folder_.path());
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  for (const auto& [width, height] : {std::pair{1280, 720}, std::pair{1600, 900}}) {
+    const std::string resize = "DISPLAY=" + display.name() +
+                               " xdotool search --name Arthronaut windowsize --sync %@ " +
+                               std::to_string(width) + " " + std::to_string(height);
+    ASSERT_EQ(std::system(resize.c_str()), 0);
+    const auto fills = [&, w = width] {
+      const auto widgets = app.widgets();
+      const auto quit = widgets.find("app.quit");
+      return quit != widgets.end() && quit->second.x + quit->second.width > w - 40 &&
+             quit->second.x + quit->second.width <= w;
+    };
+    ASSERT_TRUE(becomes(fills, 20)) << width;
+    const auto shown = [&](bool with_bone) {
+      const auto widgets = app.widgets();
+      const auto view = widgets.find("plan.view");
+      const Area area = view != widgets.end() ? view->second : Area{0, 0, width, height};
+      return (share(app.screenshot(), area, is_bone) > 0.05) == with_bone;
+    };
+    EXPECT_TRUE(becomes([&] { return shown(true); }, 20)) << width;
+    app.press("F4");
+    ASSERT_TRUE(app.wait_for_state("mode", "set up"));
+    EXPECT_TRUE(becomes([&] { return shown(false); }, 20)) << width;
+    app.press("F1");
+    ASSERT_TRUE(app.wait_for_state("mode", "plan"));
+    EXPECT_TRUE(becomes([&] { return shown(true); }, 20)) << width;
+  }
+}
+
 class WorkstationLayout : public Workstation, public ::testing::WithParamInterface<std::pair<int, int>> {};
 
 TEST_P(WorkstationLayout, HoldsAtEverySize) {
