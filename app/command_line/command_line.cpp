@@ -36,15 +36,19 @@ std::vector<std::string> joined_negative_values(int argc, char** argv) {
   return arguments;
 }
 
-// No subcommand: the window. A word that is neither a subcommand nor a folder is a slip of the keyboard.
+// A word that is neither a subcommand nor a folder is a slip of the keyboard.
+bool is_slip(const std::string& word) { return !word.empty() && !std::filesystem::exists(word); }
+
+int tell_slip(const std::string& word) {
+  std::cerr << "arthronaut: \"" << word
+            << "\" is neither a subcommand nor a case folder; see arthronaut --help\n";
+  return kWrongUsage;
+}
+
+// No subcommand: the window.
 int open_window(const WorkstationRequest& request,
                 const std::function<int(const WorkstationRequest&)>& open) {
-  if (!request.case_folder.empty() && !std::filesystem::exists(request.case_folder)) {
-    std::cerr << "arthronaut: \"" << request.case_folder
-              << "\" is neither a subcommand nor a case folder; see arthronaut --help\n";
-    return kWrongUsage;
-  }
-  return open(request);
+  return is_slip(request.case_folder) ? tell_slip(request.case_folder) : open(request);
 }
 
 // As every other error begins; and where more is said of the command that was meant.
@@ -76,6 +80,10 @@ int parse_and_do(CLI::App& app, const Context& context, const std::vector<std::s
     app.parse(reversed);
     return app.get_subcommands().empty() ? open() : context.exit_code;
   } catch (const CLI::ParseError& error) {
+    // Its options are no slip of the one who wrote them.
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) &&
+        app.get_subcommands().empty() && is_slip(arguments.front()) && !arguments.front().starts_with('-'))
+      return tell_slip(arguments.front());
     const bool asked_for =
         error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
     app.exit(error);

@@ -30,10 +30,13 @@ void say_statistics(const Context& context, const pipeline::ViewStatistics& stat
     context.say(line);
   }
   context.say("lens mark: " + share(statistics.frames_with_mark, statistics.frame_count));
-  if (statistics.frames_with_unknown_lens > 0) {
-    context.say("no pose stands in " + share(statistics.frames_with_unknown_lens, statistics.frame_count) +
+  if (statistics.frames_off_camera > 0)
+    context.say("no pose stands in " + share(statistics.frames_off_camera, statistics.frame_count) + ": " +
+                statistics.off_camera);
+  const long without_angle = statistics.frames_with_unknown_lens - statistics.frames_off_camera;
+  if (without_angle > 0)
+    context.say("no pose stands in " + share(without_angle, statistics.frame_count) +
                 ": the lens angle is not known there (--fixed-lens if this lens does not turn)");
-  }
   if (statistics.frames_frozen > 0) {
     context.say("frozen picture: " + share(statistics.frames_frozen, statistics.frame_count));
   }

@@ -220,7 +220,10 @@ void NavigateView::add_answer_actions(widgets::Actions& actions) {
   actions.add({"navigate.depth_stop", "Depth stop",
                "Keeps what the drill's depth stop reads: type the millimetres, then Enter", GLFW_KEY_E, 0,
                false, [this] { return is_running(); }, [this] { return depth_.is_open(); },
-               [this] { depth_.open(); }});
+               [this] {
+                 choices_.shows_menu = false;  // it would stand over the field
+                 depth_.open();
+               }});
   actions.add({"navigate.marker_anew",
                "Marker anew",
                "The world marker was taken off or placed elsewhere: all that rests on it is void",

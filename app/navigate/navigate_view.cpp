@@ -205,6 +205,7 @@ void NavigateView::choose_camera() {
 }
 
 void NavigateView::offer_cameras() {
+  choices_.shows_menu = false;  // it would stand over what is asked
   cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()),
                 used_before_ ? std::optional(used_before_->pictures) : std::nullopt,
                 [turns = turns_](const LivePictures& one) {

@@ -25,6 +25,7 @@ std::vector<std::string> reasons_of(const TrackedVideo& video) {
   const ViewStatistics& s = video.statistics;
   std::vector<std::string> reasons;
   if (s.frame_count == 0) reasons.emplace_back("the video has no frame");
+  if (std::string why = s.reason_of_camera(); !why.empty()) return {std::move(why)};
   if (!video.rows.empty() || s.frame_count == 0) return reasons;
   if (s.frames_with_unknown_lens == s.frame_count) {
     reasons.emplace_back(
@@ -120,6 +121,9 @@ void ViewStatistics::add(const PictureObservation& view, double processing_ms) {
   ++frame_count;
   frames_with_mark += view.lens.mark == lens::MarkState::Found ? 1 : 0;
   frames_with_unknown_lens += view.intrinsics_are_known ? 0 : 1;
+  const bool is_off_camera =
+      !view.intrinsics_are_known && (view.lens.zoom == lens::ZoomState::Changed || view.lens.zoom_or_slip);
+  if (is_off_camera && frames_off_camera++ == 0) off_camera = lens::reason_text(view.lens);
   frames_frozen += view.is_frozen ? 1 : 0;
   processing_ms_mean += (processing_ms - processing_ms_mean) / static_cast<double>(frame_count);
   processing_ms_worst = std::max(processing_ms_worst, processing_ms);
@@ -134,6 +138,13 @@ void ViewStatistics::add(const PictureObservation& view, double processing_ms) {
       statistics.main_loss = static_cast<markers::MarkerState>(worst - statistics.frames_by_loss.begin());
     }
   }
+}
+
+std::string ViewStatistics::reason_of_camera() const {
+  if (2 * frames_off_camera <= frame_count) return "";
+  return files::format("%ld of %ld frames are not of this camera as it was calibrated: ", frames_off_camera,
+                       frame_count) +
+         off_camera;
 }
 
 TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions& options,

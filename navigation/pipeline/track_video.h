@@ -25,6 +25,9 @@ struct ViewStatistics {
   long frame_count = 0;
   long frames_with_mark = 0;
   long frames_with_unknown_lens = 0;  // markers may have been found, but no pose stands
+  // Of these, by a view of another size or in another place than this camera's.
+  long frames_off_camera = 0;
+  std::string off_camera;  // what was told of the first of them, in words
   long frames_frozen = 0;
   double processing_ms_mean = 0, processing_ms_worst = 0;
   std::vector<MarkerStatistics> markers;  // in the order of declared_markers()
@@ -32,6 +35,9 @@ struct ViewStatistics {
   explicit ViewStatistics(const tools::ToolSet& tools);
   ViewStatistics() = default;
   void add(const PictureObservation& view, double processing_ms);
+  // Why what was seen is not this camera's; empty where that is so of half of the frames at most, as of a
+  // zoom that was turned and turned back: what is said of the others holds.
+  [[nodiscard]] std::string reason_of_camera() const;
 };
 
 struct TrackedVideo {

@@ -210,6 +210,9 @@ class Navigation {
       reasons.push_back(pipeline::reason_text(summary_.other_medium));
     } else if (const std::string why = reason_of_tracker(); !summary_.registration && !why.empty()) {
       reasons.emplace_back(why);
+    } else if (std::string of_camera = summary_.statistics.reason_of_camera();
+               !of_camera.empty() && !(summary_.registration && summary_.standing == Standing::Stands)) {
+      reasons.push_back(std::move(of_camera));
     } else if (!is_outside_ &&
                summary_.statistics.frames_with_unknown_lens == summary_.statistics.frame_count) {
       reasons.emplace_back("the lens mark was not seen, so the camera is not known in any frame");

@@ -55,7 +55,8 @@ class StrictBuilder final : public nlohmann::json_sax<json> {
   bool parse_error(std::size_t byte, const std::string& token, const json::exception& error) override {
     const bool is_number = dynamic_cast<const json::parse_error*>(&error) == nullptr;
     place_ = line_and_column(text_, is_number ? byte + 1 - std::min(byte, token.size()) : byte);
-    reason_ = is_number ? "holds a number out of range" : "is not valid JSON";
+    const bool is_empty = text_.find_first_not_of(" \t\r\n") == std::string_view::npos;
+    reason_ = is_number ? "holds a number out of range" : is_empty ? "is empty" : "is not valid JSON";
     return false;
   }
   bool null() override { return put(nullptr); }

@@ -68,6 +68,11 @@ Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone, const
 }
 
 void take_proposal(const Proposal& proposal, Landmarks& landmarks, LandmarkStates& states) {
+  if (proposal.landmarks.empty()) return;
+  std::erase_if(landmarks, [&](const auto& landmark) {
+    return state_of(states, landmark.first) == LandmarkState::Proposed;
+  });
+  std::erase_if(states, [](const auto& state) { return state.second == LandmarkState::Proposed; });
   for (const auto& [name, position] : proposal.landmarks) {
     if (landmarks.contains(name) && state_of(states, name) == LandmarkState::Confirmed) continue;
     landmarks[name] = position;

@@ -72,7 +72,8 @@ struct Proposal {
 [[nodiscard]] Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone,
                                const ProposalOptions& options = {});
 
-// Puts the proposed landmarks where there are none or proposed ones; confirmed ones stay.
+// Puts the proposed landmarks where there are none or proposed ones; confirmed ones stay. What was proposed
+// before and is not now goes: axes and grids are never of two proposals. Of an empty one nothing is taken.
 void take_proposal(const Proposal& proposal, Landmarks& landmarks, LandmarkStates& states);
 
 }  // namespace arthronaut::landmarks

@@ -100,6 +100,9 @@ TEST(CommandLine, RefusesALogThatCannotBeWritten) {
 TEST(CommandLine, RefusesAnUnknownSubcommand) {
   const auto result = run_program({"trakc", "--help-me"});
   EXPECT_EQ(result.exit_code, 2);
+  const auto with_options = run_program({"trakc", "--camera", "camera.json"});
+  EXPECT_EQ(with_options.exit_code, 2);
+  EXPECT_THAT(with_options.errors, HasSubstr("\"trakc\" is neither a subcommand nor a case folder"));
   const auto word = run_program({"trakc"});
   EXPECT_EQ(word.exit_code, 2);
   EXPECT_THAT(word.errors, HasSubstr("trakc"));

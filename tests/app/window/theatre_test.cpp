@@ -134,7 +134,10 @@ TEST_F(Theatre, AStreamIsNamedInTheWindowAndIsLive) {
       return app.wait_for_state("cameras", "none", 2);
     };
     ASSERT_TRUE(becomes(closes, 20));
+    app.press("Return");  // the menu, which would stand over the field
+    ASSERT_TRUE(app.wait_for_state("menu", "open"));
     app.press("k");
+    EXPECT_TRUE(app.wait_for_state("menu", "closed"));
     ASSERT_TRUE(app.wait_for_state("cameras", "address"));
     app.type("gst:videotestsrc is-live=true ! video/x-raw,width=1920,height=1080,framerate=20/1 ! appsink");
     app.press("Return");

@@ -67,5 +67,28 @@ TEST(TrackVideo, Hazard27OnlyTheStretchInTheWrongMediumIsDropped) {
   for (const strokes::PoseRow& row : video.rows) EXPECT_GE(row.frame, kDry);
 }
 
+// The camera of another scope: its mark is seen in every frame, and yet next to nothing stands. That is no
+// reliable result of a lens whose angle is not known.
+TEST(TrackVideo, TellsThatTheViewIsNotThisCameras) {
+  simulator::RulerOptions scene;
+  scene.camera = simulator::standard_camera();
+  scene.refractive_index = camera::kSalineIndex;
+  scene.frame_count = 8;
+  scene.frames_per_second = 30;
+  simulator::SimulatedRuler source(scene);
+  ViewTrackerOptions options;
+  options.calibration = simulator::standard_camera();
+  options.calibration.boundary.radius_px *= 1.04;
+  options.refractive_index = camera::kSalineIndex;
+  tools::ToolSet tools;
+  tools.world_markers = {{bones::BoneKind::Femur, 5, 2.89}};
+  const TrackedVideo video = track_video(source, options, tools);
+  EXPECT_EQ(video.statistics.frames_with_mark, 8);
+  ASSERT_EQ(video.reasons.size(), 1U);
+  EXPECT_NE(video.reasons.front().find("not of this camera"), std::string::npos) << video.reasons.front();
+  EXPECT_NE(video.reasons.front().find("smaller than calibrated"), std::string::npos)
+      << video.reasons.front();
+}
+
 }  // namespace
 }  // namespace arthronaut::pipeline

@@ -158,18 +158,23 @@ TEST(Propose, FindsThePhantomsOwnLandmarks) {
   }
 }
 
-// What somebody has confirmed stays; what was proposed before, or is not there, is proposed anew.
+// What somebody has confirmed stays; what was proposed before, or is not there, is proposed anew, and what is
+// proposed no more goes.
 TEST(TakeProposal, LeavesConfirmedLandmarksAlone) {
   Proposal proposal;
   proposal.outcome = Proposal::Outcome::Proposed;
   proposal.landmarks = {{"a", {1, 0, 0}}, {"b", {2, 0, 0}}, {"c", {3, 0, 0}}};
-  Landmarks landmarks = {{"a", {9, 9, 9}}, {"b", {8, 8, 8}}};
-  LandmarkStates states = {{"b", LandmarkState::Proposed}};
+  Landmarks landmarks = {{"a", {9, 9, 9}}, {"b", {8, 8, 8}}, {"d", {7, 7, 7}}};
+  LandmarkStates states = {{"b", LandmarkState::Proposed}, {"d", LandmarkState::Proposed}};
+  take_proposal({}, landmarks, states);
+  EXPECT_EQ(landmarks.size(), 3U);
   take_proposal(proposal, landmarks, states);
   EXPECT_EQ(landmarks.at("a"), Vector3d(9, 9, 9));
   EXPECT_EQ(landmarks.at("b"), Vector3d(2, 0, 0));
   EXPECT_EQ(state_of(states, "a"), LandmarkState::Confirmed);
   EXPECT_EQ(state_of(states, "c"), LandmarkState::Proposed);
+  EXPECT_FALSE(landmarks.contains("d"));
+  EXPECT_FALSE(states.contains("d"));
 }
 
 }  // namespace
