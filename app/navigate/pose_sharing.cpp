@@ -48,10 +48,12 @@ void PoseSharing::tell(const theatre::LiveState& live) {
   if (display.is_live && is_new) {
     state_->server->publish(live.operation, utc_now_s() - (now_s - live.captured_s), live.picture,
                             is_slow ? display.headline : "");
-  } else if (!display.is_live || is_slow) {  // between its pictures, too
+  } else if (!display.is_live) {
     state_->server->tell({false, display.headline}, utc_now_s());
-  } else {
-    state_->server->tell(openigtlink::status_of(*live.operation), utc_now_s());
+  } else {  // between its pictures
+    state_->server->tell(
+        is_slow ? openigtlink::Status{false, display.headline} : openigtlink::status_of(*live.operation),
+        utc_now_s(), live.operation);
   }
   state_->last = live.picture;
 }

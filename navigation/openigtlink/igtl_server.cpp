@@ -1,21 +1,24 @@
 #include "navigation/openigtlink/igtl_server.h"
 
 #include <igtlImageMessage.h>
-#include <igtlPointMessage.h>
 #include <igtlServerSocket.h>
-#include <igtlStatusMessage.h>
 #include <igtlTimeStamp.h>
-#include <igtlTransformMessage.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdint>
+#include <cstring>
 #include <mutex>
+#include <optional>
+#include <string_view>
 #include <vector>
 
+#include "navigation/openigtlink/igtl_messages.h"
+#include "navigation/openigtlink/igtl_reader.h"
 #include "navigation/sources/background_end.h"
 #include "navigation/worker/worker.h"
 #include "planning/geometry/error.h"
@@ -29,7 +32,8 @@ constexpr int kPatience_ms = 2000;
 constexpr int kMostWaiting = 600;  // ten seconds
 
 struct Published {
-  operation::OperationStatePtr state;  // null: a status alone
+  operation::OperationStatePtr state;  // null: no pose of before holds
+  bool has_poses = false;              // of state, which are new; else what of them still holds
   camera::FramePtr picture;            // null: not asked for
   Status status;
   double utc_s = 0;
@@ -38,7 +42,7 @@ struct Nothing {};
 
 // What a client has asked for: set by the thread that reads, taken by the one that sends.
 struct Wishes {
-  std::atomic<bool> one_picture = false, pictures = false, picture_waits = false;
+  std::atomic<bool> one_picture = false, pictures = false, picture_waits = false, reads_version_2 = false;
   std::atomic<int> waiting = 0;  // states that it did not take yet
 };
 
@@ -63,56 +67,11 @@ class ListeningSocket : public igtl::ServerSocket {
   }
 };
 
-bool send(igtl::Socket& socket, igtl::MessageBase& message, const std::string& name,
-          igtl::TimeStamp::Pointer& time) {
-  message.SetDeviceName(name.c_str());
-  message.SetTimeStamp(time);
-  message.Pack();
-  return socket.Send(message.GetPackPointer(), message.GetPackSize()) != 0;
+bool send(igtl::Socket& socket, const Message& message) {
+  return socket.Send(message.data(), static_cast<igtlUint64>(message.size())) != 0;
 }
 
-bool send_status(igtl::Socket& socket, const Status& status, igtl::TimeStamp::Pointer& time) {
-  const auto message = igtl::StatusMessage::New();
-  message->SetCode(status.is_ok ? igtl::StatusMessage::STATUS_OK : igtl::StatusMessage::STATUS_NOT_READY);
-  message->SetErrorName(status.is_ok ? "" : "NoGuidance");
-  message->SetStatusString(status.reason.c_str());
-  return send(socket, *message, "Arthronaut", time);
-}
-
-bool send_transforms(igtl::Socket& socket, const operation::OperationState& state,
-                     igtl::TimeStamp::Pointer& time) {
-  for (const NamedTransform& named : named_transforms(state)) {
-    igtl::Matrix4x4 matrix;
-    igtl::IdentityMatrix(matrix);
-    const Eigen::Matrix3d rotation = named.target_from_source.matrix();
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column)
-        matrix[row][column] = static_cast<float>(rotation(row, column));
-      matrix[row][3] = static_cast<float>(named.target_from_source.translation_mm[row]);
-    }
-    const auto message = igtl::TransformMessage::New();
-    message->SetMatrix(matrix);
-    if (!send(socket, *message, named.name, time)) return false;
-  }
-  return true;
-}
-
-bool send_plan(igtl::Socket& socket, const operation::OperationState& state, igtl::TimeStamp::Pointer& time) {
-  const auto message = igtl::PointMessage::New();
-  for (const NamedPoint& point : plan_points(state)) {
-    auto element = igtl::PointElement::New();
-    element->SetName(point.name.c_str());
-    element->SetGroupName("Plan");
-    element->SetRGBA(255, 200, 0, 255);
-    const Eigen::Vector3f at = point.position_mm.cast<float>();
-    element->SetPosition(at.x(), at.y(), at.z());
-    element->SetRadius(static_cast<float>(point.radius_mm));
-    message->AddPointElement(element);
-  }
-  return send(socket, *message, "Plan", time);
-}
-
-bool send_picture(igtl::Socket& socket, const camera::Frame& frame, igtl::TimeStamp::Pointer& time) {
+bool send_picture(igtl::Socket& socket, const camera::Frame& frame, double utc_s) {
   const auto message = igtl::ImageMessage::New();
   message->SetDimensions(frame.width, frame.height, 1);
   message->SetSpacing(1, 1, 1);
@@ -134,7 +93,12 @@ bool send_picture(igtl::Socket& socket, const camera::Frame& frame, igtl::TimeSt
     rgb[i + 1] = bgr[i + 1];
     rgb[i + 2] = bgr[i];
   }
-  return send(socket, *message, "Arthroscope", time);
+  message->SetDeviceName("Arthroscope");
+  auto time = igtl::TimeStamp::New();
+  time->SetTime(utc_s);
+  message->SetTimeStamp(time);
+  message->Pack();
+  return socket.Send(message->GetPackPointer(), message->GetPackSize()) != 0;
 }
 
 // What has gone out to one client.
@@ -144,28 +108,71 @@ class Outgoing {
 
   // False: the client takes no more.
   bool send(const Published& published) {
-    auto time = igtl::TimeStamp::New();
-    time->SetTime(published.utc_s);
-    if (published.state == nullptr) return send_status(socket_, published.status, time);
-    if (!send_plan_if_new(*published.state, time) || !send_transforms(socket_, *published.state, time) ||
-        !send_status(socket_, published.status, time))
+    if (!send_plan_if_new(published) || !send_transforms(published) ||
+        !openigtlink::send(socket_,
+                           status_message("Arthronaut", published.status, "NoGuidance", published.utc_s)))
       return false;
     if (published.picture == nullptr) return true;
-    const bool is_sent = send_picture(socket_, *published.picture, time);
+    const bool is_sent = send_picture(socket_, *published.picture, published.utc_s);
     wishes_.picture_waits = false;
     return is_sent;
   }
 
  private:
-  bool send_plan_if_new(const operation::OperationState& state, igtl::TimeStamp::Pointer& time) {
-    if (plan_ == state.plan) return true;
-    plan_ = state.plan;
-    return send_plan(socket_, state, time);
+  // What the client holds under a name.
+  struct Held {
+    NamedTransform newest;
+    std::optional<bool> is_valid;  // empty: it was told nothing of it
+  };
+
+  bool send_plan_if_new(const Published& published) {
+    if (!published.has_poses || plan_ == published.state->plan) return true;
+    plan_ = published.state->plan;
+    return openigtlink::send(socket_, plan_message(*published.state, published.utc_s));
+  }
+
+  // What is valid; and of what is not any more, that it is not: at once, since a client goes on showing what
+  // came last. One that comes again may have kept what it had, so that it is told of all of them.
+  bool send_transforms(const Published& published) {
+    const std::vector<NamedTransform> valid =
+        published.state != nullptr ? named_transforms(*published.state) : std::vector<NamedTransform>();
+    for (std::size_t i = 0; i < kTransformNames.size(); ++i) {
+      const std::string name(kTransformNames[i]);
+      const auto found =
+          std::find_if(valid.begin(), valid.end(), [&](const auto& t) { return t.name == name; });
+      Held& held = held_[i];
+      if (found == valid.end()) {
+        if (held.is_valid == false) continue;
+        held.is_valid = false;
+        held.newest.name = name;
+        const std::string why =
+            published.state != nullptr ? why_without(*published.state, name) : published.status.reason;
+        if (!take_back(held.newest, why, published.utc_s)) return false;
+      } else if (published.has_poses) {
+        held.newest = *found;
+        if (held.is_valid == false &&
+            !openigtlink::send(socket_, status_message(name, {true, "OK"}, "", published.utc_s)))
+          return false;
+        held.is_valid = true;
+        const bool is_sent = openigtlink::send(
+            socket_, wishes_.reads_version_2 ? transform_message_2(held.newest, true, published.utc_s)
+                                             : transform_message(held.newest, published.utc_s));
+        if (!is_sent) return false;
+      }
+    }
+    return true;
+  }
+
+  bool take_back(const NamedTransform& named, const std::string& why, double utc_s) {
+    if (wishes_.reads_version_2 && !openigtlink::send(socket_, transform_message_2(named, false, utc_s)))
+      return false;
+    return openigtlink::send(socket_, status_message(named.name, {false, why}, "NoPose", utc_s));
   }
 
   igtl::Socket& socket_;
   Wishes& wishes_;
   std::optional<operation::PlannedTunnel> plan_;  // that the client knows
+  std::array<Held, kTransformNames.size()> held_;
 };
 
 // Sends to one client until that fails; then the worker has ended. Letting it go waits for the message at
@@ -202,26 +209,45 @@ class Client {
  private:
   using Reader = worker::Worker<Nothing, Nothing>;
 
-  // Ends with the connection.
-  static void read_wishes(igtl::ClientSocket& socket, Wishes& wishes, Reader::Inbox& inbox) {
-    constexpr int kLook_ms = 200;
-    socket.SetReceiveTimeout(kLook_ms);
+  // Some of it, `most` bytes at most; 0: no more will come.
+  static std::size_t receive(igtl::ClientSocket& socket, std::uint8_t* to, std::uint64_t most,
+                             const Reader::Inbox& inbox) {
+    constexpr std::uint64_t kPiece = 4096;
     while (!inbox.stops()) {
-      const auto header = igtl::MessageHeader::New();
-      header->InitPack();
-      auto* const to = static_cast<std::uint8_t*>(header->GetPackPointer());
-      const int size = header->GetPackSize();
-      for (int received = 0; received < size;) {  // which may come in pieces, or not at all
-        const int more = socket.Receive(to + received, size - received, 0);
-        if (more == 0 || inbox.stops()) return;
-        received += std::max(more, 0);
+      const int count = socket.Receive(to, static_cast<int>(std::min(most, kPiece)), 0);
+      if (count >= 0) return static_cast<std::size_t>(count);
+    }
+    return 0;
+  }
+
+  // Ends with the connection. By hand: the library takes apart no header but that of its own version, and
+  // would not find where the next message begins.
+  static void read_wishes(igtl::ClientSocket& socket, Wishes& wishes, const Reader::Inbox& inbox) {
+    constexpr int kLook_ms = 200;
+    constexpr std::size_t kType = 2, kLongestType = 12, kBodySize = 42, kAfterBodySize = 50;
+    socket.SetReceiveTimeout(kLook_ms);
+    std::array<std::uint8_t, 4096> passed_over;
+    while (true) {
+      std::array<std::uint8_t, IgtlReader::kHeaderSize> header;
+      for (std::size_t have = 0; have < header.size();) {  // which may come in pieces
+        const std::size_t more = receive(socket, header.data() + have, header.size() - have, inbox);
+        if (more == 0) return;
+        have += more;
       }
-      if (header->Unpack() == 0) return;
-      const std::string type = header->GetDeviceType();
+      if (header[0] > 0 || header[1] > 1) wishes.reads_version_2 = true;
+      const auto* const type_at = reinterpret_cast<const char*>(header.data()) + kType;
+      const std::string_view type(type_at, ::strnlen(type_at, kLongestType));
       if (type == "GET_IMAGE") wishes.one_picture = true;
       if (type == "STT_IMAGE") wishes.pictures = true;
       if (type == "STP_IMAGE") wishes.pictures = false;
-      if (header->GetBodySizeToRead() > 0) socket.Skip(static_cast<int>(header->GetBodySizeToRead()), 0);
+      std::uint64_t body_size = 0;
+      for (std::size_t i = kBodySize; i < kAfterBodySize; ++i) body_size = body_size << 8 | header[i];
+      while (body_size > 0) {
+        const std::size_t more = receive(socket, passed_over.data(),
+                                         std::min<std::uint64_t>(body_size, passed_over.size()), inbox);
+        if (more == 0) return;
+        body_size -= more;
+      }
     }
   }
 
@@ -291,13 +317,15 @@ void IgtlServer::publish(const operation::OperationStatePtr& state, double captu
   const Status status = withheld.empty() ? status_of(*state) : Status{false, withheld};
   const std::lock_guard lock(state_->mutex);
   state_->let_ended_go();
-  for (const auto& client : state_->clients) client->post({state, nullptr, status, captured_utc_s}, picture);
+  for (const auto& client : state_->clients) {
+    client->post({state, true, nullptr, status, captured_utc_s}, picture);
+  }
 }
 
-void IgtlServer::tell(const Status& status, double utc_s) {
+void IgtlServer::tell(const Status& status, double utc_s, const operation::OperationStatePtr& still) {
   const std::lock_guard lock(state_->mutex);
   state_->let_ended_go();
-  for (const auto& client : state_->clients) client->post({nullptr, nullptr, status, utc_s}, nullptr);
+  for (const auto& client : state_->clients) client->post({still, false, nullptr, status, utc_s}, nullptr);
 }
 
 }  // namespace arthronaut::openigtlink

@@ -1,7 +1,12 @@
 // Serves an operation by OpenIGTLink (protocol version 1 messages, which every client reads). For each state
 // that is published: one TRANSFORM for each named transform and a STATUS "Arthronaut" with the reason why
-// nothing guides; POINT "Plan" to each client when it comes and whenever the plan is another one; IMAGE
-// "Arthroscope" to those who ask for it (GET_IMAGE: one; STT_IMAGE until STP_IMAGE: as they come).
+// nothing guides; a STATUS of a transform's name when there is none any more, and why, and again when there
+// is, since a client goes on showing what came last; POINT "Plan" to each client when it comes and whenever
+// the plan is another one; IMAGE "Arthroscope" to those who ask for it (GET_IMAGE: one; STT_IMAGE until
+// STP_IMAGE: as they come).
+//
+// To a client that has sent anything of version 2 or later transforms go out as version 2, with
+// "TransformStatus" in their metadata: OK, and INVALID once when there is none any more.
 //
 // Each client has a queue and a thread of its own, so that one that reads slowly delays nobody. A client that
 // takes nothing for 2 s, or is ten seconds behind, is let go; it may come again. Of pictures at most one
@@ -35,9 +40,9 @@ class IgtlServer {
   // screen does not guide by it all the same; STATUS says that then.
   void publish(const operation::OperationStatePtr& state, double captured_utc_s,
                const camera::FramePtr& picture = nullptr, const std::string& withheld = "");
-  // A STATUS alone, while there is no picture that could be published: without it clients would hold what
-  // came last for what is.
-  void tell(const Status& status, double utc_s);
+  // Without poses, while there is no picture that could be published, or between two. still: whose poses,
+  // published before, hold; null: none does.
+  void tell(const Status& status, double utc_s, const operation::OperationStatePtr& still = nullptr);
 
  private:
   struct State;

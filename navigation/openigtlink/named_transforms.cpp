@@ -43,6 +43,13 @@ std::vector<NamedTransform> named_transforms(const operation::OperationState& st
   return named;
 }
 
+std::string why_without(const operation::OperationState& state, std::string_view name) {
+  if (!state.has_source) return "no source";
+  if (name != "Bone_World") return "not seen";
+  if (state.time_out == operation::TimeOut::Due) return "the time-out is due";
+  return "registration: " + std::string(operation::to_text(state.registration->in_force.standing));
+}
+
 std::vector<NamedPoint> plan_points(const operation::OperationState& state) {
   if (!state.plan) return {};
   const tunnels::Tunnel& tunnel = state.plan->tunnel;

@@ -13,6 +13,7 @@
 // bone as Slicer shows it, put under Bone_World, lies right to everything else.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,10 +27,14 @@ struct NamedTransform {
   geometry::RigidTransform target_from_source;  // in RAS
 };
 
-// What is valid in the newest frame, and nothing else: a transform has no place for its validity. So what is
-// not seen is not sent, and a client that goes on showing what came last shows a pose of before: it has to
-// let go what is older than the newest STATUS (in Slicer, the module Watchdog tells it).
+// What is valid in the newest frame, and nothing else.
 [[nodiscard]] std::vector<NamedTransform> named_transforms(const operation::OperationState& state);
+
+// Every name that a transform may go out under.
+inline constexpr std::array<std::string_view, 6> kTransformNames{
+    "WorldFemur", "WorldTibia", "ProbeTip_World", "Guide_World", "Drill_World", "Bone_World"};
+// Why named_transforms() has none under one of those names: "not seen", "registration: void".
+[[nodiscard]] std::string why_without(const operation::OperationState& state, std::string_view name);
 
 // The plan in force, in the bone's frame (RAS): "entry" and "end", where the tunnel ends. Empty without a
 // plan. Shown under Bone_World it lies on the bone.

@@ -35,7 +35,8 @@ class Listener {
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
 
-  // The devices that were heard before the next STATUS, and then "STATUS: ..." with its words.
+  // The devices that were heard before the next STATUS of the operation, "NAME is none" where that is said,
+  // and then "STATUS: ..." with its words.
   std::vector<std::string> until_status() {
     std::vector<std::string> heard;
     for (;;) {
@@ -44,11 +45,16 @@ class Listener {
       std::uint64_t size = 0;
       for (std::size_t i = 42; i < 50; ++i) size = size << 8U | static_cast<unsigned char>(header[i]);
       const std::string body = bytes(size);
+      const std::string device = header.substr(14, 20).c_str();
       if (std::string(header.substr(2, 12).c_str()) == "STATUS") {
+        if (device != "Arthronaut") {
+          if (body[1] != 1) heard.push_back(device + " is none");
+          continue;
+        }
         heard.push_back("STATUS: " + std::string(body.substr(30).c_str()));
         return heard;
       }
-      heard.emplace_back(header.substr(14, 20).c_str());
+      heard.push_back(device);
     }
   }
 
@@ -107,11 +113,23 @@ TEST_F(PoseSharingTest, Hazard3ALatePictureIsNotSentAsLive) {
   live.captured_s -= 100;
   sharing_.tell(live);
   const std::vector<std::string> heard = listener_.until_status();
-  ASSERT_EQ(heard.size(), 1U);
-  EXPECT_TRUE(heard.front().starts_with("STATUS: No new picture for 100 s")) << heard.front();
+  for (const std::string& words : heard) EXPECT_TRUE(words.ends_with(" is none") || words == heard.back());
+  EXPECT_TRUE(heard.back().starts_with("STATUS: No new picture for 100 s")) << heard.back();
   live.phase = Phase::Ended;
   sharing_.tell(live);
   EXPECT_EQ(listener_.until_status(), std::vector<std::string>{"STATUS: The pictures have ended"});
+}
+
+// A client goes on showing what came last: it is told in which moment there is none any more.
+TEST_F(PoseSharingTest, Hazard49APoseThatWasSentIsTakenBack) {
+  theatre::LiveState live = running(bones::BoneKind::Femur);
+  sharing_.tell(live);
+  (void)listener_.until_status();
+  sharing_.tell(live);  // no other picture yet
+  EXPECT_EQ(listener_.until_status().size(), 1U);
+  live.captured_s -= 100;
+  sharing_.tell(live);
+  EXPECT_EQ(listener_.until_status().front(), "WorldFemur is none");
 }
 
 // Of a source that is too slow the poses go out with their time, and STATUS says what the screen says.

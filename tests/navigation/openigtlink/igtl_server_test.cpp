@@ -9,6 +9,7 @@
 #include <igtlStatusMessage.h>
 #include <igtlTransformMessage.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -16,6 +17,8 @@
 #include <thread>
 #include <vector>
 
+#include "navigation/openigtlink/igtl_messages.h"
+#include "navigation/openigtlink/igtl_reader.h"
 #include "navigation/openigtlink/named_transforms.h"
 #include "navigation/openigtlink/ras_from_lps.h"
 #include "planning/geometry/error.h"
@@ -191,6 +194,18 @@ TEST(NamedTransforms, HoldWhatIsValidAndNothingElse) {
   EXPECT_TRUE(named_transforms(state).empty());
 }
 
+// Everything until "Arthronaut": "name" of a transform, "name: why" of a status.
+std::vector<std::string> next_state(Client& client) {
+  std::vector<std::string> heard;
+  for (;;) {
+    client.reason.clear();
+    client.code = 0;
+    if (!client.receive()) return {"nothing"};
+    if (client.name == "Arthronaut") return heard;
+    heard.push_back(client.code == 0 ? client.name : client.name + ": " + client.reason);
+  }
+}
+
 TEST(IgtlServer, SendsPosesAndStatusToEveryClient) {
   IgtlServer server(0);
   Client one(server.port()), two(server.port());
@@ -200,7 +215,8 @@ TEST(IgtlServer, SendsPosesAndStatusToEveryClient) {
   const auto named = named_transforms(*state);
   for (Client* client : {&one, &two}) {
     for (const NamedTransform& expected : named) {
-      ASSERT_TRUE(client->receive());
+      do ASSERT_TRUE(client->receive());
+      while (client->name == "WorldTibia" || client->name == "Drill_World");  // told to be none
       EXPECT_EQ(client->name, expected.name);
       EXPECT_NEAR(client->time_s, 1'700'000'000.25, 1e-3);
       const Eigen::Matrix3d rotation = expected.target_from_source.matrix();
@@ -225,6 +241,8 @@ TEST(IgtlServer, AClientThatStallsDelaysNobody) {
   wait_for_clients(server, 2);
   const auto state = std::make_shared<const operation::OperationState>(made_state());
   const std::size_t messages_each = named_transforms(*state).size() + 1;
+  server.publish(state, 0);
+  next_state(eager);               // with what there is none of
   constexpr int kStates = 20'000;  // 10 MB: more than a socket holds
   std::atomic<int> received = 0;   // not more than a client may be behind
   std::thread publisher([&] {
@@ -328,10 +346,90 @@ TEST(IgtlServer, TellsAStatusAlone) {
   Client client(server.port());
   wait_for_clients(server, 1);
   server.tell({false, "No picture comes: tower: broke off"}, 17);
-  ASSERT_TRUE(client.receive());
+  EXPECT_EQ(next_state(client).size(), kTransformNames.size()) << "what it held of before is none";
   EXPECT_EQ(client.code, igtl::StatusMessage::STATUS_NOT_READY);
   EXPECT_EQ(client.reason, "No picture comes: tower: broke off");
   EXPECT_EQ(client.time_s, 17);
+}
+
+// Hazard: a client goes on showing what came last. It is told in the same state that there is none any more,
+// once, and that there is one again.
+TEST(IgtlServer, Hazard49TakesBackWhatIsNotValidAnyMore) {
+  IgtlServer server(0);
+  Client client(server.port());
+  wait_for_clients(server, 1);
+  operation::OperationState state = made_state();
+  using Words = std::vector<std::string>;
+  const auto shared = [&] { return std::make_shared<const operation::OperationState>(state); };
+  const auto publish = [&] {
+    server.publish(shared(), 1);
+    return next_state(client);
+  };
+  EXPECT_EQ(publish(), (Words{"WorldFemur", "WorldTibia: not seen", "ProbeTip_World", "Guide_World",
+                              "Drill_World: not seen", "Bone_World"}));
+  EXPECT_EQ(publish(), (Words{"WorldFemur", "ProbeTip_World", "Guide_World", "Bone_World"}));
+  state.frame.tools[1].world_from_tool.is_valid = false;  // the guide
+  EXPECT_EQ(publish(), (Words{"WorldFemur", "ProbeTip_World", "Guide_World: not seen", "Bone_World"}));
+  EXPECT_EQ(publish(), (Words{"WorldFemur", "ProbeTip_World", "Bone_World"}));
+  state.frame.tools[1].world_from_tool.is_valid = true;
+  EXPECT_EQ(publish(),
+            (Words{"WorldFemur", "ProbeTip_World", "Guide_World: OK", "Guide_World", "Bone_World"}));
+  // Between two pictures.
+  auto is_void = std::make_shared<operation::RegistrationState>(*state.registration);
+  is_void->in_force.standing = operation::Standing::Void;
+  state.registration = is_void;
+  server.tell({false, "Void"}, 2, shared());
+  EXPECT_EQ(next_state(client), Words{"Bone_World: registration: void"});
+  server.tell({false, "Void"}, 2, shared());
+  EXPECT_EQ(next_state(client), Words{});
+  // Nothing comes any more.
+  server.tell({false, "No picture"}, 3);
+  EXPECT_EQ(next_state(client),
+            (Words{"WorldFemur: No picture", "ProbeTip_World: No picture", "Guide_World: No picture"}));
+}
+
+// The same for a client that reads version 2, in the pose's own message, by this program's own reader.
+TEST(IgtlServer, Hazard49SaysInThePosesMessageThatItIsNone) {
+  struct Told : MessageListener {
+    void pose(std::string_view device, const std::optional<geometry::RigidTransform>& pose, double) override {
+      words.emplace_back(std::string(device) + (pose ? "" : ": no pose"));
+    }
+    void status(std::string_view device, bool is_ok, std::string_view said) override {
+      words.emplace_back(std::string(device) + (is_ok ? ": OK: " : ": not OK: ") + std::string(said));
+    }
+    void refused(const std::string& why) override { words.push_back("refused: " + why); }
+    std::vector<std::string> words;
+  } told;
+  IgtlServer server(0);
+  Client client(server.port());
+  wait_for_clients(server, 1);
+  auto ask = Message(IgtlReader::kHeaderSize + 12, 0);  // GET_STATUS of version 2: an extended header alone
+  ask[1] = 2;
+  ask[49] = ask[59] = 12;
+  const std::string_view type = "GET_STATUS";
+  std::copy(type.begin(), type.end(), ask.begin() + 2);
+  ASSERT_EQ(client.socket->Send(ask.data(), ask.size()), 1);
+  operation::OperationState state = made_state();
+  IgtlReader reader(told);
+  const auto heard = [&](const std::string& what) {
+    return std::find(told.words.begin(), told.words.end(), what) != told.words.end();
+  };
+  const auto run_until = [&](const std::string& what) {
+    for (int i = 0; i < 500 && !heard(what); ++i) {
+      server.publish(std::make_shared<const operation::OperationState>(state), i);
+      std::array<std::uint8_t, 4096> bytes;
+      const int count = client.socket->Receive(bytes.data(), static_cast<int>(bytes.size()), 0);
+      ASSERT_GT(count, 0);
+      ASSERT_TRUE(reader.take(std::span(bytes).first(static_cast<std::size_t>(count))));
+    }
+  };
+  run_until("Guide_World");
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // by now it was read what the client speaks
+  state.frame.tools[1].world_from_tool.is_valid = false;
+  run_until("Guide_World: not OK: INVALID");
+  EXPECT_TRUE(heard("Guide_World: not OK: INVALID"));
+  run_until("Guide_World: not OK: not seen");
+  for (const std::string& words : told.words) EXPECT_FALSE(words.starts_with("refused")) << words;
 }
 
 TEST(IgtlServer, APortThatIsTakenIsSaid) {
