@@ -35,12 +35,14 @@ PoseBook::PoseBook(const TrackedBodies& with) {
   for (const tools::WorldMarker& world : with.tools.world_markers) {
     Body body;
     body.id = world.marker_id;
+    body.is_bone = true;
     const std::string said = device_of(tracker, std::string(bones::to_text(world.bone)));
     const bool is_femur = world.bone == bones::BoneKind::Femur;
     body.names = {{!said.empty() ? said : is_femur ? "WorldFemur" : "WorldTibia"}};
     if (world.bone == with.bone) world_ = bodies_.size();
     bodies_.push_back(std::move(body));
   }
+  is_in_world_alone_ = world_ && bodies_.size() == 1;
   for (const tools::Tool& tool : with.tools.tools) {
     Body body;
     body.id = tool.marker_id;
@@ -84,6 +86,7 @@ bool PoseBook::take(const ReceivedPose& received) {
     for (std::size_t n = 0; n < body.names.size(); ++n) {
       const Name& name = body.names[n];
       if (name.device != received.device) continue;
+      if (body.is_bone) is_in_world_alone_ = false;
       if (!body.in_use) body.in_use = n;
       if (*body.in_use != n) return true;
       body.is_broken = !received.target_from_source || (name.is_at_tip && !body.tip_mm);
@@ -116,8 +119,13 @@ void PoseBook::keep(Body& body, const Name& name, const ReceivedPose& received) 
 }
 
 void PoseBook::take_lost(std::string_view device) {
-  for (Body& body : bodies_)
-    for (const Name& name : body.names) body.is_told_lost = body.is_told_lost || name.device == device;
+  for (Body& body : bodies_) {
+    for (const Name& name : body.names) {
+      if (name.device != device) continue;
+      body.is_told_lost = true;
+      if (body.is_bone) is_in_world_alone_ = false;
+    }
+  }
 }
 
 double PoseBook::age_s(const Sample& sample, std::int64_t now_ns) const {
@@ -190,19 +198,18 @@ void PoseBook::place(std::int64_t now_ns, TrackerPoses& poses) const {
     world_sample = &best_world(poses);
     set(world, world_sample->pose, *world_sample);
   }
-  // Poses that come in the bone's world need none of the bone.
-  const bool is_in_world_alone = world.state == BodyState::NeverCame;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     BodyPose& body = poses.bodies[i];
     if (i == *world_ || !body.is_tracked()) continue;
     const Sample& newest = bodies_[i].kept.front();
-    if (newest.is_in_world && is_in_world_alone) {
+    if (newest.is_in_world && is_in_world_alone_) {
       set(body, newest.pose, newest);
       if (!body.is_tracked() || world.is_tracked()) continue;
       set(world, geometry::RigidTransform(), newest);
       world.state = BodyState::Tracked;
     } else if (world_sample == nullptr) {
-      body.state = BodyState::OtherFrame;
+      body.state = newest.is_in_world ? BodyState::OtherWorld : BodyState::OtherFrame;
+      if (newest.is_in_world && world.state == BodyState::NeverCame) world.state = BodyState::OtherWorld;
     } else if (newest.is_in_world) {
       set(body, world_sample->pose * newest.pose, newest);
     } else if (const Sample* const together = of_moment(bodies_[i], moment_of(*world_sample))) {

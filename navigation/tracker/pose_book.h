@@ -11,6 +11,10 @@
 // A server may send one body under several of them. The first that comes is the body's for as long as the
 // connection lasts, and the others are passed over: poses of two frames are never compared or mixed.
 //
+// Poses in the bone's world go without the bone's own only where nobody could mean another world by it:
+// tools.json declares this bone and no other, and of no bone anything was ever told, on whichever connection.
+// A world that was told by the bone's own poses is not known any more without them.
+//
 // A pose is used when it came and was taken within the last tenth of a second, and only together with a pose
 // of the bone of the same moment: the tracker may be carried, and the bone moves.
 //
@@ -82,7 +86,7 @@ class PoseBook {
     std::optional<Eigen::Vector3d> tip_mm;
     std::array<Sample, 6> kept;  // newest first
     std::size_t count = 0;
-    bool is_told_lost = false, is_broken = false;
+    bool is_told_lost = false, is_broken = false, is_bone = false;
   };
 
   void forget_poses();
@@ -97,6 +101,7 @@ class PoseBook {
   std::vector<Body> bodies_;  // in the order of TrackerPoses
   std::optional<std::size_t> world_;
   bool may_repeat_ = false, has_known_error_ = false;
+  bool is_in_world_alone_ = false;  // whatever is in a world is in this bone's
   bool is_connected_ = false, has_stamps_ = true, is_far_behind_ = false;
   ClockMatch clock_;
 };

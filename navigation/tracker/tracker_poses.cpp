@@ -30,6 +30,8 @@ std::string_view to_text(BodyState state) {
       return "the tracker says that it does not see it";
     case BodyState::ErrorUnknown:
       return "the tracker's error is not said in tools.json";
+    case BodyState::OtherWorld:
+      return "poses come in a world that nothing says is this bone's";
   }
   return "unknown";
 }

@@ -24,6 +24,7 @@ enum class BodyState {
   NoRotation,    // the newest was no rigid pose
   ToldLost,      // the tracker says that it does not see it
   ErrorUnknown,  // nobody said how wrong the tracker's poses are
+  OtherWorld,    // in a bone's world, while nothing says that it is this bone's
 };
 // "tracked", "no pose of it comes", ...
 [[nodiscard]] std::string_view to_text(BodyState state);

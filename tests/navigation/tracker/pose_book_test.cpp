@@ -48,6 +48,16 @@ class PoseBookTest : public ::testing::Test {
       newest_s_ = t;
     }
   }
+  [[nodiscard]] geometry::RigidTransform tip_in_world(double taken_s) const {
+    const geometry::RigidTransform probe = Truth{taken_s}.world_from(kProbe);
+    return {probe.rotation, probe * *bodies_.tools.find_tool("probe")->tip_mm};
+  }
+  // As this program's own server gives them out.
+  void tell_in_world(PoseBook& book, double taken_s) {
+    tell(book, "ProbeTip_World", tip_in_world(taken_s), taken_s);
+    tell(book, "Guide_World", Truth{taken_s}.world_from(kGuide), taken_s);
+    newest_s_ = taken_s;
+  }
   [[nodiscard]] static TrackerPoses at(const PoseBook& book, double s) {
     TrackerPoses poses;
     book.poses_at(ns(s), poses);
@@ -170,29 +180,58 @@ TEST_F(PoseBookTest, WithoutStampsArrivalCountsAndIsSaid) {
   EXPECT_NEAR(poses.oldest_age_s(), 0.01, 1e-6);
 }
 
-// As this program's own server gives them out: in the bone's world, the probe by its tip.
-TEST_F(PoseBookTest, PosesInTheWorldNeedNoneOfTheBone) {
+// In the world of the one bone there is, the probe by its tip.
+TEST_F(PoseBookTest, PosesInTheWorldOfTheOneBoneNeedNoneOfIt) {
+  bodies_.tools.world_markers.resize(1);
   PoseBook book(bodies_);
   book.begin(0);
-  const Eigen::Vector3d tip_mm = *bodies_.tools.find_tool("probe")->tip_mm;
-  for (double t = 0; t < 1; t += kStep_s) {
-    const geometry::RigidTransform probe = Truth{t}.world_from(kProbe);
-    tell(book, "ProbeTip_World", {probe.rotation, probe * tip_mm}, t);
-    tell(book, "Guide_World", Truth{t}.world_from(kGuide), t);
-    newest_s_ = t;
-  }
+  for (double t = 0; t < 1; t += kStep_s) tell_in_world(book, t);
   const TrackerPoses poses = at(book, newest_s_ + 0.002);
   for (const int id : {kProbe, kGuide})
     expect_same(world_from(poses, id, *bodies_.tools.tracker), Truth{newest_s_}.world_from(id));
   // A tool in the tracker's own frame has nothing in common with them.
   book.begin(0);
   for (double t = 1; t < 2; t += kStep_s) {
-    tell(book, "ProbeTip_World", {Truth{t}.world_from(kProbe).rotation, Truth{t}.world_from(kProbe) * tip_mm},
-         t);
+    tell(book, "ProbeTip_World", tip_in_world(t), t);
     tell(book, "Guide", Truth{t}.tracker_from(kGuide), t);
     newest_s_ = t;
   }
   EXPECT_EQ(state_of(at(book, newest_s_ + 0.002), kGuide), BodyState::OtherFrame);
+}
+
+// Of two bones nobody says whose world it is.
+TEST_F(PoseBookTest, Hazard43AWorldThatMayBeAnotherBonesGuidesNothing) {
+  PoseBook book(bodies_);
+  book.begin(0);
+  for (double t = 0; t < 1; t += kStep_s) tell_in_world(book, t);
+  for (const int id : {kFemur, kProbe, kGuide})
+    EXPECT_EQ(state_of(at(book, newest_s_ + 0.002), id), BodyState::OtherWorld) << id;
+  // With the bone's own poses it is told.
+  for (double t = 1; t < 2; t += kStep_s) {
+    tell(book, "WorldFemur", Truth{t}.tracker_from_world(), t);
+    tell_in_world(book, t);
+  }
+  expect_same(world_from(at(book, newest_s_ + 0.002), kProbe, *bodies_.tools.tracker),
+              Truth{newest_s_}.world_from(kProbe));
+}
+
+// Hazard: a server that is started anew and sees the bone's body no more goes on with a world of its own.
+TEST_F(PoseBookTest, Hazard43AWorldThatTheBoneToldIsUnknownWithoutIt) {
+  bodies_.tools.world_markers.resize(1);
+  for (const bool was_lost : {false, true}) {
+    PoseBook book(bodies_);
+    book.begin(0);
+    for (double t = 0; t < 1; t += kStep_s) {
+      if (!was_lost) tell(book, "WorldFemur", Truth{t}.tracker_from_world(), t);
+      tell_in_world(book, t);
+    }
+    if (was_lost) book.take_lost("WorldFemur");
+    book.end();
+    book.begin(0);
+    for (double t = 2; t < 3; t += kStep_s) tell_in_world(book, t);
+    for (const int id : {kFemur, kProbe, kGuide})
+      EXPECT_EQ(state_of(at(book, newest_s_ + 0.002), id), BodyState::OtherWorld) << id << was_lost;
+  }
 }
 
 // Servers send a tool in the tracker's frame and in the bone's world at once. Between the tool's messages of
