@@ -47,7 +47,11 @@ void say_guidance(const Context& context, const theatre::NavigationSummary& summ
                      g.sigma_angle_deg));
   if (g.drill && g.drill->is_beside_plan())
     context.say(format("  drill %.1f mm beside the plan: nothing is said of what remains",
-                       std::max(g.drill->lateral_mm, g.drill->exit_lateral_mm)));
+                       std::max(g.drill->lateral_mm, g.drill->exit_lateral_mm)) +
+                (std::isfinite(g.drill->to_exit_mm)
+                     ? format("; %.1f mm to where it leaves the bone (+- %.1f mm)", g.drill->to_exit_mm,
+                              g.drill->sigma_mm)
+                     : ""));
   else if (g.drill)
     context.say(format("  drill %.1f mm deep, %.1f mm remaining, %.1f mm to the exit (+- %.1f mm)",
                        g.drill->depth_mm, g.drill->remaining_mm, g.drill->to_exit_mm, g.drill->sigma_mm));

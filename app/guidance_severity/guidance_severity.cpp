@@ -46,22 +46,27 @@ Severity severity_of_angle(const guidance::GuidanceNumbers& guidance) {
 
 Severity severity_of_drill(const guidance::DrillDepth& drill) {
   using guidance::Breakout;
-  if (drill.remaining_mm < 2 || drill.breakout == Breakout::Imminent || drill.breakout == Breakout::Through)
+  const double left_mm = drill.is_beside_plan() ? drill.to_exit_mm : drill.remaining_mm;
+  if (left_mm < 2 || drill.breakout == Breakout::Imminent || drill.breakout == Breakout::Through)
     return Severity::Bad;
-  return drill.remaining_mm < 5 || drill.breakout == Breakout::Near ? Severity::Caution : Severity::Quiet;
+  return left_mm < 5 || drill.breakout == Breakout::Near ? Severity::Caution : Severity::Quiet;
 }
 
 DrillText drill_text(const guidance::DrillDepth& drill) {
   using guidance::Breakout;
-  const std::string mm = widgets::fixed(std::abs(drill.remaining_mm), 1);
-  if (drill.breakout == Breakout::Through || drill.remaining_mm < 0) return {"Too deep", mm};
+  // Of what remains and the exit that which is nearer; beside the plan nothing remains of it.
+  const double exit_mm = drill.to_exit_mm;
+  if (drill.breakout == Breakout::Through && (drill.is_beside_plan() || exit_mm < drill.remaining_mm))
+    return {"Out of bone", widgets::fixed(std::abs(exit_mm), 1)};
+  if (!drill.is_beside_plan() && (drill.breakout == Breakout::Through || drill.remaining_mm < 0))
+    return {"Too deep", widgets::fixed(std::abs(drill.remaining_mm), 1)};
   switch (severity_of_drill(drill)) {
     case Severity::Bad:
-      return {"Stop: exit", mm};
+      return {"Stop: exit", widgets::fixed(exit_mm, 1)};
     case Severity::Caution:
-      return {"Exit near", mm};
+      return {"Exit near", widgets::fixed(exit_mm, 1)};
     default:
-      return {"Remaining", mm};
+      return {"Remaining", widgets::fixed(drill.remaining_mm, 1)};
   }
 }
 

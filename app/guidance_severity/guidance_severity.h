@@ -16,11 +16,12 @@ namespace arthronaut::guidance_severity {
 // Of these numbers alone, which must be valid.
 [[nodiscard]] widgets::Severity severity_of_offset(const guidance::GuidanceNumbers& guidance);
 [[nodiscard]] widgets::Severity severity_of_angle(const guidance::GuidanceNumbers& guidance);
-// Bad where less than 2 mm of the planned length remain or the drill is about to break out of the bone's far
-// side, caution below 5 mm; quiet else.
+// Bad where less than 2 mm of the planned length remain, beside the plan of the bone ahead, or the drill is
+// about to break out of the bone's far side; caution below 5 mm; quiet else.
 [[nodiscard]] widgets::Severity severity_of_drill(const guidance::DrillDepth& drill);
 // What remains, or what it is too much, under the name that warns: "Remaining", "Exit near", "Stop: exit",
-// "Too deep". At most as long as "Remaining" and a letter: it stands in a narrow column.
+// "Too deep", "Out of bone". Of a drill beside the plan only what warns (severity not quiet) is to be shown.
+// At most as long as "Remaining" and a letter: it stands in a narrow column.
 struct DrillText {
   std::string name, mm;
 };

@@ -204,11 +204,18 @@ bool has_drill(const NavigateScreen& screen) {
                      [](const tools::Tool& tool) { return tool.kind == tools::ToolKind::Drill; });
 }
 
+// Where it leaves the bone is a danger wherever the plan is.
+bool warns_beside(const guidance::DrillDepth& drill) {
+  return drill.is_beside_plan() && guidance_severity::severity_of_drill(drill) != widgets::Severity::Quiet;
+}
+
 // For tests.
 std::string drill_state(const NavigateScreen& screen) {
   const auto& drill = screen.display.drill;
   if (!drill) return has_drill(screen) ? "not seen" : "none";
-  return drill->is_at_plan() ? guidance_severity::drill_text(*drill).name : "beside the plan";
+  if (drill->is_at_plan()) return guidance_severity::drill_text(*drill).name;
+  return warns_beside(*drill) ? "beside the plan, " + guidance_severity::drill_text(*drill).name
+                              : "beside the plan";
 }
 
 // Nobody has touched a known place by the registration that these numbers are of: said under them, where what
@@ -221,8 +228,9 @@ void draw_unverified(const widgets::Ui& ui, widgets::Rect& rest, const NavigateS
   const auto& drill = screen.display.drill;
   const bool is_deep = drill && drill->is_at_plan(),
              has_stop = screen.live->operation->depth_stop_mm.has_value();
-  const float depth =
-      is_deep ? 2 * number : (drill || has_drill(screen) ? line : 0) + (has_stop ? number : 0);
+  const float depth = is_deep ? 2 * number
+                              : (drill || has_drill(screen) ? line : 0) +
+                                    (drill && warns_beside(*drill) ? number : 0) + (has_stop ? number : 0);
   const bool is_said = is_skipped && rest.height >= height + depth;
   ui.log.note_state("unverified", is_said ? "said" : is_skipped ? "no room" : "no");
   if (is_said) widgets::draw_afar(ui, rest.cut_bottom(height), widgets::kCaution, kWords);
@@ -259,13 +267,17 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Naviga
 void draw_depth(const widgets::Ui& ui, widgets::Rect& rest, const NavigateScreen& screen) {
   const auto& drill = screen.display.drill;
   ui.log.note_state("drill", drill_state(screen));
-  if (drill && drill->is_at_plan()) {
+  const auto draw_exit = [&] {
     const guidance_severity::DrillText text = guidance_severity::drill_text(*drill);
     draw_number(ui, rest, text.name, text.mm, "mm", guidance_severity::severity_of_drill(*drill));
+  };
+  if (drill && drill->is_at_plan()) {
+    draw_exit();
     draw_number(ui, rest, "Depth", widgets::fixed(drill->depth_mm, 1),
                 "mm " + widgets::plus_minus(drill->sigma_mm), widgets::Severity::Quiet);
     return;
   }
+  if (drill && warns_beside(*drill)) draw_exit();
   // A number that is gone asks for a reason, also where the depth stop is known.
   if (drill)
     (void)rest.cut_top(widgets::draw_afar(ui, rest, widgets::kCaution, "Drill beside the plan"));

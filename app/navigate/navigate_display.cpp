@@ -199,7 +199,7 @@ bool explain(NavigateDisplay& display, const theatre::LiveState& live) {
 
 bool breaks_out(const NavigateDisplay& display) {
   using guidance::Breakout;
-  return display.drill && display.drill->is_at_plan() &&
+  return display.drill &&
          (display.drill->breakout == Breakout::Imminent || display.drill->breakout == Breakout::Through);
 }
 

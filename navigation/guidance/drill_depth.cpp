@@ -43,8 +43,46 @@ DrillDepth drill_depth(const tunnels::Tunnel& plan, double planned_length_mm, co
     drill.exit_lateral_mm = (beside + drill.to_exit_mm / cosine * across).norm();
   }
   drill.sigma_mm = sigma_mm;
+  if (drill.is_beside_plan()) drill.to_exit_mm = geometry::kNotKnown;
   drill.breakout = breakout_of(drill.to_exit_mm, sigma_mm);
   return drill;
+}
+
+std::optional<double> to_exit_along(const geometry::Surface& bone, const Eigen::Vector3d& tip_mm,
+                                    const Eigen::Vector3d& direction) {
+  constexpr double kLeastBone_mm = 3, kLeastDrilled_mm = 10, kStep_mm = 1e-3;
+  const Eigen::Vector3d along = direction.normalized();
+  const auto leaves = [&](const std::optional<geometry::RayHit>& hit) {
+    return hit && hit->normal.dot(along) > 0;
+  };
+  auto ahead = bone.first_hit(tip_mm, along);
+  double passed_mm = 0;  // from the tip to where `ahead` was looked for
+  const auto go_on = [&] {
+    passed_mm += ahead->distance_mm + kStep_mm;
+    ahead = bone.first_hit(tip_mm + passed_mm * along, along);
+  };
+  const auto behind = bone.first_hit(tip_mm, -along);
+  if (leaves(ahead)) {
+    if (!behind || ahead->distance_mm + behind->distance_mm >= kLeastBone_mm) return ahead->distance_mm;
+    go_on();
+  } else if (leaves(behind)) {
+    const auto begins = bone.first_hit(behind->point_mm - kStep_mm * along, -along);
+    if (!begins || begins->distance_mm >= kLeastDrilled_mm) return -behind->distance_mm;
+  }
+  while (ahead) {
+    const double begins_mm = passed_mm + ahead->distance_mm;
+    go_on();
+    if (!leaves(ahead)) break;  // no closed surface: nothing is known of it
+    if (passed_mm + ahead->distance_mm - begins_mm >= kLeastBone_mm) return passed_mm + ahead->distance_mm;
+    go_on();
+  }
+  return std::nullopt;
+}
+
+void hold_against(const geometry::Surface& bone, DrillDepth& drill) {
+  if (const auto own_mm = to_exit_along(bone, drill.tip_mm, drill.direction))
+    drill.to_exit_mm = drill.is_beside_plan() ? *own_mm : std::min(*own_mm, drill.remaining_mm);
+  drill.breakout = breakout_of(drill.to_exit_mm, drill.sigma_mm);
 }
 
 }  // namespace arthronaut::guidance

@@ -122,16 +122,19 @@ std::optional<DrillDepth> seen_drill(const GuidanceInput& input) {
   const Eigen::Matrix3d turned = placed->bone_from_tool.matrix();
   const Eigen::Vector3d tip = placed->bone_from_tool * *input.drill->tip_mm;
   const Eigen::Matrix3d tip_error_mm2 = turned * tools::tip_error_mm2(*input.drill) * turned.transpose();
-  const Eigen::Vector3d along = input.plan->direction.normalized();
-  Eigen::Matrix<double, 3, 6> move =
-      Eigen::Matrix<double, 3, 6>::Zero();  // of the one coordinate along the plan
-  move.row(0) << along.transpose(), -along.transpose() * cross_matrix(tip);
-  Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
-  own(0, 0) = along.dot(tip_error_mm2 * along);
+  const auto sigma_along = [&](const Eigen::Vector3d& along) {  // of the tip, in that one coordinate
+    Eigen::Matrix<double, 3, 6> move = Eigen::Matrix<double, 3, 6>::Zero();
+    move.row(0) << along.transpose(), -along.transpose() * cross_matrix(tip);
+    Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
+    own(0, 0) = along.dot(tip_error_mm2 * along);
+    return predicted_error(placed->budget, move, own).total;
+  };
   const PlacedAxis axis{tip, (turned * input.drill->axis->direction).normalized(), tip_error_mm2,
                         tools::axis_error(*input.drill).direction_sigma_rad};
-  DrillDepth drill = drill_depth(*input.plan, input.planned_length_mm, tip, axis.direction,
-                                 predicted_error(placed->budget, move, own).total);
+  DrillDepth drill =
+      drill_depth(*input.plan, input.planned_length_mm, tip, axis.direction,
+                  std::max(sigma_along(input.plan->direction.normalized()), sigma_along(axis.direction)));
+  if (input.bone != nullptr) hold_against(*input.bone, drill);
   const AxisErrors errors = predict_errors(axis, placed->budget, *input.plan);
   drill.sigma_offset_mm = errors.offset_mm.total;
   drill.sigma_angle_deg = errors.angle_deg.total;

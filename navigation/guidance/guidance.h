@@ -47,6 +47,7 @@ struct GuidanceInput {
   // A drill with a marker of its own; without one nothing is said about depth.
   geometry::TrackedPose camera_from_drill;
   const tools::Tool* drill = nullptr;
+  const geometry::Surface* bone = nullptr;  // in its frame; null: the drill's exit is the plan's alone
   bool lens_is_stale = false;
   std::int64_t now_ns = 0;
   std::int64_t max_age_ns = 100'000'000;

@@ -60,6 +60,7 @@ void Operation::start_source(const SourceSetup& source) {
   p.in_view.on_source(may_have_moved);
   p.grades.on_other_numbers();
   p.marker_is_out = false;
+  p.pipeline->set_bone(p.setup.surface);
   p.pipeline->set_plan(p.plan ? std::optional(p.plan->tunnel) : std::nullopt, p.plan ? p.plan->length_mm : 0);
   // What differed from the plan of before the crash was offered by nobody who saw it: it is still asked for.
   if (p.offered && !p.resumed_plan_waits)

@@ -197,6 +197,7 @@ struct NavigationPipeline::State {
     if (drill) {
       input.camera_from_drill = pose_of_body(result, body_of_tool(*drill));
       input.drill = &options.tools.tools[*drill];
+      input.bone = bone.get();
       input.drill_per_camera_error = camera_error(result, *drill);
     }
     input.known_errors = &known_errors;
@@ -224,6 +225,7 @@ struct NavigationPipeline::State {
   tools::AxisError guide_error;
   std::optional<tunnels::Tunnel> plan;
   double planned_length_mm = 0;
+  std::shared_ptr<const geometry::Surface> bone;
   std::optional<registration::RegistrationSummary> registration;
 };
 
@@ -270,6 +272,10 @@ void NavigationPipeline::process(const camera::Frame& frame, FrameResult& result
 void NavigationPipeline::set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm) {
   state_->plan = plan;
   state_->planned_length_mm = planned_length_mm;
+}
+
+void NavigationPipeline::set_bone(std::shared_ptr<const geometry::Surface> bone) {
+  state_->bone = std::move(bone);
 }
 
 void NavigationPipeline::set_registration(

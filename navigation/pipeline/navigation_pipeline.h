@@ -100,6 +100,8 @@ class NavigationPipeline {
 
   // What guidance is computed from. Takes effect with the next frame.
   void set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm);
+  // The bone's surface, in its frame, that a drill is about to leave; null: its exit is the plan's alone.
+  void set_bone(std::shared_ptr<const geometry::Surface> bone);
   // bias: how the registration follows the errors of probe and camera, from the sums over its points; without
   // one, what is taken where nobody knows how it was drawn.
   void set_registration(const std::optional<registration::RegistrationSummary>& marker_from_bone,

@@ -57,7 +57,7 @@ std::optional<guidance::DrillDepth> drill_at(const Statement& row) {
   guidance::DrillDepth drill;
   drill.depth_mm = row.number(18);
   drill.remaining_mm = row.number(14);
-  drill.to_exit_mm = row.number(19);
+  drill.to_exit_mm = row.is_null(19) ? geometry::kNotKnown : row.number(19);
   drill.sigma_mm = row.number(20);
   drill.breakout = guidance::breakout_of(drill.to_exit_mm, drill.sigma_mm);
   // Of before 2026-11-27 nobody knows where the drill was, so that nothing can rest on it.
@@ -69,6 +69,11 @@ std::optional<guidance::DrillDepth> drill_at(const Statement& row) {
   drill.tip_mm = vector_at(row, 24);
   drill.direction = vector_at(row, 27);
   if (row.column_count() >= kColumnsWithExit) drill.exit_lateral_mm = row.number(30);
+  // The plan's exit, as records kept it that knew no other, is none beside the plan.
+  if (drill.is_beside_plan() && drill.to_exit_mm == drill.remaining_mm) {
+    drill.to_exit_mm = geometry::kNotKnown;
+    drill.breakout = guidance::Breakout::Far;
+  }
   return drill;
 }
 
@@ -96,7 +101,7 @@ guidance::GuidanceNumbers guidance_at(const Statement& row, const RecordedFrame&
 tracker::BodyPose outside_at(const Statement& row) {
   tracker::BodyPose body;
   body.id = row.int32(2);
-  body.state = row.one_of(3, tracker::BodyState::ErrorUnknown);
+  body.state = row.one_of(3, tracker::BodyState::OtherWorld);
   body.tracker_from_body.rotation = {row.number(4), row.number(5), row.number(6), row.number(7)};
   body.tracker_from_body.translation_mm = vector_at(row, 8);
   body.stamp_utc_s = row.number(11);

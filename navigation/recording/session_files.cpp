@@ -1,5 +1,6 @@
 #include "navigation/recording/session_files.h"
 
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -21,10 +22,10 @@ void append_number(std::string& line, double value) {
   line += text;
 }
 
-// Empty where the drill is not seen.
+// Empty where the drill is not seen, or the number is not known.
 void append_drill(std::string& line, const guidance::GuidanceNumbers& numbers,
                   double guidance::DrillDepth::*value) {
-  if (numbers.drill)
+  if (numbers.drill && std::isfinite((*numbers.drill).*value))
     append_number(line, (*numbers.drill).*value);
   else
     line += ',';

@@ -67,6 +67,26 @@ TEST(GuidanceSeverity, Hazard7TheDrillIsWarnedOfInWords) {
   EXPECT_EQ(text_at(-1.25), "Too deep 1.2");
 }
 
+// The bone may end before the plan does, and beside the plan nothing remains of it.
+TEST(GuidanceSeverity, Hazard7ADrillIsWarnedOfWhereItsOwnAxisLeavesTheBone) {
+  const auto text_at = [](double remaining_mm, double lateral_mm, double to_exit_mm) {
+    guidance::DrillDepth drill;
+    drill.remaining_mm = remaining_mm;
+    drill.lateral_mm = lateral_mm;
+    drill.to_exit_mm = to_exit_mm;
+    drill.breakout = guidance::breakout_of(to_exit_mm, 0.4);
+    const DrillText text = drill_text(drill);
+    return severity_of_drill(drill) == widgets::Severity::Quiet ? "quiet" : text.name + " " + text.mm;
+  };
+  EXPECT_EQ(text_at(6, 3, 2.1), "Stop: exit 2.1");
+  EXPECT_EQ(text_at(4, 3, -0.5), "Out of bone 0.5");
+  EXPECT_EQ(text_at(1, 8, 12), "quiet") << "of the plan it is not";
+  EXPECT_EQ(text_at(12, 8, 4), "Exit near 4.0");
+  EXPECT_EQ(text_at(12, 8, 1.5), "Stop: exit 1.5");
+  EXPECT_EQ(text_at(12, 8, -2), "Out of bone 2.0");
+  EXPECT_EQ(text_at(12, 8, std::numeric_limits<double>::quiet_NaN()), "quiet") << "nobody knows";
+}
+
 // The parts of the offset in the bone's words, of whichever two directions lie across the plan.
 TEST(GuidanceSeverity, Hazard31TheOffsetsPartsAreNamedByTheBonesAxes) {
   guidance::GuidanceNumbers g;
