@@ -1,7 +1,7 @@
 #include "navigation/pipeline/torn_picture.h"
 
 #include <algorithm>
-#include <utility>
+#include <limits>
 
 namespace arthronaut::pipeline {
 
@@ -57,22 +57,30 @@ bool TornPicture::has_stopped(Steps step) {
   RowStates rows{};
   std::size_t count = 0;
   float most = 0, most_before = 0;  // of the rows that stopped
+  float least_moving = std::numeric_limits<float>::max();
   for (std::size_t row = 0; row < kRows; ++row) {
     const auto tiles = step.subspan(row * kColumns, kColumns);
     const float now = *std::max_element(tiles.begin(), tiles.end());
-    const float before = std::exchange(moved_[row], now);
+    Moved& moved = moved_[row];
+    // A jump of one picture, as a cut makes it or a tool that is put elsewhere, ends in the next: it is no
+    // motion that stops. Where every other picture is torn only every other one moves.
+    const float before = std::min(moved[0], std::max(moved[1], moved[2]));
+    moved = {now, moved[0], moved[1]};
     if (before < kLeastNoise) continue;
     const bool stopped = now < kRowStopped * before;
     rows[count++] = stopped                      ? RowState::Repeats
                     : now > kRowMovesOn * before ? RowState::Moves
                                                  : RowState::Mixed;
+    if (rows[count - 1] == RowState::Moves) least_moving = std::min(least_moving, now);
     if (!stopped) continue;
     most = std::max(most, now);
     most_before = std::max(most_before, before);
   }
   const std::span<const RowState> known(rows.data(), count);
-  return most < kPartStopped * most_before && (is_parted(known, RowState::Moves, RowState::Repeats) ||
-                                               is_parted(known, RowState::Repeats, RowState::Moves));
+  // A tool that comes to rest leaves the noise, as large as beside it.
+  return most < kRowStopped * least_moving && most < kPartStopped * most_before &&
+         (is_parted(known, RowState::Moves, RowState::Repeats) ||
+          is_parted(known, RowState::Repeats, RowState::Moves));
 }
 
 // Until it has changed in a few pictures on end.

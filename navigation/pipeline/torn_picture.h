@@ -16,7 +16,8 @@
 //
 // An encoder that is given torn pictures refines what was not renewed, and little is left of the repeat and
 // of the seam. What it leaves is the stop: everything in one end of the picture that moved until the picture
-// before stands still in this one, while the other end moves on. No hand does that.
+// before stands still in this one, while the other end moves on. No hand does that. What changed in the
+// picture before alone had jumped, and did not move.
 #pragma once
 
 #include <array>
@@ -50,7 +51,9 @@ class TornPicture {
   [[nodiscard]] bool has_stopped(Steps step);
 
   std::array<float, kColumns * kRows> noise_{};  // 0: not known
-  std::array<float, kRows> moved_{};             // of each row what changed most in the picture before
+  using Moved =
+      std::array<float, 3>;  // what changed most of a row in the three pictures before, newest first
+  std::array<Moved, kRows> moved_{};
   int torn_in_a_row_ = 0;
   bool has_seam_ = false;  // of those in a row
   std::int64_t not_before_ns_ = 0;

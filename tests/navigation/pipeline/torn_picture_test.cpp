@@ -145,6 +145,43 @@ TEST(TornPicture, IsSeenInAnEncodedStreamByTheStopOfAPart) {
   }
 }
 
+// A tool that is elsewhere in the next picture and rests there, as a cut makes it, while the scope goes on.
+// Neither is where it moves on from there; a part that is torn in every other picture is.
+TEST(TornPicture, AJumpOfOnePictureIsNone) {
+  const std::array<float, kRows> rests{4.2F, 5.1F, 4.6F, 4.0F, 0.9F, 0.8F, 1.0F, 0.9F},
+      jumps{4.4F, 5.0F, 4.5F, 4.1F, 60, 75, 70, 50}, moves{4.2F, 5.1F, 4.6F, 4.0F, 8, 9, 7, 8},
+      stands{4.3F, 5.2F, 4.4F, 4.2F, 0.2F, 0.3F, 0.2F, 0.3F};
+  std::mt19937 random(11);
+  TornPicture watch;
+  int frame = 0;
+  const auto observe = [&](const std::array<float, kRows>& largest) {
+    return watch.observe(coded(largest, random), kNoSeam, kHeight, time_ns(frame++));
+  };
+  for (int round = 0; round < 4; ++round) {
+    for (int i = 0; i < 10; ++i) EXPECT_FALSE(observe(rests)) << frame;
+    EXPECT_FALSE(observe(jumps)) << frame;
+  }
+  EXPECT_FALSE(observe(rests));
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(observe(moves));
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(observe(i % 2 == 0 ? stands : moves), i % 2 == 0) << i;
+}
+
+// A tool is led through one half of the picture and rests at once, the scope with it: what is left is noise,
+// as large as in the other half, as measured of the simulated sensor. A part that was not renewed has none.
+TEST(TornPicture, AToolThatComesToRestIsNone) {
+  const std::array<float, kRows> led{11.6F, 37.2F, 48.6F, 42.5F, 2.7F, 1.8F, 1.75F, 1.6F},
+      rests{1.5F, 1.9F, 1.9F, 1.9F, 1.85F, 1.85F, 1.8F, 1.6F};
+  TornPicture watch;
+  int frame = 0;
+  for (int round = 0; round < 4; ++round) {
+    for (const auto* const rows : {&rests, &rests, &led, &led, &led, &rests}) {
+      Step step;
+      for (std::size_t i = 0; i < step.size(); ++i) step[i] = (*rows)[i / kColumns] - 0.3F * (i % 2 == 0);
+      EXPECT_FALSE(watch.observe(step, kNoSeam, kHeight, time_ns(frame++))) << frame;
+    }
+  }
+}
+
 // A source without noise, such as a renderer, is not judged by its tiles.
 TEST(TornPicture, NeedsNoise) {
   TornPicture torn;
