@@ -56,8 +56,9 @@ void list_scores(const Context& context, const Arguments& arguments) {
   for (const Score& score : kept) {
     if (!arguments.exercise.empty() && score.exercise != arguments.exercise) continue;
     ++shown;
-    context.say(format("%s  %-12s %-6s %3.0f  %s, %s", score.when_utc.c_str(), score.exercise.c_str(),
-                       std::string(to_text(score.level)).c_str(), score.points, score.trainee.c_str(),
+    const std::string points = score.is_done ? format("%3.0f", score.points) : "not done";
+    context.say(format("%s  %-12s %-6s %s  %s, %s", score.when_utc.c_str(), score.exercise.c_str(),
+                       std::string(to_text(score.level)).c_str(), points.c_str(), score.trainee.c_str(),
                        score.knee.c_str()));
   }
   if (shown == 0) context.say("No score is kept. The window keeps those of your own hand; here --keep does.");

@@ -31,7 +31,7 @@ widgets::Severity severity_of(const training::ScorePart& part) {
   return part.points > 0 ? widgets::Severity::Caution : widgets::Severity::Bad;
 }
 
-// Points over the runs, oldest first: 0 to 100, a mark a run, hollow where it was not done.
+// Points over the runs, oldest first: 0 to 100, a mark a run.
 void draw_points(const widgets::Ui& ui, const widgets::Rect& plot, const std::vector<const Score*>& runs) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const auto y_of = [&](double points) {
@@ -51,14 +51,10 @@ void draw_points(const widgets::Ui& ui, const widgets::Rect& plot, const std::ve
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const float radius = ui.theme.px(7);
-    if (runs[i]->is_done)
-      draw.AddCircleFilled(at(i), radius, widgets::kAccent);
-    else
-      draw.AddCircle(at(i), radius, widgets::kQuietText, 0, ui.theme.px(2));
+    draw.AddCircleFilled(at(i), radius, widgets::kAccent);
     if (std::abs(at(i).x - mouse.x) + std::abs(at(i).y - mouse.y) < 3 * radius)
-      ImGui::SetTooltip("%s: %.0f points%s",
-                        files::local_time_in_words(runs[i]->when_utc).substr(0, 16).c_str(), runs[i]->points,
-                        runs[i]->is_done ? "" : ", not done");
+      ImGui::SetTooltip("%s: %.0f points",
+                        files::local_time_in_words(runs[i]->when_utc).substr(0, 16).c_str(), runs[i]->points);
   }
 }
 
@@ -142,7 +138,8 @@ void TrainingView::draw_history(const widgets::Ui& ui, const widgets::Rect& area
   std::vector<const Score*> runs;
   std::size_t others = 0;  // of `arthronaut train --keep`: they say nothing of how well this hand does
   for (const Score& score : scores_) {
-    if (score.exercise != chosen().id || score.level != level_) continue;
+    // What was stopped says nothing of how well anybody does.
+    if (score.exercise != chosen().id || score.level != level_ || !score.is_done) continue;
     if (score.trainee == training::kByHand)
       runs.push_back(&score);
     else
@@ -236,9 +233,9 @@ void TrainingView::draw_score(const widgets::Ui& ui, const widgets::Rect& area) 
   widgets::end_panel();
 
   const widgets::Rect top = rest.cut_top(ui.theme.px(190), ui.theme.px(12));
-  widgets::begin_panel(ui, "train.points", top, score.is_done ? "Points" : "Not done: no points");
+  widgets::begin_panel(ui, "train.points", top, score.is_done ? "Points" : "Stopped before it was done");
   widgets::text_in(ui.theme.number, score.is_done ? widgets::kText : widgets::kCaution,
-                   format("%.0f of 100", score.points));
+                   score.is_done ? format("%.0f of 100", score.points) : "Not counted");
   const Score* best = training::best_of(scores_, score.exercise, score.level);
   if (best != nullptr)
     widgets::text_in(ui.theme.body, widgets::kQuietText, format("Best so far: %.0f", best->points));
