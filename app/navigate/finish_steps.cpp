@@ -34,7 +34,11 @@ std::vector<FinishedBone> NavigateView::finished_bones() const {
     if (!model_->has_bone(kind_of_bone)) continue;
     const auto keys = model_->knee().plan.of(kind_of_bone);
     if (keys.empty()) continue;
-    FinishedBone bone{kind_of_bone, {}, choices_.markers_out.contains({kind, kind_of_bone})};
+    const theatre::LiveOperation* const known = bones_.known(kind_of_bone);
+    FinishedBone bone{kind_of_bone,
+                      {},
+                      choices_.markers_out.contains({kind, kind_of_bone}),
+                      known != nullptr && known->latest()->phase != theatre::LiveState::Phase::NoSource};
     for (const tunnels::TunnelKey& key : keys) {
       const auto said = choices_.drilled.find({kind, key});
       const auto planned = bones_.planned(key);

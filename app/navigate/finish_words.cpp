@@ -48,7 +48,9 @@ FinishList finish_list(const std::vector<FinishedBone>& bones) {
     }
     list.lines.push_back({bone.marker_is_out ? Severity::Good : Severity::Caution,
                           name_in_list(std::string(bones::to_text(bone.bone)), " marker"),
-                          bone.marker_is_out ? "out" : "is still in the bone"});
+                          bone.marker_is_out ? "out"
+                          : bone.has_begun   ? "is still in the bone"
+                                             : "not said to be out"});
     list.is_done = list.is_done && bone.is_drilled() && bone.marker_is_out;
   }
   return list;

@@ -18,6 +18,7 @@ struct FinishedBone {
   bones::BoneKind bone = bones::BoneKind::Femur;
   std::vector<FinishedTunnel> tunnels;
   bool marker_is_out = false;             // by the surgeon's word
+  bool has_begun = false;                 // pictures of it came: its marker was put in, if not before
   [[nodiscard]] bool is_drilled() const;  // all of them
 };
 

@@ -226,9 +226,12 @@ Trouble trouble_of_end(const operation::OperationState& state) {
   // What the pedal asks for is not asked for a second time by another key.
   if (may_be_drilled && state.next_action == NextAction::RecordDrilled)
     return {"The pictures have ended", "Nothing guides. Not drilled yet: go on with other pictures"};
+  // What was drilled in no picture of a simulation was not drilled.
+  const bool is_simulated = state.source != nullptr && state.source->kind == sources::SourceKind::Simulation;
   return {"The pictures have ended",
-          may_be_drilled ? "Nothing guides. Go on with others; is the tunnel drilled already, say so (hold J)"
-                         : "This is the last one: nothing guides"};
+          may_be_drilled && !is_simulated
+              ? "Nothing guides. Go on with others; is the tunnel drilled already, say so (hold J)"
+              : "This is the last one: nothing guides"};
 }
 
 Trouble trouble_of(const lens::LensObservation& lens) {

@@ -173,7 +173,7 @@ void draw_states(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
     states.push_back({sign(is_seen, Severity::Caution), registers ? "Probe" : "Guide"});
     const auto standing = state.registration->in_force.standing;
     states.push_back({waits_for_time_out(state) || screen.display.is_unverified ? Severity::Caution
-                      : standing == operation::Standing::Stands                 ? Severity::Good
+                      : standing == operation::Standing::Stands                 ? sign(true, Severity::Good)
                       : standing == operation::Standing::None                   ? Severity::Quiet
                                                                                 : Severity::Bad,
                       "Bone"});

@@ -37,6 +37,17 @@ TEST(FinishWords, EndWithTheBonesThatArePlanned) {
   EXPECT_FALSE(finish_list({}).is_done);
 }
 
+// Of a bone that was not begun nobody knows where its marker is.
+TEST(FinishWords, SayOfNoMarkerThatItIsInABoneThatWasNotBegun) {
+  FinishedBone tibia = bone_of(BoneKind::Tibia, false, false);
+  const auto text = [&] { return finish_list({tibia}).lines.back().text; };
+  EXPECT_EQ(text(), "not said to be out");
+  tibia.has_begun = true;
+  EXPECT_EQ(text(), "is still in the bone");
+  tibia.marker_is_out = true;
+  EXPECT_EQ(text(), "out");
+}
+
 // What was measured of a tunnel and what was only said of it are told apart.
 TEST(FinishWords, SayWhetherATunnelWasMeasured) {
   operation::AchievedTunnel tunnel;

@@ -82,6 +82,18 @@ TEST(NavigateDisplay, PicturesThatEndBeforeTheTunnelIsSaidLeaveTheWord) {
   }
 }
 
+// The scripted probe has drawn, and the next step is to drill: nothing else is offered beside it.
+TEST(NavigateDisplay, AfterASimulatedScratchNothingIsSaidToBeDrilled) {
+  const NavigateDisplay display = display_after([](Shown& shown) {
+    shown.live.phase = Phase::Ended;
+    shown.operation.has_source = false;
+    shown.operation.plan = operation::PlannedTunnel{{}, 30};
+    shown.source.kind = sources::SourceKind::Simulation;
+    shown.stand(Standing::Stands, {});
+  });
+  EXPECT_EQ(display.detail, "This is the last one: nothing guides");
+}
+
 // One word, one key: what the pedal asks for then is offered by no other.
 TEST(NavigateDisplay, WhatThePedalAsksForAtTheEndIsOfferedByNoOtherKey) {
   const NavigateDisplay display = display_after([](Shown& shown) {
