@@ -93,7 +93,7 @@ struct GuidanceNumbers {
 [[nodiscard]] Eigen::Vector3d crossing_of(const Eigen::Vector3d& point_mm, const Eigen::Vector3d& direction,
                                           const tunnels::Tunnel& plan);
 
-// Allocates nothing.
+// Allocates nothing, but where it looks for a drill's exit.
 [[nodiscard]] GuidanceNumbers compute_guidance(const GuidanceInput& input);
 
 }  // namespace arthronaut::guidance

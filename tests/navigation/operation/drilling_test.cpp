@@ -96,5 +96,35 @@ TEST_F(DrillingTest, TakenBackItRestsOnWhatIsSeenFromThenOn) {
   EXPECT_FALSE(drilling_.take_back(true)) << "once";
 }
 
+// What a drill is about to leave is the bone that is operated on, beside the plan too.
+TEST(DrilledBone, Hazard7ADrillBesideThePlanIsHeldAgainstTheBone) {
+  const experiments::Trial trial = registration::phantom_bone().trial(experiments::TrialNoise::Dry, 1);
+  SourceSetup source = test::scripted_source();
+  source.pipeline.tools.tracker = tools::OutsideTracker{"", 0.1, 0.1};
+  const tools::Tool drill = test::scripted_drill();
+  source.pipeline.tools.tools.push_back(drill);
+  test::PhantomOperation run;
+  run.start(source);
+  run.apply(test::true_registration(trial, provenance_of(run.operation().setup(), source)));
+  const tunnels::Tunnel plan = test::phantom_plan().tunnel;
+  const Eigen::Vector3d along = plan.direction.normalized();
+  const Eigen::Vector3d tip_mm = plan.entry_mm + 10 * along + 7 * along.unitOrthogonal();
+  geometry::RigidTransform bone_from_drill;
+  bone_from_drill.rotation = Eigen::Quaterniond::FromTwoVectors(drill.axis->direction, along);
+  bone_from_drill.translation_mm = tip_mm - bone_from_drill.rotate(*drill.tip_mm);
+  tracker::TrackerPoses poses;
+  tracker::set_all(source.pipeline.tools, tracker::BodyState::NeverCame, poses);
+  for (tracker::BodyPose* const body : {&poses.bodies.front(), &poses.bodies.back()})
+    body->state = tracker::BodyState::Tracked;
+  poses.bodies.back().tracker_from_body = run.in_force().registration->marker_from_bone * bone_from_drill;
+  run.operation().process(test::plain_frame(0, 90), &poses);
+  const auto& seen = run.operation().frame().guidance.drill;
+  ASSERT_TRUE(seen);
+  EXPECT_TRUE(seen->is_beside_plan());
+  const auto exit_mm = guidance::to_exit_along(*run.operation().setup().surface, tip_mm, along);
+  ASSERT_TRUE(exit_mm);
+  EXPECT_NEAR(seen->to_exit_mm, *exit_mm, 1e-6);
+}
+
 }  // namespace
 }  // namespace arthronaut::operation
