@@ -1,7 +1,6 @@
 #include "navigation/pipeline/torn_picture.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace arthronaut::pipeline {
 
@@ -57,7 +56,7 @@ bool TornPicture::has_stopped(Steps step) {
   RowStates rows{};
   std::size_t count = 0;
   float most = 0, most_before = 0;  // of the rows that stopped
-  float least_moving = std::numeric_limits<float>::max();
+  float most_moving = 0;            // of those that move on
   for (std::size_t row = 0; row < kRows; ++row) {
     const auto tiles = step.subspan(row * kColumns, kColumns);
     const float now = *std::max_element(tiles.begin(), tiles.end());
@@ -71,14 +70,14 @@ bool TornPicture::has_stopped(Steps step) {
     rows[count++] = stopped                      ? RowState::Repeats
                     : now > kRowMovesOn * before ? RowState::Moves
                                                  : RowState::Mixed;
-    if (rows[count - 1] == RowState::Moves) least_moving = std::min(least_moving, now);
+    if (rows[count - 1] == RowState::Moves) most_moving = std::max(most_moving, now);
     if (!stopped) continue;
     most = std::max(most, now);
     most_before = std::max(most_before, before);
   }
   const std::span<const RowState> known(rows.data(), count);
   // A tool that comes to rest leaves the noise, as large as beside it.
-  return most < kRowStopped * least_moving && most < kPartStopped * most_before &&
+  return most < kRowStopped * most_moving && most < kPartStopped * most_before &&
          (is_parted(known, RowState::Moves, RowState::Repeats) ||
           is_parted(known, RowState::Repeats, RowState::Moves));
 }
