@@ -150,6 +150,9 @@ ordered_json postoperative_of(const Content& content) {
     node["beyond_mm"] = number(found.beyond_mm);
     node["entry_sigma_mm"] = number(found.entry_sigma_mm);
     node["direction_sigma_deg"] = number(geometry::deg_from_rad(found.direction_sigma_rad));
+    for (const auto& [name, sigma_mm] : {std::pair("diameter_sigma_mm", found.diameter_sigma_mm),
+                                         std::pair("length_sigma_mm", found.length_sigma_mm)})
+      node[name] = std::isfinite(sigma_mm) ? number(sigma_mm) : ordered_json();
     node["metal_share"] = number(found.metal_share);
     node["widths"] = ordered_json::array();
     for (const postop::Width& width : found.widths)

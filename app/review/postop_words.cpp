@@ -74,11 +74,17 @@ std::vector<std::string> error_budget(const postop::Comparison& comparison, cons
         "Bone in the images: %.2f mm (rms) off their edges; %.0f %% of the surface near the "
         "entry was seen, %.0f %% of it lies on an edge.",
         comparison.bone.rms_mm, 100 * comparison.bone.in_view_share, 100 * comparison.bone.on_edge_share));
-  if (comparison.tunnel.is_found)
-    lines.push_back(format(
+  if (comparison.tunnel.is_found) {
+    std::string line = format(
         "Tunnel, one sigma by the scatter of the grey and the bone's pose: entry %.2f mm, "
-        "direction %.2f\u00B0.",
-        comparison.tunnel.entry_sigma_mm, geometry::deg_from_rad(comparison.tunnel.direction_sigma_rad)));
+        "direction %.2f\u00B0",
+        comparison.tunnel.entry_sigma_mm, geometry::deg_from_rad(comparison.tunnel.direction_sigma_rad));
+    if (std::isfinite(comparison.tunnel.diameter_sigma_mm))
+      line += format(", diameter %.2f mm", comparison.tunnel.diameter_sigma_mm);
+    if (std::isfinite(comparison.tunnel.length_sigma_mm))
+      line += format(", length %.2f mm", comparison.tunnel.length_sigma_mm);
+    lines.push_back(line + ".");
+  }
   if (comparison.tunnel.is_found && comparison.tunnel.metal_share > 0)
     lines.push_back(format("Metal fills %.0f %% of it; the wall beside it was passed over.",
                            100 * comparison.tunnel.metal_share));

@@ -32,6 +32,10 @@ ordered_json tunnel_json(const tunnels::TunnelKey& key, const AchievedTunnel& ac
   json["beyond_mm"] = found ? ordered_json(achieved.beyond_mm) : ordered_json();
   json["entry_sigma_mm"] = number(found, achieved.entry_sigma_mm);
   json["direction_sigma_deg"] = number(found, geometry::deg_from_rad(achieved.direction_sigma_rad));
+  json["diameter_sigma_mm"] =
+      number(found && std::isfinite(achieved.diameter_sigma_mm), achieved.diameter_sigma_mm);
+  json["length_sigma_mm"] =
+      number(found && std::isfinite(achieved.length_sigma_mm), achieved.length_sigma_mm);
   json["metal_share"] = number(found, achieved.metal_share);
   json["widths"] = ordered_json::array();
   for (const Width& width : achieved.widths)
@@ -86,6 +90,8 @@ AchievedTunnel tunnel_of(const files::JsonObject& node, const tunnels::TunnelKey
   if (node.has("entry_sigma_mm")) achieved.entry_sigma_mm = node.number("entry_sigma_mm");
   if (node.has("direction_sigma_deg"))
     achieved.direction_sigma_rad = geometry::rad_from_deg(node.number("direction_sigma_deg"));
+  if (node.has("diameter_sigma_mm")) achieved.diameter_sigma_mm = node.number("diameter_sigma_mm");
+  if (node.has("length_sigma_mm")) achieved.length_sigma_mm = node.number("length_sigma_mm");
   if (node.has("metal_share")) achieved.metal_share = node.number("metal_share");
   if (!node.has("widths")) return achieved;
   for (const files::JsonObject& node_of_width : node.objects("widths")) {

@@ -46,7 +46,10 @@ AchievedTunnel told(const DrilledTunnel& drilled, const FoundBone& bone, const t
     achieved.angle_rad = geometry::angle_between_rad(drilled.tunnel.direction, plan.direction);
     achieved.entry_sigma_mm =
         std::hypot(drilled.entry_sigma_mm, bone.pose.sigma_at_mm(drilled.tunnel.entry_mm));
-    achieved.direction_sigma_rad = drilled.direction_sigma_rad;
+    achieved.direction_sigma_rad =
+        std::hypot(drilled.direction_sigma_rad, bone.pose.sigma_of_direction_rad(drilled.tunnel.direction));
+    achieved.diameter_sigma_mm = drilled.diameter_sigma_mm;
+    achieved.length_sigma_mm = drilled.length_sigma_mm;
     achieved.metal_share = drilled.metal_share;
     for (const Stretch& stretch : drilled.stretches) {
       if (stretch.seen_share >= kSeenOfStretch && stretch.metal_share <= kMetalOfStretch &&

@@ -51,6 +51,10 @@ struct AchievedTunnel {
   double angle_rad = 0;       // between the axes
   double entry_sigma_mm = 0;  // one sigma, by the scatter of the grey and the bone's pose
   double direction_sigma_rad = 0;
+  // Of the diameter, and of the length: by the grey, and for an end within the bone by how grainy the marrow
+  // about it is. Infinite where a file doesn't say, or it is not known.
+  double diameter_sigma_mm = std::numeric_limits<double>::infinity(),
+         length_sigma_mm = std::numeric_limits<double>::infinity();
   double metal_share = 0;     // of what is inside it
   std::vector<Width> widths;  // where its wall is seen
   bool reliable = false;

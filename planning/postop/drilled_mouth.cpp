@@ -19,7 +19,6 @@ constexpr double kFrom_mm = 0.3, kTo_mm = 2.1, kStep_mm = 0.3;
 constexpr double kLeastSoft_hu = -100;
 constexpr double kShine_mm = 1.5;  // of metal through the blur
 constexpr int kTurns = 16;
-constexpr double kLeastStep_hu = 30;  // of the grey where a bore ends
 
 struct Column {
   double most_hu = 0, outside_hu = 0;
@@ -110,73 +109,6 @@ SeenMouth mouth_at(const images::VolumeSampler& postop, const geometry::RigidTra
   for (const Column& column : ring)
     mouth.closed_share += (column.most_hu >= level ? 1.0 : 0.0) / static_cast<double>(ring.size());
   return mouth;
-}
-
-std::optional<double> blind_end_mm(const images::VolumeSampler& postop,
-                                   const geometry::RigidTransform& postop_from_plan, const Passage& passage,
-                                   double radius_mm, double contrast_hu) {
-  const double length = passage.length_mm();
-  const Vector3d d = (passage.exit_mm - passage.entry_mm).normalized(), u = d.unitOrthogonal(),
-                 v = d.cross(u);
-  constexpr double kSpacing_mm = 0.5, kFirst_mm = 2.5, kLeast_mm = 6;
-  // Mean of the middle of the bore, station by station; of a station in metal that before it.
-  std::vector<double> grey;
-  for (double t = kFirst_mm; t < length - 0.5; t += kSpacing_mm) {
-    double sum = 0;
-    int count = 0;
-    for (const double off : {0.3, 0.55, 0.8}) {
-      for (int turn = 0; turn < kTurns; ++turn) {
-        const double angle = 2 * M_PI * turn / kTurns;
-        const double hu =
-            postop.at(postop_from_plan * (passage.entry_mm + t * d +
-                                          off * radius_mm * (std::cos(angle) * u + std::sin(angle) * v)));
-        if (!std::isfinite(hu) || hu > kMetal_hu) continue;
-        sum += hu;
-        ++count;
-      }
-    }
-    if (count >= kTurns) {
-      grey.push_back(sum / count);
-    } else if (!grey.empty()) {
-      grey.push_back(grey.back());
-    } else {
-      grey.push_back(0);
-    }
-  }
-  // Between what lies before and the 5 mm that follow.
-  const auto behind = static_cast<std::ptrdiff_t>(5 / kSpacing_mm), ahead = behind;
-  const auto median_of = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
-    return geometry::median({grey.begin() + from, grey.begin() + to});
-  };
-  const auto first = static_cast<std::ptrdiff_t>((kLeast_mm - kFirst_mm) / kSpacing_mm);
-  if (std::ssize(grey) <= first) return std::nullopt;
-  // What is denser than the bone about the bore counts no more than that: else the far cortex would outdo the
-  // marrow before it.
-  const double densest = median_of(0, first) + 1.2 * std::max(contrast_hu, kLeastStep_hu);
-  for (double& hu : grey) hu = std::min(hu, densest);
-  std::vector<double> jumps;
-  for (std::size_t i = 1; i < grey.size(); ++i) jumps.push_back(std::abs(grey[i] - grey[i - 1]));
-  const double noise = geometry::median(std::move(jumps), 0);
-  const double least = std::max({kLeastStep_hu, 5 * noise, 0.5 * contrast_hu});
-  const auto rise_at = [&](std::ptrdiff_t i) {
-    return median_of(i, std::min(std::ssize(grey), i + ahead)) -
-           median_of(std::max<std::ptrdiff_t>(0, i - behind), i);
-  };
-  std::ptrdiff_t at = first;
-  const std::ptrdiff_t last = std::ssize(grey) - 4;
-  while (at <= last && rise_at(at) < least) ++at;
-  if (at > last) return std::nullopt;
-  while (at + 1 <= last && rise_at(at + 1) > rise_at(at)) ++at;
-  // Half-way up.
-  const double before = median_of(std::max<std::ptrdiff_t>(0, at - behind), at),
-               after = median_of(at, std::min(std::ssize(grey), at + ahead)), level = 0.5 * (before + after);
-  for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(1, at - behind);
-       i < std::min(std::ssize(grey), at + ahead); ++i) {
-    const double a = grey[static_cast<std::size_t>(i) - 1], b = grey[static_cast<std::size_t>(i)];
-    if (a >= level || b < level) continue;
-    return kFirst_mm + kSpacing_mm * (static_cast<double>(i) - 1 + (level - a) / (b - a));
-  }
-  return kFirst_mm + kSpacing_mm * static_cast<double>(at);
 }
 
 }  // namespace arthronaut::postop

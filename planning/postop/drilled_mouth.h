@@ -1,4 +1,4 @@
-// Whether a bore opens through the bone's surface, and where it ends within the bone. Inner header of postop.
+// Whether a bore opens through the bone's surface. Inner header of postop.
 #pragma once
 
 #include <optional>
@@ -36,13 +36,5 @@ struct SeenMouth {
                                  const geometry::RigidTransform& postop_from_plan,
                                  const geometry::Surface& bone, const Eigen::Vector3d& place_mm,
                                  const Eigen::Vector3d& inward, double radius_mm);
-
-// How far from the entry a bore ends that does not come out: where the grey of its middle first steps up by
-// half of `contrast_hu`, what its wall stands out by. nullopt when no step is seen that stands out of the
-// noise.
-[[nodiscard]] std::optional<double> blind_end_mm(const images::VolumeSampler& postop,
-                                                 const geometry::RigidTransform& postop_from_plan,
-                                                 const Passage& passage, double radius_mm,
-                                                 double contrast_hu);
 
 }  // namespace arthronaut::postop

@@ -7,7 +7,7 @@
 #include "planning/files/format.h"
 #include "planning/geometry/quantile.h"
 #include "planning/postop/fit_spread.h"
-#include "planning/postop/narrowing.h"
+#include "planning/postop/tunnel_end.h"
 #include "planning/postop/tunnel_search.h"
 
 namespace arthronaut::postop {
@@ -21,8 +21,6 @@ constexpr double kReach_mm = 8;         // of the voxels beside a bore, beyond i
 constexpr double kFirstLength_mm = 26;  // that the first fit looks at, until it is known how long the bore is
 constexpr double kShortest_mm = 8;
 constexpr double kLeastDiameter_mm = 3.5, kMostDiameter_mm = 14;
-// Of the wall that must be seen; of the wall beside a screw.
-constexpr double kLeastSeen = 0.5;
 // What is asked for, where there is metal, too, and how seldom either may be missed by what is called
 // reliable.
 constexpr double kAskedEntry_mm = 0.3, kAskedDirection_deg = 0.5, kAskedEntryByMetal_mm = 0.6,
@@ -33,10 +31,10 @@ constexpr double kMostBlur_mm = 1.0;
 constexpr double kSomeMetal = 0.01;
 // Pieces of the bore lie off its axis by no more than this.
 constexpr double kMostBend_mm = 0.6, kPiece_mm = 8, kPieceKnown_mm = 0.2;
-// Beyond the end of a socket there is no wall.
-constexpr double kBeyondFrom_mm = 2, kBeyondTo_mm = 10, kAsWide_mm = 1;
-// Nor is there as wide a one: how much of it is to be seen for that.
-constexpr double kLeastNarrow_mm = 4;
+// Beyond the end of a socket there is no wall as wide.
+constexpr double kAsWide_mm = 1;
+// Of simulated sockets that are known so well none was off by more than 1 mm.
+constexpr double kMostLengthSigma_mm = 0.75;
 constexpr double kMetalOfPiece = 0.05;
 constexpr double kPlugSeen = 0.3;  // of a stretch's wall, to be a plug's
 // Of a stretch, from which on it says nothing of the wall.
@@ -46,19 +44,16 @@ struct Candidate {
   TunnelFit fit;
   Passage passage{};
   SeenMouth mouth;
-  std::optional<double> narrows_mm = {};  // by its widths, from the entry
-  double length_mm = 0, beyond_mm = 0, seen_share = 0, metal_share = 0, clear_mm = 0, bend_mm = 0;
-  bool comes_out = false, has_end = false, leaves_images = false, goes_on = false, is_by_screw = false;
+  TunnelEnd end = {};
+  double length_sigma_mm = std::numeric_limits<double>::infinity();
+  double seen_share = 0, metal_share = 0, clear_mm = 0, bend_mm = 0;
+  bool goes_on = false, is_by_screw = false;
   std::vector<std::string> doubts;
 
   [[nodiscard]] double merit() const {
-    return seen_share * std::min(length_mm, 30.0) + 20 * mouth.open_share;
+    return seen_share * std::min(end.from_entry_mm, 30.0) + 20 * mouth.open_share;
   }
 };
-
-Bore bore_of(const TunnelFit& fit, const Passage& passage) {
-  return {passage.entry_mm, fit.direction, fit.radius_mm, 0};
-}
 
 class Finder {
  public:
@@ -68,6 +63,7 @@ class Finder {
         sampler_(postop),
         postop_from_plan_(postop_from_plan),
         bone_(bone),
+        ends_(sampler_, postop_from_plan_, bone_),
         depths_(bone),
         grid_(bone_grid(sampler_, postop_from_plan, bone, plan.entry_mm, kGridRadius_mm)) {}
 
@@ -86,19 +82,19 @@ class Finder {
       return std::nullopt;
     // Once more, to where it ends.
     for (int round = 0; round < 2; ++round) {
-      find_end(voxels, candidate);
-      if (candidate.length_mm < kShortest_mm) return std::nullopt;
+      candidate.end = ends_.find(voxels, candidate.fit, candidate.passage, candidate.end.narrowing);
+      if (candidate.end.from_entry_mm < kShortest_mm) return std::nullopt;
       const auto known = round > 0 ? std::optional(candidate.fit.profile) : std::nullopt;
-      if (!fitted(voxels, bore_of(candidate.fit, candidate.passage), candidate.length_mm, known, candidate))
+      if (!fitted(voxels, bore_of(candidate.fit, candidate.passage), candidate.end.from_entry_mm, known,
+                  candidate))
         return std::nullopt;
     }
-    find_end(voxels, candidate);
-    if (candidate.length_mm < kShortest_mm) return std::nullopt;
+    candidate.end = ends_.find(voxels, candidate.fit, candidate.passage, candidate.end.narrowing);
+    if (candidate.end.from_entry_mm < kShortest_mm) return std::nullopt;
     candidate.mouth = mouth_at(sampler_, postop_from_plan_, bone_, candidate.passage.entry_mm,
                                candidate.fit.direction, candidate.fit.radius_mm);
     if (!candidate.mouth.is_open()) return std::nullopt;
-    if (!candidate.comes_out && candidate.has_end)
-      candidate.beyond_mm = thinner_beyond_mm(voxels, candidate, candidate.length_mm);
+    candidate.length_sigma_mm = ends_.sigma_mm(candidate.fit, candidate.passage, candidate.end);
     candidate.bend_mm = bend(voxels, candidate);
     candidate.goes_on = goes_on(voxels, candidate);
     describe(candidate);
@@ -136,66 +132,11 @@ class Finder {
     return fit.point_mm + (place - fit.point_mm).dot(fit.direction) * fit.direction;
   }
 
-  void find_end(const std::vector<WallVoxel>& voxels, Candidate& candidate) const {
-    const double whole_mm = candidate.passage.length_mm();
-    candidate.length_mm = whole_mm;
-    candidate.comes_out = mouth_at(sampler_, postop_from_plan_, bone_, candidate.passage.exit_mm,
-                                   -candidate.fit.direction, candidate.fit.radius_mm)
-                              .is_open();
-    candidate.has_end = candidate.comes_out;
-    const double in_images_mm = length_in_images_mm(candidate.passage);
-    candidate.leaves_images = in_images_mm < whole_mm;
-    std::vector<double> contrasts;
-    for (const Stretch& stretch : candidate.fit.stretches)
-      if (stretch.seen_share > kLeastSeen) contrasts.push_back(stretch.outside_hu - stretch.inside_hu);
-    const auto end = blind_end_mm(sampler_, postop_from_plan_, candidate.passage, candidate.fit.radius_mm,
-                                  geometry::median(std::move(contrasts), 0));
-    // What comes out may be a thinner bore beyond a socket, as for the loop of a button: the widths tell
-    // where it begins, where it is long enough, else the grey does. A fit that ends there shows nothing of it
-    // any more.
-    if (const auto at = narrows_at_mm(candidate.fit.stretches)) candidate.narrows_mm = at;
-    std::optional<double> thinner_from = candidate.narrows_mm;
-    if (!(thinner_from && thinner_beyond_mm(voxels, candidate, *thinner_from) > 0)) thinner_from = end;
-    if (candidate.comes_out && !(thinner_from && thinner_beyond_mm(voxels, candidate, *thinner_from) > 0))
-      return;
-    candidate.comes_out = false;
-    candidate.has_end = thinner_from.has_value();
-    candidate.length_mm = std::min(in_images_mm, thinner_from.value_or(whole_mm));
-  }
-
-  // From the entry to where the images end, or the bone.
-  [[nodiscard]] double length_in_images_mm(const Passage& passage) const {
-    constexpr double kStation_mm = 0.5;
-    const double whole_mm = passage.length_mm();
-    const Vector3d step = (passage.exit_mm - passage.entry_mm) / whole_mm;
-    for (double t = kStation_mm; t < whole_mm; t += kStation_mm)
-      if (!std::isfinite(sampler_.at(postop_from_plan_ * (passage.entry_mm + t * step))))
-        return t - kStation_mm;
-    return std::isfinite(sampler_.at(postop_from_plan_ * passage.exit_mm)) ? whole_mm
-                                                                           : whole_mm - kStation_mm;
-  }
-
-  // The diameter of the thinner bore that is seen beyond a place; 0: none is.
-  [[nodiscard]] static double thinner_beyond_mm(const std::vector<WallVoxel>& voxels,
-                                                const Candidate& candidate, double end_mm) {
-    const double from = end_mm + kBeyondFrom_mm,
-                 to = std::min(end_mm + kBeyondTo_mm, candidate.passage.length_mm());
-    if (to - from < kLeastNarrow_mm) return 0;
-    Bore thinner = bore_of(candidate.fit, candidate.passage);
-    thinner.radius_mm -= kThinner_mm;
-    const TunnelFit beyond = fit_tunnel(voxels, thinner, from, to, Wall::Clear, candidate.fit.profile);
-    const auto is_seen = [](const Stretch& stretch) { return stretch.seen_share > kLeastSeen; };
-    const bool is_thinner = beyond.is_fitted &&
-                            std::any_of(beyond.stretches.begin(), beyond.stretches.end(), is_seen) &&
-                            beyond.radius_mm < candidate.fit.radius_mm - kThinner_mm;
-    return is_thinner ? 2 * beyond.radius_mm : 0;
-  }
-
   // How far pieces of the bore lie off its axis, at most.
   [[nodiscard]] double bend(const std::vector<WallVoxel>& voxels, const Candidate& candidate) const {
     double most = 0;
     const Bore bore = bore_of(candidate.fit, candidate.passage);
-    for (double from = 0; from + kPiece_mm <= candidate.length_mm + 0.5; from += 0.5 * kPiece_mm) {
+    for (double from = 0; from + kPiece_mm <= candidate.end.from_entry_mm + 0.5; from += 0.5 * kPiece_mm) {
       const TunnelFit piece =
           fit_tunnel(voxels, bore, from, from + kPiece_mm, candidate.is_by_screw ? Wall::Screw : Wall::Clear,
                      candidate.fit.profile);
@@ -216,8 +157,9 @@ class Finder {
 
   // Whether its wall is seen beyond where it is said to end, as wide as before.
   [[nodiscard]] bool goes_on(const std::vector<WallVoxel>& voxels, const Candidate& candidate) const {
-    const double from = candidate.length_mm + kBeyondFrom_mm, to = candidate.length_mm + kBeyondTo_mm;
-    if (candidate.comes_out || to > candidate.passage.length_mm()) return false;
+    const double from = candidate.end.from_entry_mm + kBeyondFrom_mm,
+                 to = candidate.end.from_entry_mm + kBeyondTo_mm;
+    if (candidate.end.comes_out || to > candidate.passage.length_mm()) return false;
     const TunnelFit beyond = fit_tunnel(voxels, bore_of(candidate.fit, candidate.passage), from, to,
                                         Wall::Clear, candidate.fit.profile);
     return beyond.is_fitted && std::abs(beyond.radius_mm - candidate.fit.radius_mm) < kAsWide_mm &&
@@ -235,7 +177,7 @@ class Finder {
     }
     c.seen_share = weight > 0 ? seen / weight : 0;
     c.metal_share = metal;
-    c.clear_mm = c.length_mm * weight / static_cast<double>(c.fit.stretches.size());
+    c.clear_mm = c.end.from_entry_mm * weight / static_cast<double>(c.fit.stretches.size());
     auto& doubts = c.doubts;
     if (c.seen_share < kLeastSeen)
       doubts.push_back(files::format("only %.0f %% of its wall are seen, %.0f %% are needed",
@@ -251,13 +193,13 @@ class Finder {
     const double most_entry = most_sigma(by_metal ? kAskedEntryByMetal_mm : kAskedEntry_mm),
                  most_deg = most_sigma(by_metal ? kAskedDirectionByMetal_deg : kAskedDirection_deg),
                  sigma_deg = geometry::deg_from_rad(c.fit.direction_sigma_rad);
-    if (c.fit.entry_sigma_mm > most_entry)
+    if (!(c.fit.entry_sigma_mm <= most_entry))
       doubts.push_back(files::format("its entry is known to %.2f mm, %.2f mm are needed",
                                      c.fit.entry_sigma_mm, most_entry));
-    if (sigma_deg > most_deg)
+    if (!(sigma_deg <= most_deg))
       doubts.push_back(
           files::format("its direction is known to %.2f deg, %.2f deg are needed", sigma_deg, most_deg));
-    if (c.fit.diameter_sigma_mm > kMostDiameterSigma_mm)
+    if (!(c.fit.diameter_sigma_mm <= kMostDiameterSigma_mm))
       doubts.push_back(files::format("its diameter is known to %.2f mm, %.2f mm are needed",
                                      c.fit.diameter_sigma_mm, kMostDiameterSigma_mm));
     if (!c.is_by_screw && c.fit.profile.layer_mm > 0)
@@ -286,15 +228,27 @@ class Finder {
     if (diameter < kLeastDiameter_mm || diameter > kMostDiameter_mm)
       doubts.push_back(files::format("its diameter of %.1f mm is none of a tunnel", diameter));
     if (c.goes_on) doubts.emplace_back("its wall goes on beyond where it seems to end");
-    if (!c.has_end)
-      doubts.emplace_back(c.leaves_images ? "the images end before it does: how long it is is not known"
-                                          : "where it ends is not seen");
+    if (!c.end.is_narrowing_seen)
+      doubts.push_back(
+          files::format("%.0f mm from its entry it gets %.1f mm wide: whether it ends there is not seen",
+                        c.end.narrowing->from_entry_mm, c.end.narrowing->thinner_mm));
+    if (c.end.is_seen && !(c.length_sigma_mm <= kMostLengthSigma_mm))
+      doubts.push_back(
+          std::isfinite(c.length_sigma_mm)
+              ? files::format("where it ends is known to %.1f mm, %.1f mm are needed", c.length_sigma_mm,
+                              kMostLengthSigma_mm)
+              : std::string(
+                    "how well it is seen where it ends is not known: too little marrow lies beside it"));
+    if (!c.end.is_seen)
+      doubts.emplace_back(c.end.leaves_images ? "the images end before it does: how long it is is not known"
+                                              : "where it ends is not seen");
   }
 
   const images::Volume& volume_;
   images::VolumeSampler sampler_;
   geometry::RigidTransform postop_from_plan_;
   const geometry::Surface& bone_;
+  TunnelEnds ends_;
   VoxelDepths depths_;
   BoneGrid grid_;
 };
@@ -311,12 +265,14 @@ DrilledTunnel told(const Candidate& candidate, const tunnels::Tunnel& plan) {
                     .direction = candidate.fit.direction,
                     .diameter_mm = 2 * candidate.fit.radius_mm,
                     .bundle = plan.bundle};
-  drilled.length_mm = candidate.length_mm;
-  drilled.comes_out = candidate.comes_out;
-  drilled.end_is_seen = candidate.has_end;
-  drilled.beyond_mm = candidate.beyond_mm;
+  drilled.length_mm = candidate.end.from_entry_mm;
+  drilled.length_sigma_mm = candidate.length_sigma_mm;
+  drilled.comes_out = candidate.end.comes_out;
+  drilled.end_is_seen = candidate.end.is_seen;
+  drilled.beyond_mm = candidate.end.beyond_mm;
   drilled.entry_sigma_mm = candidate.fit.entry_sigma_mm;
   drilled.direction_sigma_rad = candidate.fit.direction_sigma_rad;
+  drilled.diameter_sigma_mm = candidate.fit.diameter_sigma_mm;
   drilled.seen_share = candidate.seen_share;
   drilled.metal_share = candidate.metal_share;
   drilled.stretches = candidate.fit.stretches;

@@ -11,13 +11,14 @@
 namespace arthronaut::postop {
 
 struct DrilledTunnel {
-  bool is_found = false;   // false: the numbers are meaningless
-  tunnels::Tunnel tunnel;  // in the plan's frame; the entry where the axis enters the plan's bone
-  double length_mm = 0;    // within the bone, to where it comes out, ends or goes on as a thinner bore
+  bool is_found = false;       // false: the numbers are meaningless
+  tunnels::Tunnel tunnel;      // in the plan's frame; the entry where the axis enters the plan's bone
+  double length_mm = 0;        // within the bone, to where it comes out, ends or goes on as a thinner bore
+  double length_sigma_mm = 0;  // one sigma; infinite where it is not known
   bool comes_out = false;
   bool end_is_seen = true;  // false: the length is as far as the images or the bone reach
   double beyond_mm = 0;     // diameter of the thinner bore beyond; 0: none is seen
-  double entry_sigma_mm = 0, direction_sigma_rad = 0;
+  double entry_sigma_mm = 0, direction_sigma_rad = 0, diameter_sigma_mm = 0;
   double seen_share = 0;           // of its wall
   double metal_share = 0;          // of what is inside it
   std::vector<Stretch> stretches;  // from the entry to the end

@@ -190,6 +190,12 @@ double EdgePose::sigma_at_mm(const Vector3d& p_in_plan) const {
   return std::sqrt(std::max(0.0, (by_pose * covariance * by_pose.transpose()).trace()));
 }
 
+double EdgePose::sigma_of_direction_rad(const Vector3d& in_plan) const {
+  const Eigen::Matrix3d by_turn = geometry::cross_matrix(postop_from_plan.rotation * in_plan);
+  return std::sqrt(
+      std::max(0.0, (by_turn * covariance.bottomRightCorner<3, 3>() * by_turn.transpose()).trace()));
+}
+
 EdgePose edge_pose(const images::VolumeSampler& postop, std::span<const SurfaceSample> samples,
                    const RigidTransform& postop_from_plan) {
   struct Round {

@@ -27,6 +27,8 @@ struct EdgePose {
 
   // One sigma of a point of the plan, by the scatter of the edges.
   [[nodiscard]] double sigma_at_mm(const Eigen::Vector3d& p_in_plan) const;
+  // The same of a unit direction of the plan, rad.
+  [[nodiscard]] double sigma_of_direction_rad(const Eigen::Vector3d& in_plan) const;
 };
 
 // From a pose that is right to some 6 mm. Edges are where the grey falls from inside to outside, half-way

@@ -9,12 +9,18 @@
 
 namespace arthronaut::postop {
 
-// So much thinner, of the radius, a bore is another one.
-inline constexpr double kThinner_mm = 1;
+// So much thinner, of the radius, a bore is another one: the thinnest socket is 6 mm wide, and the bore
+// beyond it 4.5.
+inline constexpr double kThinner_mm = 0.5;
 
-// From the entry, by the widths of its stretches, which are equally long and in order: all that are known
-// from there on are thinner than those before. Within one stretch the two widths mix as they lie in it, which
-// tells to some half a millimetre. nullopt: it does not get thinner so.
-[[nodiscard]] std::optional<double> narrows_at_mm(std::span<const Stretch> stretches);
+struct Narrowing {
+  double from_entry_mm = 0;
+  double thinner_mm = 0;  // the least width beyond
+};
+// By the widths of a bore's stretches, which are equally long and in order: all that are known
+// from there on are thinner than those before, and it gets thinner all at once, not by and by as what widened
+// does. Within one stretch the two widths mix as they lie in it, which tells to a millimetre or two. nullopt:
+// it does not get thinner so.
+[[nodiscard]] std::optional<Narrowing> narrowing_of(std::span<const Stretch> stretches);
 
 }  // namespace arthronaut::postop

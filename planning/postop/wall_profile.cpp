@@ -154,10 +154,12 @@ WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu, 
   const bool has_rim = told * std::log(plain.unexplained / best) > 2 * std::log(told);
   // Where the wall lies by all that would do, weighed by how likely that is; against what a rim's two numbers
   // cost, none is favoured by so much as above. Of rims that do alike, the best one is off by chance.
+  // `best` is infinite where no rim does at all.
+  const double likeliest = std::min(best, plain.unexplained);
   double share = 0, sum = 0, squares = 0;
   const auto weigh = [&](const Explained& one, double favour) {
     if (!std::isfinite(one.unexplained)) return;
-    const double likely = favour * std::pow(best / one.unexplained, 0.5 * told);
+    const double likely = favour * std::pow(likeliest / one.unexplained, 0.5 * told);
     share += likely;
     sum += likely * one.shape.wall_mm;
     squares += likely * one.shape.wall_mm * one.shape.wall_mm;

@@ -31,6 +31,8 @@ Comparisons some() {
   tunnel.angle_rad = geometry::rad_from_deg(2.5);
   tunnel.entry_sigma_mm = 0.21;
   tunnel.direction_sigma_rad = geometry::rad_from_deg(0.3);
+  tunnel.diameter_sigma_mm = 0.04;
+  tunnel.length_sigma_mm = 0.17;
   tunnel.metal_share = 0.25;
   tunnel.beyond_mm = 4.5;
   tunnel.widths = {{2, 9.0, 0.05}, {10, 9.9, 0.06}, {20, 9.2, 0.05}};
@@ -84,8 +86,8 @@ TEST(PostopWords, SayWhatIsNotKnown) {
   const auto lines = error_budget(comparisons.at(bones::BoneKind::Femur), {0.4, 0.4, 0.6});
   std::string all;
   for (const std::string& line : lines) all += line + "\n";
-  for (const char* part : {"0.12 mm (rms)", "entry 0.21 mm", "0.30\u00B0", "25 %", "0.40 x 0.40 x 0.60",
-                           "Not known, and in none of these numbers"})
+  for (const char* part : {"0.12 mm (rms)", "entry 0.21 mm", "0.30\u00B0, diameter 0.04 mm, length 0.17 mm.",
+                           "25 %", "0.40 x 0.40 x 0.60", "Not known, and in none of these numbers"})
     EXPECT_THAT(all, HasSubstr(part));
   EXPECT_EQ(error_budget(comparisons.at(bones::BoneKind::Tibia), {0, 0, 0}).size(), 1U);
 }
@@ -122,6 +124,8 @@ TEST(AchievedFile, IsReadBack) {
   EXPECT_NEAR(b.tunnel.angle_rad, a.tunnel.angle_rad, 1e-12);
   EXPECT_NEAR(b.tunnel.entry_sigma_mm, a.tunnel.entry_sigma_mm, 1e-12);
   EXPECT_NEAR(b.tunnel.direction_sigma_rad, a.tunnel.direction_sigma_rad, 1e-12);
+  EXPECT_NEAR(b.tunnel.diameter_sigma_mm, 0.04, 1e-12);
+  EXPECT_NEAR(b.tunnel.length_sigma_mm, 0.17, 1e-12);
   EXPECT_EQ(b.tunnel.comes_out, a.tunnel.comes_out);
   EXPECT_EQ(b.tunnel.end_is_seen, a.tunnel.end_is_seen);
   EXPECT_EQ(b.tunnel.beyond_mm, a.tunnel.beyond_mm);

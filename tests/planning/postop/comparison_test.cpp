@@ -156,6 +156,18 @@ TEST_F(Achieved, ASocketEndsWhereTheBoreGetsThinner) {
   EXPECT_NEAR(found.beyond_mm, 4.5, 0.5);
 }
 
+// A thin socket, 1.7 mm wider than the bore beyond it: all of both was told as its length, 15 mm too much.
+TEST_F(Achieved, AThinSocketEndsWhereTheBoreGetsThinner) {
+  Tunnel tunnel = moved(BoneKind::Femur, {2, 2}, {4, -3});
+  tunnel.diameter_mm = 6.2;
+  const auto found =
+      compared(BoneKind::Femur, ct(BoneKind::Femur, {{.tunnel = tunnel, .narrow_from_mm = 20}})).tunnel;
+  expect_near(found, tunnel, 0.3, 0.6, 0.3);
+  EXPECT_FALSE(found.comes_out);
+  EXPECT_NEAR(found.length_mm, 20, 0.7);
+  EXPECT_LE(found.length_sigma_mm, 0.75);
+}
+
 // A screw of metal over half of the tunnel, beside its axis: the rest tells, at the price of a longer way to
 // the entry.
 TEST_F(Achieved, AScrewIsPassedOver) {

@@ -103,6 +103,14 @@ TEST(WallProfile, MarrowThatChangesBesideTheWallIsNoBlur) {
           << blur_mm << " mm, " << slope << " HU/mm";
 }
 
+// Beside cortex no rim is denser: how well the wall is known was no number then, which passed for known.
+TEST(WallProfile, WhereNoRimCanBeTheWallIsKnownAllTheSame) {
+  const WallProfile seen = explain_wall(points_of({.wall_mm = 0.1, .beyond_hu = 1379}), 25, 4);
+  EXPECT_FALSE(seen.has_rim());
+  EXPECT_NEAR(seen.wall_mm, 0.1, 0.05);
+  EXPECT_LT(seen.wall_sigma_mm, 0.05);
+}
+
 TEST(WallProfile, TooFewPointsTellNothing) {
   auto points = points_of({});
   points.resize(5);
