@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "planning/files/achieved_shape.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/rigid_transform.h"
 
@@ -64,7 +65,7 @@ std::vector<std::filesystem::path> achieved_files(const std::filesystem::path& s
 }
 
 AchievedTunnel read_achieved_file(const std::filesystem::path& file) {
-  const auto root = files::read_json(file, kAchievedFormat, kAchievedVersion);
+  const auto root = files::read_achieved(file, files::AchievedShape::OfSession);
   tunnels::TunnelKey key = bones::bone_kind_from_text(root.text("bone"));
   if (root.has("bundle")) key.bundle = norms::bundle_from_text(root.text("bundle"));
   AchievedTunnel achieved;

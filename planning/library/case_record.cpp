@@ -14,6 +14,7 @@
 #include "planning/cases/case.h"
 #include "planning/cases/case_note.h"
 #include "planning/cases/case_outline.h"
+#include "planning/files/achieved_shape.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/files/within_folder.h"
@@ -139,7 +140,7 @@ std::vector<PostoperativeFacts> read_postoperative(const fs::path& case_folder) 
   std::vector<PostoperativeFacts> facts;
   const fs::path file = case_folder / "achieved.json";
   if (!fs::exists(file)) return facts;
-  for (const auto& node : files::read_json(file, "arthronaut.achieved", 1).objects("tunnels")) {
+  for (const auto& node : files::read_achieved(file, files::AchievedShape::OfComparison).objects("tunnels")) {
     facts.push_back({.bone = node.text("bone"),
                      .bundle = node.has("bundle") ? node.text("bundle") : "",
                      .entry_offset_mm = optional_number(node, "offset_mm"),

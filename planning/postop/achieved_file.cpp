@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "planning/files/achieved_shape.h"
 #include "planning/files/json_document.h"
 
 namespace arthronaut::postop {
@@ -106,7 +107,7 @@ AchievedTunnel tunnel_of(const files::JsonObject& node, const tunnels::TunnelKey
 }  // namespace
 
 std::map<tunnels::TunnelKey, Comparison> read_achieved_file(const std::filesystem::path& file) {
-  const files::JsonObject document = files::read_json(file, "arthronaut.achieved", 1);
+  const files::JsonObject document = files::read_achieved(file, files::AchievedShape::OfComparison);
   std::map<bones::BoneKind, AchievedBone> found;
   for (const files::JsonObject& node : document.objects("bones"))
     found[bones::bone_kind_from_text(node.text("bone"))] = bone_of(node);

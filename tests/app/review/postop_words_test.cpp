@@ -1,9 +1,11 @@
 #include <gmock/gmock.h>
 
 #include "app/review/postop_page.h"
+#include "navigation/operation/achieved_tunnel.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "planning/postop/achieved_file.h"
+#include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::review {
@@ -106,6 +108,21 @@ TEST(PostopWords, LaySlicesAlongTheTunnel) {
     EXPECT_NEAR((plane.pixel_of(exit, size) - Eigen::Vector2d(200, 200 + 75)).norm(), 0, 1e-9);
   }
   EXPECT_NEAR(first.normal().dot(second.normal()), 0, 1e-12);
+}
+
+// A session's achieved.json has the same name and format: it was told as lacking "bones", or as newer than
+// the program where the tunnel was taken back.
+TEST(AchievedFile, OfASessionIsNamedAsThat) {
+  const test::TemporaryFolder folder;
+  for (const bool is_taken_back : {false, true}) {
+    operation::AchievedTunnel of_session;
+    of_session.is_taken_back = is_taken_back;
+    operation::write_achieved_file(folder / "achieved.json", of_session);
+    const std::string message =
+        test::message_of<InvalidInput>([&] { (void)postop::read_achieved_file(folder / "achieved.json"); });
+    EXPECT_THAT(message, HasSubstr("what navigation measured of one tunnel"));
+    EXPECT_THAT(message, HasSubstr("arthronaut compare"));
+  }
 }
 
 // What a comparison kept in the case is shown again with every number and every reason.

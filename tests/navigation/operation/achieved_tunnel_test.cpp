@@ -6,6 +6,8 @@
 #include "navigation/operation/command.h"
 #include "navigation/operation/operation_state.h"
 #include "planning/files/atomic_file.h"
+#include "planning/geometry/error.h"
+#include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::operation {
@@ -42,6 +44,17 @@ TEST(AchievedTunnel, OfASingleTunnelNothingIsNew) {
   write_achieved_file(file, drilled(Bundle::Whole, 20));
   EXPECT_EQ(files::read_text(file).find("bundle"), std::string::npos);
   EXPECT_EQ(achieved_files(folder.path()), std::vector<std::filesystem::path>{file});
+}
+
+// What `arthronaut compare` writes has the same name and format: it was told as lacking "bone".
+TEST(AchievedTunnel, AComparisonsFileIsNamedAsThat) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "achieved.json";
+  files::write_atomically(file,
+                          R"({"format": "arthronaut.achieved", "version": 1, "tunnels": [], "bones": []})");
+  const std::string message = test::message_of<InvalidInput>([&] { (void)read_achieved_file(file); });
+  EXPECT_NE(message.find("arthronaut compare"), std::string::npos) << message;
+  EXPECT_NE(message.find("(\"planned\" and \"measured\")"), std::string::npos) << message;
 }
 
 // Which of two tunnels guides is in the journal and in the digests; of a single one both are as before.
