@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 
 #include "navigation/recording/operation_record.h"
 #include "navigation/recording/session_files.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
 
@@ -91,7 +94,65 @@ std::int64_t first_frame_that_may_lack(const RecordedSession& session) {
   return session.frames().empty() ? -1 : session.frames().back().index;
 }
 
+using operation::AchievedTunnel;
+
+// Of what was drilled in the end, by the files that keep it; taken back again, it is in none of them.
+std::map<std::string, AchievedTunnel> achieved_of(const std::vector<operation::JournalEntry>& entries) {
+  std::map<std::string, AchievedTunnel> achieved;
+  for (const operation::JournalEntry& entry : entries) {
+    if (!entry.achieved) continue;
+    const std::string file = operation::achieved_file_name(entry.achieved->planned.key());
+    if (entry.kind == operation::JournalKind::Drilled)
+      achieved[file] = *entry.achieved;
+    else
+      achieved.erase(file);
+  }
+  return achieved;
+}
+
 }  // namespace
+
+void compare_achieved(const RecordedSession& session, const std::vector<operation::JournalEntry>& entries,
+                      double tolerance_mm, double tolerance_deg, ReplaySummary& summary) {
+  for (const auto& [file, now] : achieved_of(entries)) {
+    const std::string of = file == "achieved.json" ? "drilled" : "drilled (" + file + ")";
+    const auto differs = [&](const std::string& detail) {
+      summary.differences.push_back({-1, of, 0, "", detail});
+    };
+    AchievedTunnel then;
+    try {
+      then = operation::read_achieved_file(session.folder() / file);
+    } catch (const IoError& error) {
+      differs(error.what());
+      continue;
+    } catch (const InvalidInput& error) {
+      differs(error.what());
+      continue;
+    }
+    if (then.is_taken_back) {
+      differs("was taken back and stands now");
+      continue;
+    }
+    const auto amount = [&](const char* what, double value, const char* unit, double tolerance) {
+      // Written so that NaN is a difference.
+      if (value <= tolerance) return;
+      summary.differences.push_back({-1, of + " " + what, value, unit, ""});
+    };
+    const auto measured = operation::compare(then.measured, now.measured),
+               planned = operation::compare(then.planned, now.planned);
+    amount("entry", measured.entry_mm, "mm", tolerance_mm);
+    amount("direction", measured.angle_deg, "deg", tolerance_deg);
+    amount("diameter", std::abs(then.measured.diameter_mm - now.measured.diameter_mm), "mm", tolerance_mm);
+    amount("planned entry", planned.entry_mm, "mm", tolerance_mm);
+    amount("planned direction", planned.angle_deg, "deg", tolerance_deg);
+    amount("sigma of offset", std::abs(then.sigma_offset_mm - now.sigma_offset_mm), "mm", tolerance_mm);
+    amount("sigma of angle", std::abs(then.sigma_angle_deg - now.sigma_angle_deg), "deg", tolerance_deg);
+    if (then.depth_mm && now.depth_mm)
+      amount("depth", std::abs(*then.depth_mm - *now.depth_mm), "mm", tolerance_mm);
+    else if (then.depth_mm.has_value() != now.depth_mm.has_value())
+      differs(now.depth_mm ? "has a depth now and had none" : "had a depth and has none now");
+  }
+}
 
 void compare_events(const RecordedSession& session, const std::vector<operation::JournalEntry>& entries,
                     ReplaySummary& summary) {

@@ -14,4 +14,9 @@ namespace arthronaut::recording {
 void compare_events(const RecordedSession& session, const std::vector<operation::JournalEntry>& now,
                     ReplaySummary& summary);
 
+// The numbers of each tunnel that was drilled, as the session's achieved.json keeps them, against those that
+// come now. Adds what differs by more, or is not there any more, to the summary's differences.
+void compare_achieved(const RecordedSession& session, const std::vector<operation::JournalEntry>& now,
+                      double tolerance_mm, double tolerance_deg, ReplaySummary& summary);
+
 }  // namespace arthronaut::recording

@@ -331,8 +331,9 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   const bool reencoded = session.header().video_is_reencoded && !session.header().video_has_exact_luma;
   summary.is_lossy = reencoded;
   summary.is_same_build = !reencoded && session.header().build == build_identity();
-  FrameComparison comparison(summary, reencoded ? options.reencoded_tolerance_mm : options.tolerance_mm,
-                             reencoded ? options.reencoded_tolerance_deg : options.tolerance_deg);
+  const double tolerance_mm = reencoded ? options.reencoded_tolerance_mm : options.tolerance_mm,
+               tolerance_deg = reencoded ? options.reencoded_tolerance_deg : options.tolerance_deg;
+  FrameComparison comparison(summary, tolerance_mm, tolerance_deg);
   FrameComparison cold_comparison(summary, options.reencoded_tolerance_mm, options.reencoded_tolerance_deg);
   StateComparison states;
   PictureComparison seen(session);
@@ -396,8 +397,10 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   // Without its bone no registration is found again, and nothing that follows from one; records of before the
   // journal hold no decisions.
   if (!options.other_bone.empty()) summary.differences.push_back({-1, "bone", 0, "", options.other_bone});
-  if (options.bone != nullptr && !session.header().source_kind.empty())
+  if (options.bone != nullptr && !session.header().source_kind.empty()) {
     compare_events(session, rerun.journal(), summary);
+    compare_achieved(session, rerun.journal(), tolerance_mm, tolerance_deg, summary);
+  }
   compare_registration(session, *rerun.state(), options, summary);
   return summary;
 }
