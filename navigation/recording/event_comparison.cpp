@@ -145,6 +145,8 @@ void compare_achieved(const RecordedSession& session, const std::vector<operatio
     amount("diameter", std::abs(then.measured.diameter_mm - now.measured.diameter_mm), "mm", tolerance_mm);
     amount("planned entry", planned.entry_mm, "mm", tolerance_mm);
     amount("planned direction", planned.angle_deg, "deg", tolerance_deg);
+    amount("planned diameter", std::abs(then.planned.diameter_mm - now.planned.diameter_mm), "mm",
+           tolerance_mm);
     amount("sigma of offset", std::abs(then.sigma_offset_mm - now.sigma_offset_mm), "mm", tolerance_mm);
     amount("sigma of angle", std::abs(then.sigma_angle_deg - now.sigma_angle_deg), "deg", tolerance_deg);
     if (then.depth_mm && now.depth_mm)

@@ -58,13 +58,15 @@ TEST_F(AchievedComparison, TellsEveryNumberThatDiffers) {
   then.measured.direction = Eigen::Vector3d(0.001, 0, 1).normalized();
   then.measured.diameter_mm += 0.01;
   then.planned.entry_mm.y() += 0.01;
+  then.planned.diameter_mm += 0.01;
   then.sigma_offset_mm += 0.01;
   then.sigma_angle_deg += 0.01;
   *then.depth_mm += 0.01;
   keep(then);
-  EXPECT_EQ(differing(), (std::set<std::string>{"drilled entry", "drilled direction", "drilled diameter",
-                                                "drilled planned entry", "drilled sigma of offset",
-                                                "drilled sigma of angle", "drilled depth"}));
+  EXPECT_EQ(differing(),
+            (std::set<std::string>{"drilled entry", "drilled direction", "drilled diameter",
+                                   "drilled planned entry", "drilled planned diameter",
+                                   "drilled sigma of offset", "drilled sigma of angle", "drilled depth"}));
 }
 
 TEST_F(AchievedComparison, TellsWhatIsNotThereOrStandsOtherwise) {
