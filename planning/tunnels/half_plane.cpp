@@ -113,7 +113,9 @@ Thinnest HalfPlane::thinnest() {
                     return cut.exit_lip;
                   }).base();
   Thinnest found;
+  between_lips_ = {};
   if (from < to) {
+    between_lips_ = {from->from_mm, (to - 1)->to_mm};
     for (auto at = from; at != to; ++at) {
       if (!at->end) continue;
       if (!at->in_bone) add_outside(*at);

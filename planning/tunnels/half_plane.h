@@ -64,6 +64,9 @@ class HalfPlane {
   [[nodiscard]] Thinnest thinnest();
   // Of what thinnest() looked at last: where the tunnel's side lies outside the bone, lips left out.
   [[nodiscard]] const std::vector<DepthRange>& outside() const { return outside_; }
+  // Of the same: from where the mouth's lip is over to where that of the exit begins; no wall counts before
+  // or after. Both ends the same where one lip runs into the other.
+  [[nodiscard]] const DepthRange& between_lips() const { return between_lips_; }
 
  private:
   void find_stations();
@@ -80,6 +83,7 @@ class HalfPlane {
   std::vector<double> stations_;
   std::vector<Stretch> stretches_;
   std::vector<DepthRange> outside_;
+  DepthRange between_lips_;
 };
 
 }  // namespace arthronaut::tunnels

@@ -18,8 +18,11 @@ using Eigen::Vector3d;
 
 constexpr double kLeastTurnCosine = 0.70710678118654752;  // 45 deg: of the mouth's own face
 constexpr double kLeastFacing = 0.25881904510252074;      // sin 15 deg: of a face that a drill goes through
-constexpr int kHalfPlanes = 120, kHalvings = 5, kHalvingsOfThick = 2, kMostHalfPlanes = 600;
+constexpr int kHalfPlanes = 240, kHalvings = 4, kHalvingsOfThick = 1, kMostHalfPlanes = 1200;
 constexpr double kThick_mm = 8;
+// What goes on from one of the first half planes to the next changes by less, but for faces that are nearly
+// straight along them.
+constexpr double kLeap_mm = 0.5;
 constexpr double kOneBreach_mm = 1;  // pieces nearer to each other are one
 
 class WallSearch {
@@ -43,9 +46,11 @@ class WallSearch {
     double angle_rad;
     Thinnest thinnest;
     std::vector<DepthRange> outside;
+    DepthRange between_lips;
   };
   void sort_by_angle();
   [[nodiscard]] Trial try_at(double angle_rad);
+  void try_where_it_leaps();
   void cut(const Facet& facet, const Vector2d& along, const Vector2d& across);
 
   const AxisView& view_;
@@ -158,7 +163,31 @@ WallSearch::Trial WallSearch::try_at(double angle_rad) {
        by_angle_[static_cast<std::size_t>((bucket % kHalfPlanes + kHalfPlanes) % kHalfPlanes)])
     cut(facets_[static_cast<std::size_t>(index)], along, across);
   const Thinnest thinnest = half_plane_.thinnest();
-  return {angle_rad, thinnest, half_plane_.outside()};
+  return {angle_rad, thinnest, half_plane_.outside(), half_plane_.between_lips()};
+}
+
+// What is a lip in one half plane may be wall in the next, and behind the edge of a groove the next face may
+// lie far off: the thickness then leaps, and the thinnest place stands just where it does so, however thick
+// the bone is in the half planes on either side.
+void WallSearch::try_where_it_leaps() {
+  const auto leap_mm = [](const Trial& a, const Trial& b) {
+    const double thicker = std::max(a.thinnest.radius_mm, b.thinnest.radius_mm),
+                 thinner = std::min(a.thinnest.radius_mm, b.thinnest.radius_mm);
+    return std::max({std::abs(a.between_lips.from_mm - b.between_lips.from_mm),
+                     std::abs(a.between_lips.to_mm - b.between_lips.to_mm),
+                     std::isfinite(thinner) ? thicker - thinner : 0.0});
+  };
+  std::vector<Trial> between;
+  for (std::size_t k = 0; k < trials_.size(); ++k) {
+    Trial low = trials_[k], high = trials_[(k + 1) % trials_.size()];
+    if (high.angle_rad < low.angle_rad) high.angle_rad += 2 * geometry::kPi;
+    for (int halving = 0; halving < kHalvings && leap_mm(low, high) > kLeap_mm; ++halving) {
+      const Trial middle = try_at((low.angle_rad + high.angle_rad) / 2);
+      between.push_back(middle);
+      (leap_mm(low, middle) > leap_mm(middle, high) ? high : low) = middle;
+    }
+  }
+  trials_.insert(trials_.end(), between.begin(), between.end());
 }
 
 std::vector<DepthRange> WallSearch::breaches() {
@@ -205,6 +234,7 @@ TunnelWall WallSearch::run() {
   double step = 2 * geometry::kPi / kHalfPlanes;
   auto& trials = trials_;
   for (int k = 0; k < kHalfPlanes; ++k) trials.push_back(try_at((k + 0.5) * step));
+  try_where_it_leaps();
   const auto less = [](const Trial& a, const Trial& b) {
     return a.thinnest.radius_mm < b.thinnest.radius_mm;
   };

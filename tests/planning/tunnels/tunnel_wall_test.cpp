@@ -116,6 +116,25 @@ TEST(TunnelWall, TakesTheRimBesideABackCortex) {
   }
 }
 
+// A groove that ends in an edge beside the tunnel: in a half plane on one side of the edge its flank lies 2
+// mm further off than the edge, on the other side nothing is near. Wherever the edge stands between the half
+// planes, it is the thinnest place, and not the even wall of 1.5 mm on the other side.
+TEST(TunnelWall, FindsTheEdgeThatTheThicknessLeapsAt) {
+  // The flank runs off by 0.4 mm a degree, and half planes stand 0.1 deg apart.
+  constexpr double kBeside_mm = 0.04;
+  const Vector2d edge(5.03, 0.923);
+  for (double turn_deg = 0; turn_deg < 3; turn_deg += 0.25) {
+    const double turn = geometry::rad_from_deg(turn_deg), cosine = std::cos(turn), sine = std::sin(turn);
+    const auto turned = [&](const Vector2d& p) {
+      return Vector2d(cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y());
+    };
+    const auto bone = test::prism({turned({-6, -20}), turned({40, -20}), turned({40, -0.7}), turned(edge),
+                                   turned({40, 3}), turned({40, 20}), turned({-6, 20})},
+                                  20, turned({-5, 0.9}));
+    EXPECT_NEAR(wall_of(bone, {-20, 0, 0}, {1, 0, 0}, 9), edge.norm() - 4.5, kBeside_mm) << turn_deg;
+  }
+}
+
 // The same tunnel in the same bone, turned and shifted.
 TEST(TunnelWall, IsTheSameHoweverTheBoneLies) {
   std::mt19937 random(3);
