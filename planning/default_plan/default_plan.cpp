@@ -244,10 +244,25 @@ std::string way_in_words(const Vector3d& way_mm, const landmarks::AnatomicalAxes
                        std::abs(anterior), anterior > 0 ? "anterior" : "posterior");
 }
 
+// Which way the surgeon would move, and why: at a tibia's mouth the thin place is mostly a flank of the
+// eminence.
+std::string thin_place_in_words(const Tunnel& tunnel, const std::vector<tunnels::PlanCheck>& failed,
+                                const landmarks::AnatomicalAxes& axes) {
+  const auto wall = std::ranges::find(failed, "Wall", &tunnels::PlanCheck::name);
+  if (wall == failed.end() || !wall->at_mm || !wall->value) return "";
+  const Vector3d way_mm = *wall->at_mm - tunnel.entry_mm;
+  if (way_mm.dot(tunnel.direction) > tunnel.diameter_mm) return "";  // not beside the mouth
+  const bool is_on_ridge = *wall->value < -tunnel.diameter_mm / 4;   // the edge is nearer than half a radius
+  return (is_on_ridge ? "; there it stands on a ridge narrower than the tunnel, and the bone falls away "
+                      : "; there the bone beside it is thinnest ") +
+         way_in_words(way_mm, axes) + " of the entry";
+}
+
 // The entry itself stays: which places pass changes with what of the shaft another scan shows, by whose axis
 // the tunnel is aimed, and a default that follows them leaps by 1 to 2 mm (CT 051).
 void look_around(const Site& site, const Tunnel& at_norm, DefaultTunnel& result) {
   if (at_norm.bone != bones::BoneKind::Tibia || result.failed.empty()) return;
+  result.place += thin_place_in_words(at_norm, result.failed, site.joint.axes);
   result.passing_entry_mm = nearest_that_passes(site, at_norm);
   if (!result.passing_entry_mm) {
     result.place += "; with this aim no place within the norm's spread passes";
@@ -255,7 +270,8 @@ void look_around(const Site& site, const Tunnel& at_norm, DefaultTunnel& result)
   }
   const Vector3d way_mm = *result.passing_entry_mm - at_norm.entry_mm;
   result.place += files::format(
-      "; with this aim a tunnel %.1f mm from there (%s), still within the norm's spread, passes every check",
+      "; with this aim a tunnel %.1f mm from that entry (%s), still within the norm's spread, passes every "
+      "check",
       way_mm.norm(), way_in_words(way_mm, site.joint.axes).c_str());
 }
 

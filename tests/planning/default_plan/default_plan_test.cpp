@@ -1,8 +1,10 @@
 #include "planning/default_plan/default_plan.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -19,6 +21,9 @@ namespace {
 using bones::BoneKind;
 using bones::Side;
 using Eigen::Vector3d;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
 
 struct Knee {
   phantom::PhantomKnee made;
@@ -116,8 +121,16 @@ TEST(DefaultPlan, SaysWhereWithinTheNormsSpreadATibiaPassesEveryCheck) {
     ASSERT_TRUE(made.is_usable()) << made.message;
     EXPECT_LT((made.tunnel.entry_mm - whole.tunnel.entry_mm).norm(), 1e-6);
     EXPECT_FALSE(made.failed.empty());
+    // The thin place lies towards the hole, at the tunnel's side or where that is cut away.
+    const auto wall = std::ranges::find(made.failed, "Wall", &tunnels::PlanCheck::name);
+    ASSERT_NE(wall, made.failed.end());
+    const double medial_mm = wall->at_mm->x() - made.tunnel.entry_mm.x();
+    EXPECT_NEAR(medial_mm, whole.tunnel.diameter_mm / 2 + std::min(wall_left_mm, 0.0), 1);
+    EXPECT_THAT(made.place, StartsWith("at the norm's place; there the bone beside it is thinnest "));
+    EXPECT_THAT(made.place, HasSubstr(files::format("%.1f mm medial", medial_mm)));
     if (wall_left_mm < 0) {
-      EXPECT_EQ(made.place, "at the norm's place; with this aim no place within the norm's spread passes");
+      EXPECT_THAT(made.place,
+                  EndsWith(" of the entry; with this aim no place within the norm's spread passes"));
       EXPECT_FALSE(made.passing_entry_mm);
       continue;
     }
@@ -125,9 +138,8 @@ TEST(DefaultPlan, SaysWhereWithinTheNormsSpreadATibiaPassesEveryCheck) {
     const double away_mm = (*made.passing_entry_mm - made.tunnel.entry_mm).norm();
     EXPECT_GT(away_mm, 0.3);
     EXPECT_LT(away_mm, 2);  // one sigma is 1.8 mm
-    EXPECT_TRUE(made.place.starts_with(
-        files::format("at the norm's place; with this aim a tunnel %.1f mm from there (", away_mm)))
-        << made.place;
+    EXPECT_THAT(made.place, HasSubstr(files::format(
+                                " of the entry; with this aim a tunnel %.1f mm from that entry (", away_mm)));
     EXPECT_NE(made.place.find(" mm lateral, "), std::string::npos) << made.place;  // the hole is medial
     tunnels::Tunnel moved = made.tunnel;
     moved.entry_mm = *made.passing_entry_mm;
