@@ -184,6 +184,24 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
   save_studies_of(folder, import, std::move(studies));
 }
 
+// 3D Slicer's segmentations alone name their segments, in the header.
+bool is_side_in_segments(const fs::path& source) {
+  constexpr std::size_t kHeader = 1 << 16;
+  std::string header(kHeader, '\0');
+  std::ifstream stream(source, std::ios::binary);
+  stream.read(header.data(), kHeader);
+  header.resize(static_cast<std::size_t>(stream.gcount()));
+  header.resize(std::min(header.find("\n\n"), header.size()));
+  constexpr std::string_view kName = "_Name:=";
+  for (std::size_t at = header.find(kName); at != std::string::npos; at = header.find(kName, at)) {
+    at += kName.size();
+    std::string name = header.substr(at, header.find_first_of("\r\n", at) - at);
+    std::ranges::replace(name, '/', ' ');  // it is no path
+    if (side_in_name(name)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void refuse_folder(const fs::path& folder) {
@@ -202,7 +220,7 @@ void refuse_missing_side(const fs::path& folder, const fs::path& source, const B
                        "tibia, and --side left or --side right");
   // Two bones may tell it together, by their shapes.
   const bool is_one_label = !options.labels.empty() && (options.labels.size() == 1 || options.kind);
-  if (is_one_label || is_mesh) refuse_unknown_side(source);
+  if (is_mesh || (is_one_label && !is_side_in_segments(source))) refuse_unknown_side(source);
 }
 
 cases::Case add_to_case(const fs::path& folder, const BoneImport& import, const std::string& name,

@@ -13,7 +13,8 @@ namespace arthronaut::importing {
 // InvalidInput where it holds something else, IoError where none can be made.
 void refuse_folder(const std::filesystem::path& folder);
 // Throws InvalidInput when add_to_case() will need a side that nothing can say; a mesh that does not say
-// which bone it is either is asked for both. A volume may still show its side by its fibula.
+// which bone it is either is asked for both. A volume may still show its side by its fibula, and a label map
+// by the names of its segments.
 void refuse_missing_side(const std::filesystem::path& folder, const std::filesystem::path& source,
                          const BoneImportOptions& options);
 

@@ -112,6 +112,22 @@ TEST(CaseImport, BoneAndSideAreAskedForAtOnce) {
   EXPECT_NO_THROW(refuse_missing_side(folder / "Old.arthro", folder / "bone.stl", {})) << "the case has one";
 }
 
+// The import takes the side from the segment's name: nobody is asked for it before.
+TEST(CaseImport, ASideThatASegmentsNameSaysIsNotAskedFor) {
+  const TemporaryFolder folder;
+  BoneImportOptions one_label;
+  one_label.labels = {{BoneKind::Femur, 9}};
+  const std::filesystem::path file = folder / "knee.seg.nrrd";
+  const auto ask = [&](const char* name) {
+    test::write_bytes(file, std::string("NRRD0004\nSegment0_LabelValue:=9\nSegment0_Name:=") + name +
+                                "\nSegment0_Tags:=left\n\nSegment1_Name:=left");
+    refuse_missing_side(folder / "a", file, one_label);
+  };
+  EXPECT_NO_THROW(ask("Right femur"));
+  EXPECT_NO_THROW(ask("right/femur"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { ask("Femur"); }), HasSubstr("--side left"));
+}
+
 // Nobody is asked which bone it is that a file without a byte holds.
 TEST(CaseImport, AnEmptyMeshIsRefusedForBeingEmpty) {
   const TemporaryFolder folder;
