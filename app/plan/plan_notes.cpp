@@ -1,5 +1,7 @@
 // What Plan says over the bones: a conflict that has to be answered, and what a click did or will do.
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 #include "app/plan/plan_view.h"
 #include "app/widgets/wrapped_text.h"
@@ -49,21 +51,44 @@ void PlanView::draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const
   const float wrap = area.width - ui.theme.px(40), pad = ui.theme.px(6);
   // Below the word at the picture's upper edge, which says where that is.
   const ImVec2 at{area.x + ui.theme.px(20), area.y + ui.theme.px(20) + ui.theme.body->FontSize};
-  text = widgets::wrapped(font, text, wrap);
-  ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, wrap, text.c_str());
-  // What came of something stands there until somebody has read it, and hides the bone.
-  constexpr const char* kWayOut = "Esc takes this away";
-  const float way_out = hint.is_news || hint.of ? ui.theme.body->FontSize : 0;
-  if (way_out > 0) size.x = std::max(size.x, ui.theme.body->CalcTextSizeA(way_out, 1e9F, 0, kWayOut).x);
+  // What came of something stands there until somebody has read it, and hides the bone: half of the picture
+  // at the most. What is longer is scrolled.
+  const float way_out = hint.is_news || hint.of ? ui.theme.body->FontSize : 0,
+              room = std::max(area.height / 2 - way_out, 2 * font->FontSize);
+  const auto size_of = [&](const std::string& lines) {
+    return font->CalcTextSizeA(font->FontSize, 1e9F, 0, lines.c_str());
+  };
+  std::string lines = widgets::wrapped(font, text, wrap);
+  ImVec2 size = size_of(lines);
+  const bool is_long = size.y > room;
+  if (is_long) {
+    const float bar = ImGui::GetStyle().ScrollbarSize + pad;
+    lines = widgets::wrapped(font, text, wrap - bar);
+    size = {wrap, std::floor(room / font->FontSize) * font->FontSize};
+  }
+  const char* const way_out_words =
+      is_long ? "Esc takes this away, the wheel shows the rest" : "Esc takes this away";
+  if (way_out > 0) size.x = std::max(size.x, ui.theme.body->CalcTextSizeA(way_out, 1e9F, 0, way_out_words).x);
   // Read over a bright bone or a brighter MR, too.
   draw.AddRectFilled({at.x - pad, at.y - pad}, {at.x + size.x + pad, at.y + size.y + way_out + pad},
                      IM_COL32(12, 16, 20, 210), pad);
-  if (way_out > 0) draw.AddText(ui.theme.body, way_out, {at.x, at.y + size.y}, widgets::kQuietText, kWayOut);
-  draw.AddText(font, font->FontSize, at,
-               hint.text.empty() ? widgets::kAccent
-               : hint.is_news    ? widgets::kText
-                                 : widgets::kCaution,
-               text.c_str(), nullptr, wrap);
+  if (way_out > 0)
+    draw.AddText(ui.theme.body, way_out, {at.x, at.y + size.y}, widgets::kQuietText, way_out_words);
+  const ImU32 color = hint.text.empty() ? widgets::kAccent
+                      : hint.is_news    ? widgets::kText
+                                        : widgets::kCaution;
+  if (!is_long) {
+    draw.AddText(font, font->FontSize, at, color, lines.c_str());
+    return;
+  }
+  ImGui::SetCursorScreenPos(at);
+  ImGui::PushID(text.c_str());  // another text begins at its beginning
+  ImGui::BeginChild("hint", size, false, ImGuiWindowFlags_NoBackground);
+  ImGui::GetWindowDrawList()->AddText(font, font->FontSize, ImGui::GetCursorScreenPos(), color,
+                                      lines.c_str());
+  ImGui::Dummy(size_of(lines));
+  ImGui::EndChild();
+  ImGui::PopID();
 }
 
 }  // namespace arthronaut::plan
