@@ -51,10 +51,10 @@ void PlanView::draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const
   const float wrap = area.width - ui.theme.px(40), pad = ui.theme.px(6);
   // Below the word at the picture's upper edge, which says where that is.
   const ImVec2 at{area.x + ui.theme.px(20), area.y + ui.theme.px(20) + ui.theme.body->FontSize};
-  // What came of something stands there until somebody has read it, and hides the bone: half of the picture
-  // at the most. What is longer is scrolled.
+  // What came of something stands there until somebody has read it, and hides the bone: a third of the
+  // picture at the most. What is longer is scrolled.
   const float way_out = hint.is_news || hint.of ? ui.theme.body->FontSize : 0,
-              room = std::max(area.height / 2 - way_out, 2 * font->FontSize);
+              room = std::max(area.height / 3 - way_out, 2 * font->FontSize);
   const auto size_of = [&](const std::string& lines) {
     return font->CalcTextSizeA(font->FontSize, 1e9F, 0, lines.c_str());
   };
