@@ -151,7 +151,8 @@ std::optional<ReadCode> read_code(const LinearImage& image, const camera::Camera
       for (int turn = 0; turn < 4; ++turn) {
         int wrong = 0;
         if (!fits(cell_light, is_tainted, are_missing, codes[i], turn, wrong)) continue;
-        if (!best || wrong < best->wrong_cells) best = ReadCode{static_cast<int>(i), turn, wrong};
+        if (!best || wrong < best->wrong_cells)
+          best = ReadCode{static_cast<int>(i), turn, wrong, are_missing};
       }
     }
     return best;

@@ -26,6 +26,7 @@ struct ReadCode {
   int index = -1;  // into the codes
   int turn = 0;    // the marker's top-left is the square's corner of this index
   int wrong_cells = 0;
+  bool has_unread_cells = false;  // read past cells that say nothing
 };
 
 // `square` holds tangent coordinates, clockwise. The codes have the same count of cells. nullopt when none

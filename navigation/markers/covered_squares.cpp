@@ -275,8 +275,27 @@ void SquareSearch::combine_sides(const camera::CameraModel& camera) {
       }
     }
   }
+  // Under a highlight two sides that meet may be all that is seen from end to end.
+  BestSquares<1> cornered;
+  for (int a = 0; a < lines && white_pixels_ >= kMinWhitePixels; ++a) {
+    for (int b = 0; b < lines; ++b) {
+      const Line &before = sides[a].line, &after = sides[b].line;
+      const int support = sides[a].support + sides[b].support;
+      std::array<Eigen::Vector2d, 4> quad;
+      if (a == b || !cornered.would_take(support) || !meet(before, after, quad[1])) continue;
+      const double back = before.direction.dot(quad[1] - before.point) - sides[a].first;
+      const double on = sides[b].last - after.direction.dot(quad[1] - after.point);
+      if (back <= 0 || on <= 0) continue;
+      quad[0] = quad[1] - back * before.direction;
+      quad[2] = quad[1] + on * after.direction;
+      quad[3] = quad[0] + quad[2] - quad[1];
+      FoundSquare square;
+      if (area_of(quad) > least_area && measure_sides(camera, quad, square)) cornered.take(square, support);
+    }
+  }
   best.add_to(squares_);
   closed.add_to(squares_);
+  cornered.add_to(squares_);
 }
 
 // A highlight cuts the dark of a square into regions: any two that are near may be of one square.

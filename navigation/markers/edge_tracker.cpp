@@ -10,7 +10,6 @@
 #include "navigation/markers/linear_image.h"
 #include "navigation/markers/marker_company.h"
 #include "navigation/markers/marker_track.h"
-#include "navigation/markers/seen_code.h"
 #include "navigation/markers/square_search.h"
 #include "planning/geometry/error.h"
 
@@ -52,7 +51,7 @@ class EdgeTracker final : public MarkerTracker {
  public:
   EdgeTracker(std::span<const DeclaredMarker> declared, std::span<const MarkerCode> codes,
               const EdgeTrackerOptions& options)
-      : options_(options), light_(options.gamma) {
+      : options_(options), light_(options.gamma), dictionary_(codes.begin(), codes.end()) {
     for (const DeclaredMarker& marker : declared) {
       const auto code =
           std::find_if(codes.begin(), codes.end(), [&](const MarkerCode& c) { return c.id == marker.id; });
@@ -74,12 +73,14 @@ class EdgeTracker final : public MarkerTracker {
     if (last_ns_ >= 0 && since > 0) interval_ns_ = std::min(since, interval_ns_ + interval_ns_ / 32);
     last_ns_ = timestamp_ns;
     int fits_left = kFitsAFrame;
-    const TrackedFrame tracked{image,        camera, timestamp_ns,
-                               interval_ns_, smear_, options_.fit_directly ? &direct_ : nullptr,
-                               fits_left,    codes_};
+    are_elsewhere_.assign(tracks_.size(), 0);
+    const TrackedFrame tracked{image,        camera,
+                               timestamp_ns, interval_ns_,
+                               smear_,       options_.fit_directly ? &direct_ : nullptr,
+                               fits_left,    {codes_, dictionary_, are_elsewhere_}};
     candidates_.clear();
     is_looked_at_ = false;
-    std::fill(attempts_.begin(), attempts_.end(), 0);
+    attempts_.assign(tracks_.size(), 0);
     // Whose turn is first changes, so that none takes all of a frame's fits for ever.
     ++frames_;
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
@@ -92,17 +93,16 @@ class EdgeTracker final : public MarkerTracker {
       const auto start = overtaken(i, *predicted, tracked);
       if (!start) continue;
       starts_[i] = *start;
-      (void)tracks_[i].measure(tracked, *start, false, observations_[i]);
+      are_elsewhere_[i] = tracks_[i].measure(tracked, *start, false, observations_[i]);
     }
     leave_one_a_place();
     if (is_any_sought_often(timestamp_ns)) {
       for (const auto& [what, when] : kSearchParts) search(what, tracked);
       frames_since_search_ = 1 % options_.search_every_frames;
     } else {
-      const int every = options_.search_every_frames;
       for (const auto& [what, when] : kSearchParts)
-        if (when % every == frames_since_search_) search(what, tracked);
-      frames_since_search_ = (frames_since_search_ + 1) % every;
+        if (when % options_.search_every_frames == frames_since_search_) search(what, tracked);
+      frames_since_search_ = (frames_since_search_ + 1) % options_.search_every_frames;
     }
     leave_one_a_place();
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -134,7 +134,6 @@ class EdgeTracker final : public MarkerTracker {
     is_sought_.assign(tracks_.size(), 0);
     seen_.reserve(tracks_.size());
     company_.start_over(tracks_.size());
-    attempts_.assign(tracks_.size(), 0);
     sought_since_ns_.assign(tracks_.size(), -1);
     interval_ns_ = kUsualIntervalNs;
     last_ns_ = -1;
@@ -225,12 +224,10 @@ class EdgeTracker final : public MarkerTracker {
   void take_squares(std::span<const FoundSquare> squares, const TrackedFrame& frame, Pass pass) {
     for (const FoundSquare& square : squares) {
       auto code = read_code(frame.image, frame.camera, square.tangent, codes_);
-      // Nothing that is tracked is doubted for what was read in part, and what is read in part where another
-      // marker stands is a part of that one.
-      if (!code && (pass == Pass::Covered || search_.has_highlight(square))) {
-        code = read_covered_code(frame.image, frame.camera, square.tangent, codes_);
-        if (code && (observations_[code->index].is_tracked() || is_of_another(square))) continue;
-      }
+      if (!code && (pass == Pass::Covered || search_.has_highlight(square)))
+        code = read_covered_code(frame.image, frame.camera, square.tangent, frame.codes);
+      // What is read in part where another marker stands is a part of that one.
+      if (code && code->has_unread_cells && is_of_another(square)) continue;
       const int id = code ? codes_[code->index].id : MarkerCandidate::kNoCode;
       if (pass == Pass::OtherContrast && code && was_tried(square, id)) continue;
       candidates_.push_back({square.corners_px, id});
@@ -242,6 +239,7 @@ class EdgeTracker final : public MarkerTracker {
         continue;
       }
       if (attempts_[code->index]++ < kMostSquares) acquire(track, square, code->turn, frame, known);
+      are_elsewhere_[code->index] = known.is_tracked();
     }
   }
 
@@ -306,8 +304,8 @@ class EdgeTracker final : public MarkerTracker {
         are_alike(place.camera_from_marker, starts_[index]))
       return;
     const MarkerObservation before = observations_[index];
-    if (!track.measure_recovered(frame, place.camera_from_marker, observations_[index]))
-      observations_[index].state = before.state;
+    are_elsewhere_[index] = track.measure_recovered(frame, place.camera_from_marker, observations_[index]);
+    if (!are_elsewhere_[index]) observations_[index].state = before.state;
   }
 
   [[nodiscard]] bool is_taken(const RigidTransform& pose, std::size_t index) const {
@@ -341,6 +339,7 @@ class EdgeTracker final : public MarkerTracker {
           continue;
         const std::size_t none = observations_[i].rms_px > observations_[k].rms_px ? i : k;
         observations_[none].state = MarkerState::Doubtful;
+        are_elsewhere_[none] = 0;
         tracks_[none].forget();
       }
     }
@@ -361,6 +360,7 @@ class EdgeTracker final : public MarkerTracker {
 
   EdgeTrackerOptions options_;
   LinearTable light_;
+  std::vector<MarkerCode> dictionary_;
   std::vector<MarkerCode> codes_;  // of the declared markers, in their order
   std::vector<MarkerTrack> tracks_;
   std::vector<MarkerObservation> observations_;
@@ -369,7 +369,8 @@ class EdgeTracker final : public MarkerTracker {
   SquareSearch search_;
   CodeSearch code_search_;
   CornerSearch corner_search_;
-  std::vector<char> is_sought_;  // by marker
+  std::vector<char> is_sought_;      // by marker
+  std::vector<char> are_elsewhere_;  // by marker: tracked in this frame by now
   std::vector<Corners> seen_;
   MarkerCompany company_;
   std::vector<int> attempts_;                  // of this frame's search, by marker

@@ -15,6 +15,7 @@
 #include "navigation/markers/edge_profiles.h"
 #include "navigation/markers/marker_motion.h"
 #include "navigation/markers/marker_tracker.h"
+#include "navigation/markers/seen_code.h"
 
 namespace arthronaut::markers {
 
@@ -29,7 +30,7 @@ struct TrackedFrame {
   // Fits that may still be made in this frame, counted in small direct ones: they take most of the time. What
   // is not measured in one frame is in the next.
   int& fits_left;
-  std::span<const MarkerCode> codes;  // of all declared markers
+  KnownCodes codes;  // elsewhere: tracked in this frame by now
 };
 
 // When a measured pose stands. docs/thresholds.md says where the numbers come from.

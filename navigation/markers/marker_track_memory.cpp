@@ -3,15 +3,14 @@
 #include <cmath>
 
 #include "navigation/markers/marker_track.h"
-#include "navigation/markers/seen_code.h"
 
 namespace arthronaut::markers {
 
 using geometry::RigidTransform;
 
 bool MarkerTrack::is_confirmed_by_code(const TrackedFrame& frame, const RigidTransform& pose) const {
-  for (std::size_t i = 0; i < frame.codes.size(); ++i) {
-    if (frame.codes[i].id != code_.id) continue;
+  for (std::size_t i = 0; i < frame.codes.declared.size(); ++i) {
+    if (frame.codes.declared[i].id != code_.id) continue;
     return see_code(frame.image, frame.camera, pose, marker_.size_mm, frame.codes, i).is_confirmed();
   }
   return false;

@@ -16,7 +16,8 @@ constexpr double kMinRange = 4;  // in light
 constexpr double kAgrees = 0.3;
 constexpr double kMinAgreeing = 0.45;
 constexpr int kMinAgreeingInside = 7, kMaxOppositeInside = 3, kClearLead = 4, kLead = 5;
-constexpr int kMinCoveredScore = 6;
+constexpr int kMinClearInside = 5;  // where none says the opposite
+constexpr int kMinCoveredScore = 5;
 constexpr int kSeePasses = 4;
 // Seen by the light of border and margin alone, which all codes have alike, a code that could agree in the
 // end is about right already.
@@ -206,9 +207,19 @@ class HopefulCodes {
   Shades shades_{};
 };
 
+// How many of the inner cells that are seen say this code, less those that say the opposite.
+int score_inside(const SeenSquare& seen, const Shades& shades, const MarkerCode& code, int turn) {
+  int score = 0;
+  for (int i = 0; i < seen.count; ++i) {
+    if (!seen.all[i].is_inside || shades[i] == Shade::Unseen || shades[i] == Shade::Neither) continue;
+    score += shades[i] == expected_shade(code, seen.all[i], turn) ? 1 : -1;
+  }
+  return score;
+}
+
 // What the cells say of one code whose top-left is corner `turn` of what they were seen on.
-SeenCode judge_cells(const SeenSquare& seen, std::span<const MarkerCode> codes, std::size_t index, int turn) {
-  const MarkerCode& code = codes[index];
+SeenCode judge_cells(const SeenSquare& seen, const KnownCodes& codes, std::size_t index, int turn) {
+  const MarkerCode& code = codes.declared[index];
   LightFit fit;
   if (!fit_light(
           seen, kSeePasses, [](const SeenCell&) { return true; },
@@ -226,22 +237,27 @@ SeenCode judge_cells(const SeenSquare& seen, std::span<const MarkerCode> codes, 
     if (!cell.is_inside) continue;
     ++result.seen_inside;
     result.agreeing_inside += shades[i] == should;
+    result.bright_inside += shades[i] == should && should == Shade::Bright;
     result.opposite_inside += shades[i] != should && shades[i] != Shade::Neither;
   }
   if (!result.agrees()) return result;  // most of what is looked at is no marker
   int other_score = -seen.count;
-  for (std::size_t other = 0; other < codes.size(); ++other) {
+  for (std::size_t other = 0; other < codes.declared.size(); ++other) {
+    if (other != index && codes.is_elsewhere(other)) continue;
     for (int other_turn = 0; other_turn < 4; ++other_turn) {
       if (other == index && other_turn == turn) continue;
-      int score = 0;
-      for (int i = 0; i < seen.count; ++i) {
-        if (!seen.all[i].is_inside || shades[i] == Shade::Unseen || shades[i] == Shade::Neither) continue;
-        score += shades[i] == expected_shade(codes[other], seen.all[i], other_turn) ? 1 : -1;
-      }
-      other_score = std::max(other_score, score);
+      other_score = std::max(other_score, score_inside(seen, shades, codes.declared[other], other_turn));
     }
   }
-  result.lead = result.agreeing_inside - result.opposite_inside - other_score;
+  const int score = result.agreeing_inside - result.opposite_inside;
+  result.lead = score - other_score;
+  if (result.lead < kClearLead) return result;
+  for (const MarkerCode& other : codes.dictionary) {
+    const auto is_other = [&](const MarkerCode& declared) { return declared.id == other.id; };
+    if (std::any_of(codes.declared.begin(), codes.declared.end(), is_other)) continue;
+    for (int other_turn = 0; other_turn < 4; ++other_turn)
+      result.is_undeclared |= score_inside(seen, shades, other, other_turn) > score;
+  }
   return result;
 }
 
@@ -259,19 +275,21 @@ double margin_contrast(const SeenSquare& seen) {
 }  // namespace
 
 bool SeenCode::agrees() const {
-  return agreeing > kMinAgreeing * seen && agreeing_inside >= kMinAgreeingInside &&
-         opposite_inside <= kMaxOppositeInside;
+  const bool is_mixed = bright_inside > 0 && bright_inside < agreeing_inside;
+  const bool is_clear = opposite_inside == 0 && agreeing_inside >= kMinClearInside && is_mixed;
+  return agreeing > kMinAgreeing * seen &&
+         (is_clear || (agreeing_inside >= kMinAgreeingInside && opposite_inside <= kMaxOppositeInside));
 }
 
 bool SeenCode::is_confirmed() const {
-  return agrees() && lead >= (opposite_inside == 0 ? kClearLead : kLead);
+  return agrees() && lead >= (opposite_inside == 0 ? kClearLead : kLead) && !is_undeclared;
 }
 
 SeenCode see_code(const LinearImage& image, const camera::CameraModel& camera,
-                  const geometry::RigidTransform& camera_from_marker, double size_mm,
-                  std::span<const MarkerCode> codes, std::size_t index) {
+                  const geometry::RigidTransform& camera_from_marker, double size_mm, const KnownCodes& codes,
+                  std::size_t index) {
   SeenSquare seen;
-  const int cells = codes[index].cells;
+  const int cells = codes.declared[index].cells;
   const auto at = [&](double x, double y) {
     return camera_from_marker * Eigen::Vector3d(x * size_mm, y * size_mm, 0);
   };
@@ -281,11 +299,11 @@ SeenCode see_code(const LinearImage& image, const camera::CameraModel& camera,
 }
 
 std::optional<ReadCode> read_covered_code(const LinearImage& image, const camera::CameraModel& camera,
-                                          const Corners& square, std::span<const MarkerCode> codes) {
+                                          const Corners& square, const KnownCodes& codes) {
   const auto homography = square_homography(square, 1.0);
-  if (codes.empty() || !homography) return std::nullopt;
+  if (codes.declared.empty() || !homography) return std::nullopt;
   SeenSquare seen;
-  const int cells = codes.front().cells;
+  const int cells = codes.declared.front().cells;
   const auto at = [&](double x, double y) -> Eigen::Vector3d {
     return *homography * Eigen::Vector3d(x, y, 1);
   };
@@ -295,14 +313,15 @@ std::optional<ReadCode> read_covered_code(const LinearImage& image, const camera
   const HopefulCodes hopeful(seen);
   std::optional<ReadCode> best;
   int most = 0;
-  for (std::size_t i = 0; i < codes.size(); ++i) {
+  for (std::size_t i = 0; i < codes.declared.size(); ++i) {
+    if (codes.is_elsewhere(i)) continue;
     for (int turn = 0; turn < 4; ++turn) {
-      if (!hopeful.may_be(codes[i], turn)) continue;
+      if (!hopeful.may_be(codes.declared[i], turn)) continue;
       const SeenCode code = judge_cells(seen, codes, i, turn);
       const int score = code.agreeing_inside - 2 * code.opposite_inside;
       if (!code.is_confirmed() || score < kMinCoveredScore || score <= most) continue;
       most = score;
-      best = ReadCode{static_cast<int>(i), turn, code.opposite_inside};
+      best = ReadCode{static_cast<int>(i), turn, code.opposite_inside, true};
     }
   }
   return best;

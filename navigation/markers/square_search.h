@@ -54,9 +54,9 @@ class SquareSearch {
   // In place of find(), or after it: all that it finds, and squares of which a part is hidden. White pixels
   // are left out of the means, since highlights raise what is thought bright; and of each dark region the
   // straight parts of the outline are sought one by one, of which four make a square, whatever lies between
-  // them; or three and the ends of the outer two. Where something is white, two regions may be one square.
-  // So many of them at a time (kSquaresAtATime): what is left is found by the next calls, from where this one
-  // stopped.
+  // them; or three and the ends of the outer two. Where something is white, two regions may be one square,
+  // and two sides that meet make one, too. So many of them at a time (kSquaresAtATime): what is left is found
+  // by the next calls, from where this one stopped.
   [[nodiscard]] std::span<const FoundSquare> find_covered(const camera::CameraModel& camera);
   // Squares on which highlights lie: dark regions count as one where something white, with the pixel about
   // it, joins them, and their sides are sought as find_covered() does. As many at a time; few, and cheap.

@@ -5,6 +5,7 @@
 //   hard_tracking [--first CLIP] [--clips N] [--frames N] [--only KIND] [--half set|report] [--cache FOLDER]
 //                 [--jobs N]  clips at a time, each on a core of its own
 //                 [--rows N]  only clips of no more rows: larger ones take long to draw
+//                 [--declare ID,ID,...]  these instead of 0, 2, 3 and 4: what is shown is 0, 2 and 3
 //                 [--aruco]
 //                 [--each]    every lost or wrong marker of the even seeds
 #include <Eigen/LU>
@@ -13,6 +14,7 @@
 #include <cstdio>
 #include <cstring>
 #include <map>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -30,6 +32,7 @@ struct Choice {
   std::string only, half;
   std::filesystem::path cache;
   bool with_aruco = false, tells_each = false;
+  std::vector<int> declared = {0, 2, 3, 4};
 };
 
 struct Count {
@@ -148,7 +151,7 @@ void judge(const markers::MarkerObservation& seen, const MarkerTruth* truth, con
 Tally track_clip(const ClipRecipe& recipe, const Choice& choice, TrackerMaker make) {
   HardClip clip(recipe, choice.cache);
   std::vector<markers::DeclaredMarker> declared;
-  for (const int id : {0, 2, 3, 4}) declared.push_back({id, recipe.marker_size_mm});
+  for (const int id : choice.declared) declared.push_back({id, recipe.marker_size_mm});
   const auto tracker = make(declared);
   Tally tally;
   int frame = 0;
@@ -232,6 +235,10 @@ int main(int argc, char** argv) {
       choice.tells_each = true;
     } else if (option == "--first" && has_value) {
       choice.first = std::atoi(argv[++i]);
+    } else if (option == "--declare" && has_value) {
+      choice.declared.clear();
+      std::istringstream ids(argv[++i]);
+      for (std::string id; std::getline(ids, id, ',');) choice.declared.push_back(std::stoi(id));
     } else if (option == "--jobs" && has_value) {
       choice.jobs = std::atoi(argv[++i]);
     } else if (option == "--rows" && has_value) {
@@ -247,9 +254,11 @@ int main(int argc, char** argv) {
     } else if (option == "--cache" && has_value) {
       choice.cache = argv[++i];
     } else {
-      std::fprintf(stderr,
-                   "usage: hard_tracking [--first CLIP] [--clips N] [--frames N] [--only KIND] "
-                   "[--half set|report] [--cache FOLDER] [--jobs N] [--rows N] [--aruco] [--each]\n");
+      std::fprintf(
+          stderr,
+          "usage: hard_tracking [--first CLIP] [--clips N] [--frames N] [--only KIND] "
+          "[--half set|report] [--cache FOLDER] [--jobs N] [--rows N] [--declare ID,ID,...] [--aruco] "
+          "[--each]\n");
       return 2;
     }
   }

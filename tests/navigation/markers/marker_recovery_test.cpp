@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -70,6 +71,23 @@ TEST_F(MarkerRecovery, FindsAMarkerOfWhichAHighlightHidesOneSide) {
       shown.shine(place.x(), place.y(), 8, kHighlight);
     }
     SCOPED_TRACE(::testing::Message() << "side " << side.transpose());
+    expect_found(shown);
+  }
+}
+
+// From nothing, though highlights leave no more than two sides that meet.
+TEST_F(MarkerRecovery, FindsAMarkerOfWhichHighlightsLeaveTwoSides) {
+  for (const Eigen::Vector2d& hidden :
+       {Eigen::Vector2d(-1, -1), Eigen::Vector2d(1, -1), Eigen::Vector2d(-1, 1), Eigen::Vector2d(1, 1)}) {
+    auto shown = picture(pose_);
+    for (const double along_mm : {-0.6, 0.4, 1.4}) {
+      for (const Eigen::Vector2d& place_mm : {Eigen::Vector2d(1.8 * hidden.x(), along_mm * hidden.y()),
+                                              Eigen::Vector2d(along_mm * hidden.x(), 1.8 * hidden.y())}) {
+        const Eigen::Vector2d place = seen_at(pose_, place_mm.x(), place_mm.y());
+        shown.shine(place.x(), place.y(), 10, kHighlight);
+      }
+    }
+    SCOPED_TRACE(::testing::Message() << "hidden " << hidden.transpose());
     expect_found(shown);
   }
 }
@@ -153,12 +171,12 @@ TEST_F(MarkerRecovery, KnowsACoveredCodeFromEveryOther) {
   const LinearTable table(1.6);
   const LinearImage image(shown.view(), table);
   const auto standard = std::span(codes_).first(5);
-  EXPECT_TRUE(see_code(image, camera_, pose_, 4, standard, 0).is_confirmed());
+  EXPECT_TRUE(see_code(image, camera_, pose_, 4, {standard}, 0).is_confirmed());
   for (std::size_t other = 1; other < standard.size(); ++other)
-    EXPECT_FALSE(see_code(image, camera_, pose_, 4, standard, other).is_confirmed()) << "marker " << other;
+    EXPECT_FALSE(see_code(image, camera_, pose_, 4, {standard}, other).is_confirmed()) << "marker " << other;
   const Eigen::Quaterniond quarter(Eigen::AngleAxisd(geometry::kPi / 2, Eigen::Vector3d::UnitZ()));
   const RigidTransform turned{pose_.rotation * quarter, pose_.translation_mm};
-  EXPECT_FALSE(see_code(image, camera_, turned, 4, standard, 0).is_confirmed());
+  EXPECT_FALSE(see_code(image, camera_, turned, 4, {standard}, 0).is_confirmed());
 }
 
 // A highlight takes a quarter of the inside, wherever it lies: the cells that it takes a part of say by what
@@ -182,7 +200,7 @@ TEST_F(MarkerRecovery, KnowsACodeByThePartsOfCellsThatAHighlightLeaves) {
             Eigen::AngleAxisd(turn * geometry::kPi / 2, Eigen::Vector3d::UnitZ()));
         const RigidTransform pose{pose_.rotation * turned, pose_.translation_mm};
         for (std::size_t i = 0; i < standard.size(); ++i)
-          EXPECT_EQ(see_code(image, camera_, pose, 4, standard, i).is_confirmed(), i == 0 && turn == 0)
+          EXPECT_EQ(see_code(image, camera_, pose, 4, {standard}, i).is_confirmed(), i == 0 && turn == 0)
               << "marker " << i << " turned by " << turn;
       }
       if (sigma_px > 13) continue;  // little of the edges is left to measure
@@ -191,6 +209,55 @@ TEST_F(MarkerRecovery, KnowsACodeByThePartsOfCellsThatAHighlightLeaves) {
       expect_near(seen[0], pose_);
       EXPECT_FALSE(seen[1].is_tracked());
     }
+  }
+}
+
+// A highlight over a third of the inside: fewer cells tell the code where the other declared markers are seen
+// elsewhere, and still no other turn is confirmed.
+TEST_F(MarkerRecovery, KnowsACodeByFewerCellsWhereTheOthersAreElsewhere) {
+  const auto without = picture(pose_);
+  const LinearTable table(1.6);
+  const auto standard = std::span(codes_).first(5);
+  const std::array<char, 5> others = {0, 1, 1, 1, 1};
+  int among_all = 0, alone = 0;
+  for (int at = 0; at < 25; ++at) {
+    auto shown = without;
+    const Eigen::Vector2d place = seen_at(pose_, 0.6 * (at % 5 - 2), 0.6 * (at / 5 - 2));
+    shown.shine(place.x(), place.y(), 20, kHighlight);
+    const LinearImage image(shown.view(), table);
+    among_all += see_code(image, camera_, pose_, 4, {standard}, 0).is_confirmed();
+    alone += see_code(image, camera_, pose_, 4, {standard, {}, others}, 0).is_confirmed();
+    for (int turn = 1; turn < 4; ++turn) {
+      const Eigen::Quaterniond turned(Eigen::AngleAxisd(turn * geometry::kPi / 2, Eigen::Vector3d::UnitZ()));
+      const RigidTransform pose{pose_.rotation * turned, pose_.translation_mm};
+      EXPECT_FALSE(see_code(image, camera_, pose, 4, {standard, {}, others}, 0).is_confirmed())
+          << "highlight " << at << ", turned by " << turn;
+    }
+  }
+  EXPECT_LE(among_all, 13);
+  EXPECT_GE(alone, 19);
+}
+
+// A marker that is not declared, under a highlight that hides what tells it from a declared one but for a
+// cell: it is not taken for that one.
+TEST_F(MarkerRecovery, TakesNoUndeclaredMarkerForADeclaredOne) {
+  const LinearTable table(1.6);
+  const auto standard = std::span(codes_).first(5), others = std::span(codes_).subspan(5);
+  struct Likeness {
+    std::size_t shown, declared;
+    int turn;
+    double x_mm, y_mm;
+  };
+  for (const Likeness& like : {Likeness{37, 2, 3, -1.2, 0.6}, Likeness{43, 3, 3, 0.6, -1.2}}) {
+    RenderedPicture shown(camera_, {{codes_[like.shown], 4, pose_}});
+    const Eigen::Vector2d place = seen_at(pose_, like.x_mm, like.y_mm);
+    shown.shine(place.x(), place.y(), 12, kHighlight);
+    const LinearImage image(shown.view(), table);
+    const Eigen::Quaterniond turned(
+        Eigen::AngleAxisd(like.turn * geometry::kPi / 2, Eigen::Vector3d::UnitZ()));
+    const RigidTransform pose{pose_.rotation * turned, pose_.translation_mm};
+    EXPECT_TRUE(see_code(image, camera_, pose, 4, {standard}, like.declared).is_confirmed());
+    EXPECT_FALSE(see_code(image, camera_, pose, 4, {standard, others}, like.declared).is_confirmed());
   }
 }
 
@@ -240,8 +307,9 @@ TEST_F(MarkerRecovery, ReadsNothingBesideTheMarker) {
   const auto shown = picture(pose_);
   const LinearTable table(1.6);
   const LinearImage image(shown.view(), table);
-  EXPECT_FALSE(see_code(image, camera_, facing_pose(-4, -2, 15, 5, 5, 40), 4, codes_, 0).is_confirmed());
-  EXPECT_FALSE(see_code(image, camera_, facing_pose(1.9, 0.3, 15, 20, 12, 25), 4, codes_, 0).is_confirmed());
+  EXPECT_FALSE(see_code(image, camera_, facing_pose(-4, -2, 15, 5, 5, 40), 4, {codes_}, 0).is_confirmed());
+  EXPECT_FALSE(
+      see_code(image, camera_, facing_pose(1.9, 0.3, 15, 20, 12, 25), 4, {codes_}, 0).is_confirmed());
 }
 
 }  // namespace

@@ -1,0 +1,29 @@
+// The tracker on hard clips on which it once went wrong; the benchmark hard_tracking tells how often it does.
+#include <gtest/gtest.h>
+
+#include "navigation/markers/marker_tracker.h"
+#include "tests/benchmarks/hard_clips/hard_clip.h"
+
+namespace arthronaut::hard_clips {
+namespace {
+
+// A square about a marker under a highlight, of three times its size, was read as the one beside it: what is
+// saturated says nothing, and the few cells that were left agreed. The one beside it, in plain view, was said
+// to be seen twice and withheld.
+TEST(HardClips, HighlightsOnOneMarkerMakeNoSecondOneOfAnother) {
+  constexpr int kFrames = 2;
+  const ClipRecipe recipe = recipe_of(Hardness::Glare, 82, kFrames);
+  HardClip clip(recipe);
+  std::vector<markers::DeclaredMarker> declared;
+  for (const int id : {0, 2, 3, 4}) declared.push_back({id, recipe.marker_size_mm});
+  const auto tracker = markers::make_tracker(declared);
+  int frames = 0;
+  for (camera::GrayView picture = clip.next(); picture.data; picture = clip.next(), ++frames) {
+    for (const auto& seen : tracker->track(picture, clip.camera(), clip.timestamp_ns()))
+      EXPECT_NE(seen.state, markers::MarkerState::Duplicate) << "marker " << seen.id << ", frame " << frames;
+  }
+  EXPECT_EQ(frames, kFrames);
+}
+
+}  // namespace
+}  // namespace arthronaut::hard_clips
