@@ -145,7 +145,8 @@ void Report::plan_page() {
   if (content_.identity) about.push_back({"Patient", content_.identity->in_words()});
   about.insert(about.end(),
                {{"Name", content_.knee.name}, {"Side", std::string(bones::to_text(content_.knee.side))}});
-  if (!options_.is_deidentified) about.push_back({"Created", files::utc_in_words(content_.knee.created_utc)});
+  if (!content_.knee.created_utc.empty())
+    about.push_back({"Created", files::utc_in_words(content_.knee.created_utc)});
   if (options_.says_when_made) about.push_back({"Report made", files::utc_now_as("%Y-%m-%d %H:%M:%S UTC")});
   pages_.table({45, 125}, about);
   pages_.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
@@ -265,9 +266,9 @@ void Report::result_section(const operation::AchievedTunnel& achieved) {
 void Report::navigate_page() {
   pages_.begin_page("In theatre");
   for (const auto& [session, reason] : content_.unreadable)
-    pages_.sentence(options_.is_deidentified ? "NOT READABLE, and not in this report: a session of this case."
-                                             : "NOT READABLE, and not in this report: the session " +
-                                                   session + " (" + reason + ").",
+    pages_.sentence(session.empty() ? "NOT READABLE, and not in this report: a session of this case."
+                                    : "NOT READABLE, and not in this report: the session " + session + " (" +
+                                          reason + ").",
                     {.bold = true, .ink = kWarning});
   if (!content_.session) {
     pages_.sentence("No session with a registration or a drilled tunnel is recorded in this case.");
@@ -282,8 +283,8 @@ void Report::navigate_page() {
         "NOT AS RECORDED: something of this session was changed or lost since (see Record by its hashes).",
         {.bold = true, .ink = kWarning});
   std::vector<std::vector<std::string>> rows{
-      {"Session", options_.is_deidentified ? "" : header.id},
-      {"Started", options_.is_deidentified ? kNotTold : files::utc_in_words(header.started_utc)},
+      {"Session", content_.session_name},
+      {"Started", content_.started_utc.empty() ? kNotTold : files::utc_in_words(content_.started_utc)},
       {"Bone", std::string(bones::to_text(header.bone))},
       {"Source", kind_in_words(header)},
       {"Video", content_.identity ? header.source : neutral_source(header)},
@@ -297,7 +298,7 @@ void Report::navigate_page() {
     rows.push_back({"WRONG MEDIUM by the markers", number(figures.other_medium_percent, " % of the frames")});
   if (const std::string guided = guided_bundles(session); !guided.empty())
     rows.push_back({"Guided to the tunnel", guided});
-  for (auto& row : safety_rows(session)) rows.push_back(std::move(row));
+  for (auto& row : safety_rows(session, content_.cut_short)) rows.push_back(std::move(row));
   pages_.table({70, 100}, rows);
   if (const auto counts = registration_that_counts(session)) registration_section(*counts);
   time_line_section(session);
@@ -305,7 +306,7 @@ void Report::navigate_page() {
   for (const Content::Earlier& earlier : content_.earlier) {
     result_section(earlier.achieved);
     pages_.sentence("Drilled in " +
-                        (options_.is_deidentified ? "an earlier session" : "the session " + earlier.session) +
+                        (earlier.session.empty() ? "an earlier session" : "the session " + earlier.session) +
                         ".",
                     {.size_pt = 8.5, .ink = kGray});
   }

@@ -10,6 +10,7 @@
 #include "app/report/session_rows.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
+#include "navigation/recording/cut_short.h"
 #include "planning/files/format.h"
 #include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
@@ -103,6 +104,10 @@ void add_earlier(const std::vector<std::filesystem::path>& sessions, Content& co
 // A broken file of marks takes nothing else away.
 void add_looked_at(Content& content) {
   const std::filesystem::path folder = content.session->folder();
+  content.session_name = content.session->header().id;
+  content.started_utc = content.session->header().started_utc;
+  content.cut_short =
+      recording::cut_short_in_words(content.session->was_finished(), content.session->events());
   content.last_hash = recording::chain_head(folder);
   content.check = recording::check_session(folder);
   try {
@@ -143,15 +148,41 @@ void add_postoperative(Content& content) {
   }
 }
 
+// The one place that says what strangers are not told: whoever the patient is, the session and the day, and
+// what may name them: what somebody wrote, and the files and folders that a reason names.
+void blank_for_strangers(Content& content) {
+  content.knee.name = kDeidentifiedCase;
+  content.knee.created_utc.clear();
+  content.session_name.clear();
+  content.started_utc.clear();
+  if (!content.cut_short.empty()) content.cut_short = std::string("why is ") + kNotTold;
+  for (Content::Earlier& earlier : content.earlier) earlier.session.clear();
+  for (auto& [session, reason] : content.unreadable) {
+    session.clear();
+    reason.clear();
+  }
+  for (recording::SessionMark& mark : content.marks)
+    if (!mark.note.empty()) mark.note = kNotTold;
+  for (std::string* const problem : {&content.marks_problem, &content.postoperative_problem})
+    if (!problem->empty()) *problem = std::string("why is ") + kNotTold;
+  for (recording::CheckFinding& finding : content.check.findings) {
+    finding.what = finding.what.substr(0, finding.what.find(':'));  // after it: an error's own words
+    if (finding.of.find('/') != std::string::npos)
+      finding.of = "pictures";  // a source's files keep their names
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> shortcomings_of(const Content& content) {
   std::vector<std::string> sentences;
   for (const auto& [session, reason] : content.unreadable)
-    sentences.push_back("the session " + session + " cannot be read and is not in it: " + reason);
+    sentences.push_back(session.empty()
+                            ? "a session of this case cannot be read and is not in it"
+                            : "the session " + session + " cannot be read and is not in it: " + reason);
   if (content.check.outcome == recording::SessionCheck::Outcome::Broken)
-    sentences.push_back("the session " + content.session->folder().filename().string() +
-                        " is no longer what was recorded: " + recording::check_words(content.check));
+    sentences.push_back("the session " + content.session_name + (content.session_name.empty() ? "" : " ") +
+                        "is no longer what was recorded: " + recording::check_words(content.check));
   return sentences;
 }
 
@@ -213,6 +244,9 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
                   .review = nullptr,
                   .bone_doubts = cases::load_bone_doubts(folder),
                   .session = nullptr,
+                  .session_name = {},
+                  .started_utc = {},
+                  .cut_short = {},
                   .achieved = {},
                   .earlier = {},
                   .unreadable = {},
@@ -241,11 +275,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   add_postoperative(content);
   add_places(content);
   if (content.session) add_looked_at(content);
-  if (options.is_deidentified) {  // what somebody wrote may name anybody
-    content.knee.name = kDeidentifiedCase;
-    for (recording::SessionMark& mark : content.marks)
-      if (!mark.note.empty()) mark.note = kNotTold;
-  }
+  if (options.is_deidentified) blank_for_strangers(content);
   return content;
 }
 

@@ -30,6 +30,9 @@ struct Content {
   std::unique_ptr<const plan_review::CaseReview> review = nullptr;  // of `knee`; never null once gathered
   cases::BoneDoubts bone_doubts = {};
   std::unique_ptr<recording::RecordedSession> session;
+  // Of `session`, as they are told: for strangers empty, as is every name of a session below.
+  std::string session_name = {}, started_utc = {};
+  std::string cut_short = {};                       // why its record is not whole; empty: it is
   std::vector<operation::AchievedTunnel> achieved;  // in `session`
   // Tunnels of other bundles of that bone, drilled in sessions before it: after each start of a source there
   // is another. Of the same kind of source alone: a rehearsal says nothing of the patient.
@@ -38,7 +41,8 @@ struct Content {
     std::string session;
   };
   std::vector<Earlier> earlier = {};
-  // Sessions that may have been the one that matters, and cannot be read: their folders' names, and why.
+  // Sessions that may have been the one that matters, and cannot be read: their folders' names, and why; for
+  // strangers both empty.
   std::vector<std::pair<std::string, std::string>> unreadable = {};
   recording::SessionMarks marks = {};  // of `session`: what whoever looked at it marked
   std::string marks_problem = {};      // why they cannot be read; empty when they can
@@ -52,7 +56,8 @@ struct Content {
   std::optional<cases::Identity> identity;  // where it is to be named
 };
 
-// Throws IoError or InvalidInput (file, place, reason).
+// For strangers it names no patient, no session and no day, whatever is drawn of it. Throws IoError or
+// InvalidInput (file, place, reason).
 [[nodiscard]] Content gather(const std::filesystem::path& folder, const ReportOptions& options);
 
 // What the report tells less of than was recorded, or tells of what was not: a sentence each.

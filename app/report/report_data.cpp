@@ -69,18 +69,18 @@ ordered_json json_of(const registration::RegistrationSummary& registration) {
            registration.has_pose ? ordered_json(registration.predicted_tre_mm) : ordered_json()}};
 }
 
-// What names a session or a day, which for strangers is null.
-ordered_json unless_deidentified(const ReportOptions& options, const std::string& value) {
-  return options.is_deidentified ? ordered_json() : ordered_json(value);
+// What names a session or a day; for strangers it is empty, and null here.
+ordered_json if_told(const std::string& value) {
+  return value.empty() ? ordered_json() : ordered_json(value);
 }
 
-ordered_json session_of(const Content& content, const ReportOptions& options) {
+ordered_json session_of(const Content& content) {
   if (!content.session) return nullptr;
   const recording::RecordedSession& session = *content.session;
   const recording::SessionHeader& header = session.header();
   const SessionFigures figures = figures_of(session);
-  ordered_json node = {{"id", unless_deidentified(options, header.id)},
-                       {"started_utc", unless_deidentified(options, header.started_utc)},
+  ordered_json node = {{"id", if_told(content.session_name)},
+                       {"started_utc", if_told(content.started_utc)},
                        {"bone", bones::to_text(header.bone)},
                        {"source_kind", header.source_kind},
                        {"medium", camera::medium_to_text(header.refractive_index)},
@@ -97,7 +97,7 @@ ordered_json session_of(const Content& content, const ReportOptions& options) {
   node["registration"] = nullptr;
   if (const auto counts = registration_that_counts(session)) node["registration"] = json_of(*counts);
   node["safety"] = ordered_json::object();
-  for (const auto& row : safety_rows(session)) node["safety"][row[0]] = row[1];
+  for (const auto& row : safety_rows(session, content.cut_short)) node["safety"][row[0]] = row[1];
   node["steps"] = ordered_json::array();
   for (const Step& step : steps_of(session))
     node["steps"].push_back({{"time_s", step.time_s}, {"what", step.words}});
@@ -172,7 +172,7 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
   if (options.says_when_made && !options.is_deidentified) json["made_utc"] = files::utc_now();
   json["case"] = {{"name", content.knee.name},
                   {"side", bones::to_text(content.knee.side)},
-                  {"created_utc", unless_deidentified(options, content.knee.created_utc)}};
+                  {"created_utc", if_told(content.knee.created_utc)}};
   if (content.identity)
     json["patient"] = {{"name", content.identity->patient_name},
                        {"id", content.identity->patient_id},
@@ -184,18 +184,15 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
   for (const auto& [kind, bone] : content.knee.bones)
     if (has_proposed_grid(content, kind)) json["proposed_landmarks"].push_back(bones::to_text(kind));
   json["tunnels"] = tunnels_of(content);
-  json["session"] = session_of(content, options);
+  json["session"] = session_of(content);
   json["unreadable_sessions"] = ordered_json::array();
   for (const auto& [session, reason] : content.unreadable)
-    json["unreadable_sessions"].push_back(
-        {{"id", unless_deidentified(options, session)}, {"reason", unless_deidentified(options, reason)}});
+    json["unreadable_sessions"].push_back({{"id", if_told(session)}, {"reason", if_told(reason)}});
   json["achieved"] = ordered_json::array();
   for (const operation::AchievedTunnel& achieved : content.achieved)
-    json["achieved"].push_back(
-        json_of(content, achieved, unless_deidentified(options, content.session->header().id)));
+    json["achieved"].push_back(json_of(content, achieved, if_told(content.session_name)));
   for (const Content::Earlier& earlier : content.earlier)
-    json["achieved"].push_back(
-        json_of(content, earlier.achieved, unless_deidentified(options, earlier.session)));
+    json["achieved"].push_back(json_of(content, earlier.achieved, if_told(earlier.session)));
   json["postoperative"] = postoperative_of(content);
   if (!content.postoperative_problem.empty()) json["postoperative_problem"] = content.postoperative_problem;
   json["versions"] = ordered_json::object();

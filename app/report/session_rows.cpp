@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "navigation/recording/counting_registration.h"
-#include "navigation/recording/cut_short.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/files/format.h"
 
@@ -54,7 +53,8 @@ std::optional<registration::RegistrationSummary> registration_that_counts(
   return session.registration_of(of_file);
 }
 
-std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session) {
+std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session,
+                                                  const std::string& cut_short) {
   bool is_verified = false, is_lost = false, was_verified = false, was_skipped = false, is_confirmed = false;
   recording::CountingRegistration registration;
   std::string alarms, guide;
@@ -81,8 +81,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
                      : "not verified";
   const std::string& kind = session.header().source_kind;
   const bool is_live = kind == sources::to_text(sources::SourceKind::Live);
-  const std::string cut = recording::cut_short_in_words(session.was_finished(), session.events());
-  return {{"Record", cut.empty() ? "from beginning to end" : "CUT SHORT: " + cut},
+  return {{"Record", cut_short.empty() ? "from beginning to end" : "CUT SHORT: " + cut_short},
           {"Verification", verified + (was_skipped ? "; guidance began without it" : "")},
           {"Time-out", is_confirmed   ? "confirmed"
                        : is_live      ? "not confirmed in this session"

@@ -22,8 +22,9 @@ namespace arthronaut::report {
 [[nodiscard]] std::optional<registration::RegistrationSummary> registration_that_counts(
     const recording::RecordedSession& session);
 // What was asked before the guide was followed, and what spoke against it, as the session's events say it: a
-// name and a text each.
-[[nodiscard]] std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session);
+// name and a text each. cut_short: why the record is not whole; empty: it is.
+[[nodiscard]] std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session,
+                                                                const std::string& cut_short);
 
 // How much of a session was seen.
 struct SessionFigures {

@@ -9,6 +9,7 @@
 #include "navigation/recording/session_files.h"
 #include "navigation/recording/session_hashes.h"
 #include "planning/files/format.h"
+#include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
@@ -108,7 +109,7 @@ class Checker {
       if (sha256_of_rows(*database_, record.of, record.from, record.to) != record.sha256)
         add(record.of, record.from, record.to, kChanged);
     } catch (const std::runtime_error& error) {
-      add(record.of, record.from, record.to, std::string("not readable: ") + error.what());
+      add(record.of, record.from, record.to, not_readable(error));
     }
   }
 
@@ -123,7 +124,7 @@ class Checker {
       else
         check_.covered_bytes += record.to - record.from;
     } catch (const IoError& error) {
-      add(record.of, record.from, record.to, std::string("not readable: ") + error.what());
+      add(record.of, record.from, record.to, not_readable(error));
     }
   }
 
@@ -148,7 +149,12 @@ class Checker {
 
   void lose_database(const std::runtime_error& error) {
     database_.reset();
-    check_.findings.push_back({"session.sqlite", 0, 0, std::string("not readable: ") + error.what()});
+    check_.findings.push_back({"session.sqlite", 0, 0, not_readable(error)});
+  }
+
+  // Where the session lies is no finding: a folder may bear the patient's name.
+  [[nodiscard]] std::string not_readable(const std::runtime_error& error) const {
+    return "not readable: " + files::within_folder(folder_, error.what());
   }
 
   // Stretches that lie side by side and are wrong alike are one finding.

@@ -18,7 +18,8 @@ namespace arthronaut::recording {
 struct CheckFinding {
   std::string of;                 // "video.mkv", "session.sqlite:frames.2", "chain.csv"
   std::int64_t from = 0, to = 0;  // bytes, or numbers of rows, [from, to); both 0: as a whole
-  std::string what;               // "not what was recorded", "missing", "not in the chain", ...
+  // "not what was recorded", "missing", "not in the chain", ... Names files as they lie in the session.
+  std::string what;
 
   // "video.mkv: bytes 1048576 to 2097151 are not what was recorded".
   [[nodiscard]] std::string text() const;

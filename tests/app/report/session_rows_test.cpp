@@ -52,7 +52,7 @@ TEST(SessionRows, ATunnelIsToldOfByTheRegistrationThatItWasDrilledBy) {
   const recording::RecordedSession session(folder.path());
   ASSERT_FALSE(session.registration()->reliable);
   EXPECT_TRUE(registration_that_counts(session)->reliable);
-  EXPECT_EQ(safety_rows(session).at(1).at(1), "verified by touches");
+  EXPECT_EQ(safety_rows(session, "").at(1).at(1), "verified by touches");
   const std::vector<Step> steps = steps_of(session);
   EXPECT_EQ(steps.front().words, "bone registered");
   EXPECT_EQ(steps.back().words, "nothing is registered any more");
