@@ -61,7 +61,7 @@ class Report {
     }
     navigate_page();
     result_pictures();
-    draw_settings_section(pages_, content_, options_);
+    draw_settings_section(pages_, content_);
     return pdf_;
   }
 

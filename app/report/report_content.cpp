@@ -11,6 +11,7 @@
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/recording/cut_short.h"
+#include "navigation/registration/provenance.h"
 #include "planning/files/format.h"
 #include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
@@ -148,6 +149,34 @@ void add_postoperative(Content& content) {
   }
 }
 
+// Calibrating anew changes nothing of what was navigated before: of a session its own camera counts. Its
+// record holds the numbers alone; where the case still has the same ones, what it says of them is known.
+void add_camera(Content& content) {
+  std::optional<camera::CalibrationRecord> of_case;
+  std::string problem;
+  try {
+    const std::filesystem::path file = cases::camera_file(content.folder);
+    if (std::filesystem::exists(file)) of_case = camera::read_camera_file(file);
+  } catch (const InvalidInput& error) {
+    problem = files::within_folder(content.folder, error.what());
+  } catch (const IoError& error) {
+    problem = files::within_folder(content.folder, error.what());
+  }
+  if (content.session == nullptr) {
+    content.camera = std::move(of_case);
+    content.camera_problem = std::move(problem);
+    return;
+  }
+  const camera::Calibration calibration = content.session->pipeline_options().calibration;
+  const bool is_same = of_case && registration::camera_identity(of_case->calibration) ==
+                                      registration::camera_identity(calibration);
+  content.case_has_another_camera = of_case && !is_same;
+  if (is_same)
+    content.camera = std::move(of_case);
+  else
+    content.camera.emplace().calibration = calibration;
+}
+
 // The one place that says what strangers are not told: whoever the patient is, the session and the day, and
 // what may name them: what somebody wrote, and the files and folders that a reason names.
 void blank_for_strangers(Content& content) {
@@ -157,13 +186,15 @@ void blank_for_strangers(Content& content) {
   content.started_utc.clear();
   if (!content.cut_short.empty()) content.cut_short = std::string("why is ") + kNotTold;
   for (Content::Earlier& earlier : content.earlier) earlier.session.clear();
+  if (content.camera && !content.camera->date_utc.empty()) content.camera->date_utc = kNotTold;
   for (auto& [session, reason] : content.unreadable) {
     session.clear();
     reason.clear();
   }
   for (recording::SessionMark& mark : content.marks)
     if (!mark.note.empty()) mark.note = kNotTold;
-  for (std::string* const problem : {&content.marks_problem, &content.postoperative_problem})
+  for (std::string* const problem :
+       {&content.marks_problem, &content.postoperative_problem, &content.camera_problem})
     if (!problem->empty()) *problem = std::string("why is ") + kNotTold;
   for (recording::CheckFinding& finding : content.check.findings) {
     finding.what = finding.what.substr(0, finding.what.find(':'));  // after it: an error's own words
@@ -254,6 +285,9 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
                   .marks_problem = {},
                   .last_hash = {},
                   .check = {},
+                  .camera = {},
+                  .case_has_another_camera = false,
+                  .camera_problem = {},
                   .postoperative = {},
                   .places = {},
                   .postoperative_problem = {},
@@ -274,6 +308,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   add_earlier(sessions, content);
   add_postoperative(content);
   add_places(content);
+  add_camera(content);
   if (content.session) add_looked_at(content);
   if (options.is_deidentified) blank_for_strangers(content);
   return content;

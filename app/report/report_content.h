@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/report/report.h"
+#include "navigation/camera/camera_file.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_check.h"
@@ -48,6 +49,11 @@ struct Content {
   std::string marks_problem = {};      // why they cannot be read; empty when they can
   std::string last_hash = {};          // of the chain of `session`; empty: it has none, or a broken one
   recording::SessionCheck check = {};  // whether `session` is what was recorded
+  // What `session` was navigated with; the case's of now where there is no session, and nothing where it has
+  // none. Who calibrated it when, and how well, is told where it is known of these numbers.
+  std::optional<camera::CalibrationRecord> camera = {};
+  bool case_has_another_camera = false;  // than `session` had
+  std::string camera_problem = {};       // why the case's cannot be read; empty when it can, or is not asked
   // With images after the operation, as the case's achieved.json keeps it.
   std::map<tunnels::TunnelKey, postop::Comparison> postoperative = {};
   // Of those of them that are against today's plan.

@@ -5,7 +5,6 @@
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
 #include "navigation/recording/session.h"
-#include "planning/cases/case.h"
 #include "planning/files/utc_clock.h"
 
 namespace arthronaut::report {
@@ -21,11 +20,24 @@ std::string ids_of(const Body& body) {
   return ids;
 }
 
-void camera_table(FlowingPages& pages, const std::filesystem::path& camera_file,
-                  const ReportOptions& options) {
-  const auto record = camera::read_camera_file(camera_file);
+std::string scope_and_head(const camera::CalibrationRecord& record) {
+  if (record.scope_name.empty() || record.head_name.empty()) {
+    const std::string& known = record.scope_name.empty() ? record.head_name : record.scope_name;
+    return known.empty() ? "not recorded" : known;
+  }
+  return record.scope_name + ", " + record.head_name;
+}
+
+void camera_section(FlowingPages& pages, const Content& content) {
+  const char* const whose = content.session ? "Camera of the session" : "The case's camera now";
+  if (!content.camera_problem.empty()) {
+    pages.heading(whose);
+    pages.sentence("NOT READABLE: " + content.camera_problem, {.ink = kWarning});
+  }
+  if (!content.camera) return;
+  const camera::CalibrationRecord& record = *content.camera;
   const auto& c = record.calibration;
-  pages.heading("Camera");
+  pages.heading(whose);
   pages.table(
       {38, 44, 36, 52},
       {{"Quantity", "Value", "Quantity", "Value"},
@@ -36,11 +48,13 @@ void camera_table(FlowingPages& pages, const std::filesystem::path& camera_file,
         number(c.rotation_center_px.x(), ", ", 1) + number(c.rotation_center_px.y(), " px", 1)},
        {"Reprojection error", record.rms_px >= 0 ? number(record.rms_px, " px", 2) : "not recorded",
         "Calibrated in", camera::medium_to_text(c.refractive_index)},
-       {"Date",
-        record.date_utc.empty()   ? "not recorded"
-        : options.is_deidentified ? kNotTold
-                                  : files::utc_in_words(record.date_utc),
-        "Scope, head", record.scope_name + (record.head_name.empty() ? "" : ", " + record.head_name)}});
+       {"Date", record.date_utc.empty() ? "not recorded" : files::utc_in_words(record.date_utc),
+        "Scope, head", scope_and_head(record)}});
+  if (content.case_has_another_camera)
+    pages.sentence(
+        "The case's camera.json is another one: these are the numbers that the session was "
+        "navigated with.",
+        {.size_pt = 8.5, .ink = kGray});
 }
 
 void tools_table(FlowingPages& pages, const recording::RecordedSession& session) {
@@ -63,10 +77,9 @@ void tools_table(FlowingPages& pages, const recording::RecordedSession& session)
 
 }  // namespace
 
-void draw_settings_section(FlowingPages& pages, const Content& content, const ReportOptions& options) {
+void draw_settings_section(FlowingPages& pages, const Content& content) {
   pages.continue_as("Camera, tools and versions");
-  const auto camera_file = cases::camera_file(content.folder);
-  if (std::filesystem::exists(camera_file)) camera_table(pages, camera_file, options);
+  camera_section(pages, content);
   if (content.session) tools_table(pages, *content.session);
   pages.heading("Versions", 6);
   std::string text;

@@ -2,12 +2,11 @@
 #pragma once
 
 #include "app/report/flowing_pages.h"
-#include "app/report/report.h"
 #include "app/report/report_content.h"
 
 namespace arthronaut::report {
 
-// Camera and tools where the case and its session have them; versions always.
-void draw_settings_section(FlowingPages& pages, const Content& content, const ReportOptions& options);
+// Camera and tools of the session, else the case's camera where it has one; versions always.
+void draw_settings_section(FlowingPages& pages, const Content& content);
 
 }  // namespace arthronaut::report
