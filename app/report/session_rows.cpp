@@ -1,13 +1,14 @@
 #include "app/report/session_rows.h"
 
 #include <algorithm>
-#include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
 #include "navigation/recording/counting_registration.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/files/format.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::report {
 
@@ -41,6 +42,19 @@ std::string guided_bundles(const recording::RecordedSession& session) {
     last = name;
   }
   return names;
+}
+
+recording::ReadRegistration registrations_of(const recording::RecordedSession& session) {
+  return
+      [&session](const recording::SessionEvent& event) -> std::optional<registration::RegistrationSummary> {
+        try {
+          return session.registration_of(event);
+        } catch (const InvalidInput&) {  // its event alone is told
+          return std::nullopt;
+        } catch (const IoError&) {
+          return std::nullopt;
+        }
+      };
 }
 
 std::optional<registration::RegistrationSummary> registration_that_counts(
@@ -123,54 +137,35 @@ std::string clock_text(double seconds) {
 }
 
 std::vector<Step> steps_of(const recording::RecordedSession& session) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kSteps{
-      {{recording::kRegistrationEvent, "bone registered"},
-       {recording::kGivenRegistrationEvent, "registration brought along"},
-       {recording::kVerifiedEvent, "registration verified"},
-       {recording::kVerificationLostEvent, "VERIFICATION LOST"},
-       {recording::kConfirmedEvent, "registration confirmed"},
-       {recording::kVerificationSkippedEvent, "VERIFICATION SKIPPED"},
-       {recording::kVoidEvent, "registration void"},
-       {recording::kTimeOutConfirmedEvent, "time-out confirmed"},
-       {recording::kDrilledEvent, "tunnel drilled"},
-       {recording::kDrilledTakenBackEvent, "said too early: not drilled"}}};
   struct Run {
-    std::string_view words;
+    std::string words;
     double first_s = 0, last_s = 0;
     int more = 0;
   };
   std::vector<Run> runs;
-  // What is recorded last where the marker was taken out registers nothing.
-  const bool ends_void = session.registration() && !session.registration()->has_pose;
-  const recording::SessionEvent* newest = nullptr;
-  int registrations = 0;
-  for (const recording::SessionEvent& event : session.events())
-    if (event.kind == recording::kRegistrationEvent) {
-      newest = &event;
-      ++registrations;
+  for (const recording::ToldEvent& told :
+       recording::told_events(session.events(), registrations_of(session))) {
+    if (!told.is_of_operation) continue;
+    std::string words = told.words;
+    if (told.gravity == recording::Gravity::Alarm) {
+      std::transform(words.begin(), words.end(), words.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+      if (!told.detail.empty()) words += ": " + told.detail;
     }
-  for (const recording::SessionEvent& event : session.events()) {
-    const auto* const step =
-        std::find_if(kSteps.begin(), kSteps.end(), [&](const auto& one) { return one.first == event.kind; });
-    if (step == kSteps.end()) continue;
-    const bool is_void = ends_void && &event == newest;
-    const std::string_view words = !is_void            ? step->second
-                                   : registrations > 1 ? "nothing is registered any more"
-                                                       : "no place of the bone was found";
-    const double at_s = time_s(session, event.timestamp_ns);
+    const double at_s = time_s(session, told.event->timestamp_ns);
     if (!runs.empty() && runs.back().words == words) {
       runs.back().last_s = at_s;
       ++runs.back().more;
     } else {
-      runs.push_back({words, at_s, at_s, 0});
+      runs.push_back({std::move(words), at_s, at_s, 0});
     }
   }
   std::vector<Step> steps;
   for (const Run& run : runs)
-    steps.push_back({run.first_s, std::string(run.words) +
-                                      (run.more > 0 ? ", and " + std::to_string(run.more) +
-                                                          " times more until " + clock_text(run.last_s)
-                                                    : "")});
+    steps.push_back(
+        {run.first_s, run.words + (run.more > 0 ? ", and " + std::to_string(run.more) + " times more until " +
+                                                      clock_text(run.last_s)
+                                                : "")});
   return steps;
 }
 

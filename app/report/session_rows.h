@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "navigation/recording/session.h"
+#include "navigation/recording/told_events.h"
 
 namespace arthronaut::report {
 
@@ -21,6 +22,8 @@ namespace arthronaut::report {
 // out, and nothing is registered any more. Throws IoError or InvalidInput where its file cannot be read.
 [[nodiscard]] std::optional<registration::RegistrationSummary> registration_that_counts(
     const recording::RecordedSession& session);
+// A registration of it by its event.
+[[nodiscard]] recording::ReadRegistration registrations_of(const recording::RecordedSession& session);
 // What was asked before the guide was followed, and what spoke against it, as the session's events say it: a
 // name and a text each. cut_short: why the record is not whole; empty: it is.
 [[nodiscard]] std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session,
@@ -40,7 +43,8 @@ struct SessionFigures {
 // "1:02.3"
 [[nodiscard]] std::string clock_text(double seconds);
 
-// A step of the operation on its time line: registered, verified, confirmed, void, drilled.
+// A step of the operation on its time line: registered, verified, confirmed, drilled; and what stood against
+// one, in capitals: an alarm, a registration that is void.
 struct Step {
   double time_s = 0;
   std::string words;  // of several alike that follow each other the first, and how many more until when

@@ -1,7 +1,6 @@
 #include "app/review/moments.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <utility>
 
@@ -15,21 +14,6 @@ namespace arthronaut::review {
 namespace {
 
 using recording::SessionEvent;
-
-constexpr std::array<std::string_view, 6> kSteps{
-    recording::kRegistrationEvent,     recording::kVerifiedEvent, recording::kConfirmedEvent,
-    recording::kTimeOutConfirmedEvent, recording::kDrilledEvent,  recording::kDrilledTakenBackEvent};
-constexpr std::array<std::string_view, 6> kAlarms{recording::kVoidEvent,
-                                                  recording::kVerificationLostEvent,
-                                                  recording::kVerificationSkippedEvent,
-                                                  recording::kDroppedPicturesEvent,
-                                                  recording::kVideoStoppedEvent,
-                                                  recording::kRecordingStoppedEvent};
-
-template <typename List>
-bool holds(const List& list, std::string_view kind) {
-  return std::find(list.begin(), list.end(), kind) != list.end();
-}
 
 std::string capitalised(std::string text) {
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
@@ -61,36 +45,40 @@ std::string drift_words(const SessionEvent& event) {
   }
 }
 
-Moment moment_of(const SessionEvent& event) {
-  if (event.kind == recording::kCommandEvent) return {0, MomentKind::Command, command_words(event)};
-  if (event.kind == recording::kAlarmEvent) {
-    return event.text.empty() ? Moment{0, MomentKind::Step, "Alarm is over"}
-                              : Moment{0, MomentKind::Alarm, "Alarm: " + event.text};
+MomentKind kind_of(recording::Gravity gravity) {
+  switch (gravity) {
+    case recording::Gravity::Step:
+      return MomentKind::Step;
+    case recording::Gravity::Alarm:
+      return MomentKind::Alarm;
+    case recording::Gravity::Note:
+      return MomentKind::Note;
   }
+  return MomentKind::Note;
+}
+
+Moment moment_of(const recording::ToldEvent& told) {
+  const SessionEvent& event = *told.event;
+  if (event.kind == recording::kCommandEvent) return {0, MomentKind::Command, command_words(event)};
   if (event.kind == recording::kBoneMovedEvent) return {0, MomentKind::Note, drift_words(event)};
   if (event.kind == recording::kPlanEvent)
     return {0, MomentKind::Note, event.text.empty() ? "No plan in force" : "Plan in force"};
-  const MomentKind kind = holds(kSteps, event.kind)    ? MomentKind::Step
-                          : holds(kAlarms, event.kind) ? MomentKind::Alarm
-                                                       : MomentKind::Note;
-  // The texts of registrations and tunnels are names of files.
-  const bool is_file =
-      event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent ||
-      event.kind == recording::kDrilledEvent || event.kind == recording::kDrilledTakenBackEvent;
-  return {0, kind,
-          capitalised(event.kind) + (is_file || event.text.empty() ? std::string() : ": " + event.text)};
+  return {0, kind_of(told.gravity),
+          capitalised(told.words) + (told.detail.empty() ? std::string() : ": " + told.detail)};
 }
 
 }  // namespace
 
 std::vector<Moment> moments_of(const std::vector<SessionEvent>& events,
-                               const recording::SessionTimeline& timeline) {
+                               const recording::SessionTimeline& timeline,
+                               const recording::ReadRegistration& read) {
   std::vector<Moment> moments;
   std::optional<std::string> plan;  // in force: an operation says it again when its source starts
-  for (const SessionEvent& event : events) {
+  for (const recording::ToldEvent& told : recording::told_events(events, read)) {
+    const SessionEvent& event = *told.event;
     if (event.kind == recording::kOutcomeEvent || event.kind == recording::kLookEvent) continue;
     if (event.kind == recording::kPlanEvent && std::exchange(plan, event.text) == event.text) continue;
-    Moment moment = moment_of(event);
+    Moment moment = moment_of(told);
     moment.frame = timeline.at_index(event.after_frame);
     moments.push_back(std::move(moment));
   }

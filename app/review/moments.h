@@ -8,6 +8,7 @@
 
 #include "navigation/recording/session_marks.h"
 #include "navigation/recording/session_timeline.h"
+#include "navigation/recording/told_events.h"
 
 namespace arthronaut::review {
 
@@ -27,7 +28,8 @@ struct Moment {
 // In the order of the record. What the record holds for running it again alone (outcomes, second looks) is
 // left out, and so is a plan that was in force already. Preconditions: the timeline has frames.
 [[nodiscard]] std::vector<Moment> moments_of(const std::vector<recording::SessionEvent>& events,
-                                             const recording::SessionTimeline& timeline);
+                                             const recording::SessionTimeline& timeline,
+                                             const recording::ReadRegistration& read);
 
 // The nearest frame before or after `frame` at which something happened or a mark stands; nullopt: none.
 [[nodiscard]] std::optional<std::size_t> moment_before(const std::vector<std::size_t>& frames,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <future>
+#include <map>
 #include <utility>
 
 #include "app/guidance_severity/guidance_severity.h"
@@ -51,21 +52,24 @@ std::shared_ptr<recording::RecordedPictures> opened(
   }
 }
 
-// Each change is in force from the frame on that comes after it.
-void follow(SessionReview& review) {
+// Each change is in force from the frame on that comes after it. Returns the registrations by their files.
+std::map<std::string, std::shared_ptr<const registration::RegistrationSummary>> follow(
+    SessionReview& review) {
+  std::map<std::string, std::shared_ptr<const registration::RegistrationSummary>> registrations;
   for (const recording::SessionEvent& event : review.session->events) {
     Standing next = review.standings.back();
     next.from_frame = event.after_frame < 0 ? -1 : event.after_frame + 1;
     if (event.kind == recording::kPlanEvent)
       next.plan = review.session->plan_of(event);
     else if (event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent)
-      next.registration = registration_of(event, review.folder, review.problems);
+      next.registration = registrations[event.text] = registration_of(event, review.folder, review.problems);
     else if (event.kind == recording::kVoidEvent)
       next.registration = nullptr;
     else
       continue;
     review.standings.push_back(std::move(next));
   }
+  return registrations;
 }
 
 }  // namespace
@@ -112,8 +116,14 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
                                    [](const recording::FrameGlance& f) { return f.intrinsics_are_known; }));
   review.tracks.push_back(
       track_of(timeline, "Guidance", [](const recording::FrameGlance& f) { return f.is_guided(); }));
-  if (!timeline.frames().empty()) review.moments = moments_of(session.events, timeline);
-  follow(review);
+  const auto registrations = follow(review);
+  if (!timeline.frames().empty())
+    review.moments = moments_of(
+        session.events, timeline,
+        [&](const recording::SessionEvent& event) -> std::optional<registration::RegistrationSummary> {
+          const auto& registration = registrations.at(event.text);
+          return registration == nullptr ? std::nullopt : std::optional(*registration);
+        });
   try {  // a broken file must not hide the session: its reason is shown in its place
     for (const std::filesystem::path& file : operation::achieved_files(session_folder))
       review.achieved.push_back(operation::read_achieved_file(file));

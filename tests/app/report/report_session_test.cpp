@@ -193,7 +193,7 @@ TEST_F(Report, HasStepsMarksAndTheLastHash) {
   recording::write_marks(session, {{3, 65'400'000'000, "marker, in glare"}, {9, 70'000'000'000, ""}});
   write(pdf());
   const std::string text = pdf_text();
-  for (const char* const part : {"bone registered", "registration verified", "registration void",
+  for (const char* const part : {"bone registered", "registration verified", "REGISTRATION VOID: bumped",
                                  "Marks of who looked", "marker, in glare", "(frame 3)", "(no note)"})
     expect_contains(text, part);
   const std::string hash = recording::chain_head(session);

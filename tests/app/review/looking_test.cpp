@@ -75,7 +75,12 @@ TEST_F(Looking, GoesRoundInALoopWhicheverEndWasSetFirst) {
 // Alarms and commands stand where they came, in words; what the record keeps for itself is not told.
 TEST_F(Looking, TellsWhatHappenedAndJumpsToIt) {
   const recording::SessionOverview session = recording::read_overview(folder_.path());
-  const auto moments = moments_of(session.events, *timeline_);
+  const recording::ReadRegistration pose = [](const recording::SessionEvent&) {
+    registration::RegistrationSummary same;
+    same.has_pose = true;
+    return std::optional(same);
+  };
+  const auto moments = moments_of(session.events, *timeline_, pose);
   ASSERT_EQ(moments.size(), 3U);
   EXPECT_EQ(moments[0].frame, 30U);
   EXPECT_EQ(moments[0].kind, MomentKind::Command);
@@ -83,6 +88,16 @@ TEST_F(Looking, TellsWhatHappenedAndJumpsToIt) {
   EXPECT_EQ(moments[1].words, "Alarm: the marker has moved");
   EXPECT_EQ(moments[1].kind, MomentKind::Alarm);
   EXPECT_EQ(moments[2].words, "Alarm is over");
+  // Each verdict writes its registration: the alarm's beginning is no step of the operation.
+  const auto verdicts =
+      moments_of({{0, std::string(recording::kRegistrationEvent), "registration_1.json", 10},
+                  {0, std::string(recording::kRegistrationEvent), "registration_2.json", 60}},
+                 *timeline_, pose);
+  ASSERT_EQ(verdicts.size(), 2U);
+  EXPECT_EQ(verdicts[0].words, "Bone registered");
+  EXPECT_EQ(verdicts[0].kind, MomentKind::Step);
+  EXPECT_EQ(verdicts[1].words, "Registration judged anew");
+  EXPECT_EQ(verdicts[1].kind, MomentKind::Note);
   const auto frames = frames_to_jump_to(moments, {{45, 0, "here"}}, *timeline_);
   EXPECT_EQ(frames, (std::vector<std::size_t>{30, 45, 60, 90}));
   EXPECT_EQ(moment_after(frames, 30), 45U);
@@ -95,8 +110,8 @@ TEST_F(Looking, TellsAPlanOnceUntilItChanges) {
   const auto plan = [](std::int64_t after, const char* text) {
     return recording::SessionEvent{0, std::string(recording::kPlanEvent), text, after};
   };
-  const auto moments =
-      moments_of({plan(-1, "a"), plan(-1, "a"), plan(30, "b"), plan(40, ""), plan(50, "b")}, *timeline_);
+  const auto moments = moments_of({plan(-1, "a"), plan(-1, "a"), plan(30, "b"), plan(40, ""), plan(50, "b")},
+                                  *timeline_, [](const recording::SessionEvent&) { return std::nullopt; });
   ASSERT_EQ(moments.size(), 4U);
   EXPECT_EQ(moments[0].words, "Plan in force");
   EXPECT_EQ(moments[1].frame, 30U);
