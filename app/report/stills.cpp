@@ -12,8 +12,10 @@
 #include "app/scene/overlay_picture.h"
 #include "app/scene/plan_overlay.h"
 #include "app/scene/tool_clearance.h"
+#include "navigation/recording/counting_registration.h"
 #include "navigation/recording/of_drilled.h"
 #include "navigation/recording/recorded_pictures.h"
+#include "navigation/recording/told_events.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -66,28 +68,42 @@ std::optional<geometry::RigidTransform> camera_from_world(const pipeline::Pipeli
   return world == nullptr ? std::nullopt : camera_from(*world, frame);
 }
 
-// Registered: the first frame with a pose after the last registration. Closest: the least distance of the
+// Where the bone was seen first by the pose that counts, whatever the verdict became later; where nobody saw
+// it by that one, as by the last pose of a session whose pictures have ended, by the newest that was seen.
+std::optional<std::size_t> registered_in(const recording::RecordedSession& session,
+                                         const pipeline::PipelineOptions& options) {
+  recording::CountingRegistration registration;
+  for (const recording::SessionEvent& event : session.events()) registration.follow(event);
+  auto poses = recording::poses_in_force(session.events(), registrations_of(session));
+  std::reverse(poses.begin(), poses.end());
+  std::stable_partition(poses.begin(), poses.end(), [&](const recording::PoseInForce& pose) {
+    return std::find(pose.files.begin(), pose.files.end(), registration.counts().file) != pose.files.end();
+  });
+  const auto& frames = session.frames();
+  for (const recording::PoseInForce& pose : poses)
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      if (frames[i].index > pose.after_frame &&
+          frames[i].index <= pose.until_frame.value_or(frames[i].index) &&
+          camera_from_world(options, frames[i]))
+        return i;
+  return std::nullopt;
+}
+
+// Registered: as above. Closest: the least distance of the
 // guide's axis from the entry, an angle of one degree counted as half a millimetre (as far as it leads astray
 // over 30 mm of bone). Drilled: the last frame before the event in which the guide was seen.
 std::vector<Moment> key_moments(const recording::RecordedSession& session,
                                 const pipeline::PipelineOptions& options) {
   const auto& frames = session.frames();
-  std::int64_t registered_after = -2;
   recording::OfDrilled<std::int64_t> drilled_in;
-  for (const recording::SessionEvent& event : session.events()) {
-    if (event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent)
-      registered_after = event.after_frame;
-    drilled_in.follow(event, event.after_frame);
-  }
+  for (const recording::SessionEvent& event : session.events()) drilled_in.follow(event, event.after_frame);
   const std::int64_t drilled_after = drilled_in.newest() != nullptr ? *drilled_in.newest() : -1;
-  std::optional<std::size_t> registered, closest, drilled;
+  const std::optional<std::size_t> registered = registered_in(session, options);
+  std::optional<std::size_t> closest, drilled;
   const auto miss = [&](std::size_t i) {
     return frames[i].guidance.axis_to_entry_mm + 0.5 * frames[i].guidance.angle_deg;
   };
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (!registered && registered_after > -2 && frames[i].index > registered_after &&
-        camera_from_world(options, frames[i]))
-      registered = i;
     if (!frames[i].guidance.is_valid()) continue;
     if (!closest || miss(i) < miss(*closest)) closest = i;
     if (frames[i].index <= drilled_after) drilled = i;
