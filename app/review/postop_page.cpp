@@ -31,8 +31,7 @@ void PostopPage::open(const open_case::PlanModel* model, const std::filesystem::
   case_folder_ = case_folder;
   read_only_ = read_only;
   run_.reset();
-  answer_.reset();
-  comparisons_.clear();
+  shown_ = {};
   places_are_of_ = 0;
   which_.clear();
   problem_.clear();
@@ -41,18 +40,19 @@ void PostopPage::open(const open_case::PlanModel* model, const std::filesystem::
   scene_is_stale_ = true;
   try {  // a broken file must not hide the case: its reason is shown
     if (std::filesystem::exists(achieved_file(case_folder_)))
-      comparisons_ = postop::read_achieved_file(achieved_file(case_folder_));
+      shown_.comparisons = postop::read_achieved_file(achieved_file(case_folder_));
   } catch (const InvalidInput& error) {
     problem_ = error.what();
   } catch (const IoError& error) {
     problem_ = error.what();
   }
-  if (!comparisons_.empty()) chosen_ = comparisons_.begin()->first;
+  if (!shown_.comparisons.empty()) chosen_ = shown_.comparisons.begin()->first;
 }
 
 void PostopPage::compare_with(const std::filesystem::path& source, const std::string& series) {
   if (is_running() || model_ == nullptr) return;
   problem_.clear();
+  shown_.other_patient.clear();
   which_.clear();
   leave_browser();
   source_ = source;
@@ -64,9 +64,9 @@ void PostopPage::stop() {
 }
 
 void PostopPage::choose_next() {
-  if (comparisons_.empty()) return;
-  const auto next = comparisons_.upper_bound(chosen_);
-  chosen_ = next == comparisons_.end() ? comparisons_.begin()->first : next->first;
+  if (shown_.comparisons.empty()) return;
+  const auto next = shown_.comparisons.upper_bound(chosen_);
+  chosen_ = next == shown_.comparisons.end() ? shown_.comparisons.begin()->first : next->first;
   scene_is_stale_ = true;
 }
 
@@ -78,13 +78,13 @@ void PostopPage::browse() {
 }
 
 const postop::Comparison* PostopPage::chosen() const {
-  const auto found = comparisons_.find(chosen_);
-  return found == comparisons_.end() ? nullptr : &found->second;
+  const auto found = shown_.comparisons.find(chosen_);
+  return found == shown_.comparisons.end() ? nullptr : &found->second;
 }
 
 std::map<tunnels::TunnelKey, tunnels::Tunnel> PostopPage::planned() const {
   std::map<tunnels::TunnelKey, tunnels::Tunnel> planned;
-  for (const auto& [key, comparison] : comparisons_)
+  for (const auto& [key, comparison] : shown_.comparisons)
     if (const auto tunnel = model_->tunnel(key)) planned.emplace(key, *tunnel);
   return planned;
 }
@@ -93,13 +93,13 @@ const Places& PostopPage::places() {
   if (std::exchange(places_are_of_, model_->revision()) == model_->revision()) return places_;
   places_.clear();
   for (const auto& [key, plan] : planned())
-    if (const auto& found = comparisons_.at(key).tunnel; found.is_found && model_->has_bone(key.bone))
+    if (const auto& found = shown_.comparisons.at(key).tunnel; found.is_found && model_->has_bone(key.bone))
       places_.emplace(key, postop::place_of(found, plan, model_->surroundings(key.bone),
                                             plan_review::state_of_grid(model_->knee(), key.bone)));
   return places_;
 }
 
-void PostopPage::take_answer() {
+void PostopPage::take_ended() {
   // What it says last it says before it has ended: asked for first, an answer might come in between and be
   // lost.
   if (run_ == nullptr || !run_->has_ended()) return;
@@ -111,10 +111,10 @@ void PostopPage::take_answer() {
   which_ = std::move(progress.which);
   auto answer = std::move(progress.answer);
   if (answer == nullptr) return;  // stopped, or it asks: what was there stays
-  answer_ = std::move(answer);
-  comparisons_ = answer_->comparisons;
+  if (!take_answer(std::move(answer), shown_)) return;
   places_are_of_ = 0;
-  if (!comparisons_.empty() && !comparisons_.contains(chosen_)) chosen_ = comparisons_.begin()->first;
+  if (!shown_.comparisons.empty() && !shown_.comparisons.contains(chosen_))
+    chosen_ = shown_.comparisons.begin()->first;
   scene_is_stale_ = true;
 }
 
@@ -122,7 +122,7 @@ void PostopPage::show_scene() {
   const bones::BoneKind bone = chosen_.bone;
   scene::SceneContent content;
   content.bones.push_back({model_->drawn_mesh(bone), scene::kBoneColor, 1.0});
-  for (const auto& [key, comparison] : comparisons_) {
+  for (const auto& [key, comparison] : shown_.comparisons) {
     if (key.bone != bone) continue;
     if (const auto tunnel = model_->tunnel(key))
       scene::add_planned_tunnel(content, *tunnel, model_->drawn_length_mm(key));
@@ -155,19 +155,20 @@ void PostopPage::follow_plan(const widgets::Ui& ui) {
 }
 
 void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
-  take_answer();
-  ui.log.note_state("postop", is_running()           ? "running"
-                              : search_.is_open      ? "browses"
-                              : !which_.empty()      ? "asks"
-                              : !problem_.empty()    ? "failed"
-                              : answer_ != nullptr   ? "compared"
-                              : comparisons_.empty() ? "none"
-                                                     : "kept");
+  take_ended();
+  ui.log.note_state("postop", is_running()                    ? "running"
+                              : search_.is_open               ? "browses"
+                              : !which_.empty()               ? "asks"
+                              : !problem_.empty()             ? "failed"
+                              : !shown_.other_patient.empty() ? "refused"
+                              : shown_.answer != nullptr      ? "compared"
+                              : shown_.comparisons.empty()    ? "none"
+                                                              : "kept");
   const float gap = ui.theme.px(12);
   draw_head(ui, area.cut_top(ui.theme.px(176), gap));
   if (search_.is_open) return draw_browser(ui, area);
   if (!which_.empty()) return draw_question(ui, area);
-  if (comparisons_.empty() || !model_->has_bone(chosen_.bone)) {
+  if (shown_.comparisons.empty() || !model_->has_bone(chosen_.bone)) {
     widgets::text_centered(ui, area, ui.theme.title, widgets::kQuietText,
                            is_running()
                                ? run_->progress().what
@@ -213,14 +214,14 @@ void PostopPage::draw_head(const widgets::Ui& ui, widgets::Rect area) {
     ImGui::ProgressBar(static_cast<float>(progress.share), {-1, 0}, progress.what.c_str());
   } else if (!problem_.empty()) {
     widgets::status_row(ui, widgets::Severity::Bad, "Not compared", problem_);
-  } else if (answer_ == nullptr && !comparisons_.empty()) {
-    widgets::text_in(ui.theme.body, widgets::kQuietText,
-                     "As kept in the case (achieved.json). Its images are read again by a comparison (C).");
-  } else if (answer_ != nullptr && !answer_->other_patient.empty()) {
+  } else if (!shown_.other_patient.empty()) {
     widgets::status_row(
         ui, widgets::Severity::Bad, "Another patient",
-        "these images say that they are of " + answer_->other_patient + "; nothing of them is kept");
-  } else if (!read_only_.empty() && answer_ != nullptr) {
+        "these images say that they are of " + shown_.other_patient + "; nothing of them is kept or shown");
+  } else if (shown_.answer == nullptr && !shown_.comparisons.empty()) {
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     "As kept in the case (achieved.json). Its images are read again by a comparison (C).");
+  } else if (!read_only_.empty() && shown_.answer != nullptr) {
     widgets::status_row(ui, widgets::Severity::Caution, "Not kept", read_only_);
   }
   widgets::end_panel();
@@ -260,7 +261,7 @@ void PostopPage::draw_table(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::begin_panel(ui, "review.postop_table", area, "");
   std::map<tunnels::TunnelKey, double> lengths;
   for (const auto& [key, tunnel] : planned()) lengths[key] = model_->measured(key).length_mm;
-  for (const AchievedRow& row : achieved_rows(comparisons_, planned(), lengths, places())) {
+  for (const AchievedRow& row : achieved_rows(shown_.comparisons, planned(), lengths, places())) {
     widgets::status_row(ui, row.severity, row.tunnel, row.verdict);
     for (const auto& [name, value] : {std::pair("Entry", &row.offset), std::pair("Grid", &row.grid),
                                       std::pair("Angle", &row.angle), std::pair("Diameter", &row.diameter),
@@ -275,7 +276,7 @@ void PostopPage::draw_table(const widgets::Ui& ui, const widgets::Rect& area) {
   if (const postop::Comparison* comparison = chosen()) {
     widgets::text_in(ui.theme.strong, widgets::kText, "How far it may be off");
     const Eigen::Vector3d voxel_mm =
-        answer_ != nullptr ? answer_->images.spacing_mm() : Eigen::Vector3d::Zero().eval();
+        shown_.answer != nullptr ? shown_.answer->images.spacing_mm() : Eigen::Vector3d::Zero().eval();
     for (const std::string& line : error_budget(*comparison, voxel_mm))
       widgets::text_in(ui.theme.body, widgets::kQuietText, line);
   }
@@ -293,14 +294,14 @@ void PostopPage::draw_slice(const widgets::Ui& ui, const widgets::Rect& area, in
   const Eigen::Vector2i size{kSlice_px, kSlice_px};
   const scene::SlicePlane plane = plane_along(*plan, length_mm, quarter_turns, (length_mm + 24) / kSlice_px);
   Slice& slice = slices_.at(static_cast<std::size_t>(quarter_turns));
-  if (answer_ != nullptr && comparison->bone.is_found) {
+  if (shown_.answer != nullptr && comparison->bone.is_found) {
     const geometry::RigidTransform postop_from_plan = comparison->bone.plan_from_postop.inverse();
     scene::SlicePlane in_images = plane;
     in_images.center_mm = postop_from_plan * plane.center_mm;
     in_images.right = postop_from_plan.rotation * plane.right;
     in_images.down = postop_from_plan.rotation * plane.down;
     if (slice.texture.texture() == 0 || slice.plane != in_images) {
-      scene::reslice(answer_->images, in_images, size, scene::kBoneWindow, slice.grey);
+      scene::reslice(shown_.answer->images, in_images, size, scene::kBoneWindow, slice.grey);
       slice.texture.upload(kSlice_px, kSlice_px, slice.grey);
       slice.plane = in_images;
     }

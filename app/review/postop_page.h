@@ -21,7 +21,6 @@
 
 namespace arthronaut::review {
 
-using Comparisons = std::map<tunnels::TunnelKey, postop::Comparison>;
 using Places = std::map<tunnels::TunnelKey, postop::AchievedPlace>;
 
 // One row of the table: what was planned, what was found, how far off and how sure.
@@ -56,9 +55,11 @@ class PostopPage {
   void compare_with(const std::filesystem::path& source, const std::string& series = {});
   void stop();
   [[nodiscard]] bool is_running() const { return run_ != nullptr && !run_->has_ended(); }
-  [[nodiscard]] bool has_any() const { return !comparisons_.empty(); }
+  [[nodiscard]] bool has_any() const { return !shown_.comparisons.empty(); }
   // Nothing of a CT is known yet, not even why what the case keeps cannot be read.
-  [[nodiscard]] bool is_blank() const { return comparisons_.empty() && problem_.empty() && !is_running(); }
+  [[nodiscard]] bool is_blank() const {
+    return shown_.comparisons.empty() && shown_.other_patient.empty() && problem_.empty() && !is_running();
+  }
   void choose_next();  // of the tunnels
   void ask_for_path();
   // The images are looked for in the folders of this machine, in the place of what is compared.
@@ -83,7 +84,7 @@ class PostopPage {
     std::vector<std::uint8_t> grey;
     scene::SlicePlane plane;  // in the images' frame; what the texture shows
   };
-  void take_answer();
+  void take_ended();
   [[nodiscard]] const Places& places();
   void show_scene();
   void look_at_chosen();
@@ -102,10 +103,9 @@ class PostopPage {
   std::function<void()> wake_;
   widgets::ScenePane pane_;
   std::unique_ptr<PostopRun> run_;
-  std::filesystem::path source_;                           // that was compared with last
-  std::vector<images::ImageSeries> which_;                 // of it, to be chosen among; empty: no question
-  std::shared_ptr<const open_case::PostopAnswer> answer_;  // with the images; null: only what the case keeps
-  Comparisons comparisons_;
+  std::filesystem::path source_;            // that was compared with last
+  std::vector<images::ImageSeries> which_;  // of it, to be chosen among; empty: no question
+  PostopShown shown_;
   // By the landmarks of now. Measured when the plan, the landmarks or the comparisons have changed: every
   // frame asks.
   Places places_;

@@ -10,6 +10,14 @@
 
 namespace arthronaut::review {
 
+bool take_answer(std::shared_ptr<const open_case::PostopAnswer> answer, PostopShown& shown) {
+  shown.other_patient = answer->other_patient;
+  if (!shown.other_patient.empty()) return false;
+  shown.answer = std::move(answer);
+  shown.comparisons = shown.answer->comparisons;
+  return true;
+}
+
 std::filesystem::path achieved_file(const std::filesystem::path& case_folder) {
   return case_folder / "achieved.json";
 }

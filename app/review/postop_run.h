@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,6 +45,17 @@ class PostopRun {
  private:
   worker::Worker<int, PostopProgress> worker_;
 };
+
+using Comparisons = std::map<tunnels::TunnelKey, postop::Comparison>;
+
+// What is told of images after the operation.
+struct PostopShown {
+  std::shared_ptr<const open_case::PostopAnswer> answer;  // with the images; null: only what the case keeps
+  Comparisons comparisons;
+  std::string other_patient;  // whose the images that were asked for last are; empty: nobody else's
+};
+// Images of another patient are refused: whose they are is told, and what was shown before stays. False then.
+bool take_answer(std::shared_ptr<const open_case::PostopAnswer> answer, PostopShown& shown);
 
 // Of a case, where a comparison writes what it found.
 [[nodiscard]] std::filesystem::path achieved_file(const std::filesystem::path& case_folder);

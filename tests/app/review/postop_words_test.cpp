@@ -125,6 +125,26 @@ TEST(AchievedFile, OfASessionIsNamedAsThat) {
   }
 }
 
+// The CT of somebody else, by mistake: whose it is is told, and what the case has is shown as before.
+TEST(PostopShown, AnotherPatientsImagesTakeNothingAway) {
+  PostopShown shown;
+  shown.comparisons = some();
+  auto others = std::make_shared<open_case::PostopAnswer>();
+  others->other_patient = "Muster^Anna";
+  others->comparisons[bones::BoneKind::Tibia];
+  EXPECT_FALSE(take_answer(others, shown));
+  EXPECT_EQ(shown.other_patient, "Muster^Anna");
+  EXPECT_EQ(shown.answer, nullptr);
+  EXPECT_EQ(shown.comparisons.size(), 2U);
+  EXPECT_TRUE(shown.comparisons.at(bones::BoneKind::Femur).tunnel.is_found);
+  auto own = std::make_shared<open_case::PostopAnswer>();
+  own->comparisons[bones::BoneKind::Tibia];
+  EXPECT_TRUE(take_answer(own, shown));
+  EXPECT_EQ(shown.answer, own);
+  EXPECT_EQ(shown.comparisons.size(), 1U);
+  EXPECT_TRUE(shown.other_patient.empty());
+}
+
 // What a comparison kept in the case is shown again with every number and every reason.
 TEST(AchievedFile, IsReadBack) {
   const test::TemporaryFolder folder;
