@@ -16,6 +16,11 @@ std::string part(const guidance::GuidanceNumbers& guidance, landmarks::Anatomica
 
 }  // namespace
 
+std::string_view drill_doubt(const guidance::DrillDepth& drill) {
+  if (drill.is_at_plan()) return "";
+  return drill.is_beside_plan() ? "beside the plan" : "where it was is not known";
+}
+
 double offset_mm(const guidance::GuidanceNumbers& guidance) { return guidance.offset_mm; }
 
 OffsetParts offset_parts(const guidance::GuidanceNumbers& guidance) {

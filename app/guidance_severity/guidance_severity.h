@@ -26,6 +26,9 @@ struct DrillText {
   std::string name, mm;
 };
 [[nodiscard]] DrillText drill_text(const guidance::DrillDepth& drill);
+// Why no length may be said of it: "beside the plan", or that nobody knows whether it is, as in older
+// records, which do not say where the drill was. Empty: it is at the plan.
+[[nodiscard]] std::string_view drill_doubt(const guidance::DrillDepth& drill);
 
 // Length of the offset in the plane across the plan.
 [[nodiscard]] double offset_mm(const guidance::GuidanceNumbers& guidance);

@@ -60,15 +60,15 @@ void draw_today(const widgets::Ui& ui, const ReviewScreen& screen) {
 }
 
 // Of a drill with a marker of its own; nobody saw how deep another one was. As Navigate said it then: with
-// its guide or without, beyond the plan "Too deep" and never a length with a minus sign, and beside the plan
-// no length but that to where it leaves the bone, once that warns.
+// its guide or without, beyond the plan "Too deep" and never a length with a minus sign, and beside the plan,
+// or where nobody knows whether it is, no length but that to where it leaves the bone, once that warns.
 void draw_drill(const widgets::Ui& ui, const guidance::DrillDepth& drill) {
-  if (drill.is_beside_plan()) {
+  if (const std::string_view doubt = guidance_severity::drill_doubt(drill); !doubt.empty()) {
     const widgets::Severity severity = guidance_severity::severity_of_drill(drill);
     const guidance_severity::DrillText text = guidance_severity::drill_text(drill);
-    const bool warns = severity != widgets::Severity::Quiet;
+    const bool warns = drill.is_beside_plan() && severity != widgets::Severity::Quiet;
     return widgets::status_row(ui, warns ? severity : widgets::Severity::Caution, "Drill",
-                               "beside the plan" + (warns ? "; " + text.name + " " + text.mm + " mm" : ""));
+                               std::string(doubt) + (warns ? "; " + text.name + " " + text.mm + " mm" : ""));
   }
   const ImVec2 cursor = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(104);

@@ -87,6 +87,18 @@ TEST(GuidanceSeverity, Hazard7ADrillIsWarnedOfWhereItsOwnAxisLeavesTheBone) {
   EXPECT_EQ(text_at(12, 8, std::numeric_limits<double>::quiet_NaN()), "quiet") << "nobody knows";
 }
 
+// Older records do not say where the drill was: there a length would be of a place that nobody knows.
+TEST(GuidanceSeverity, Hazard7NoLengthIsSaidOfADrillThatIsNotAtThePlan) {
+  guidance::DrillDepth drill;
+  EXPECT_EQ(drill_doubt(drill), "");
+  drill.exit_lateral_mm = geometry::kNotKnown;
+  EXPECT_EQ(drill_doubt(drill), "");
+  drill.lateral_mm = geometry::kNotKnown;
+  EXPECT_EQ(drill_doubt(drill), "where it was is not known");
+  drill.lateral_mm = 5.1;
+  EXPECT_EQ(drill_doubt(drill), "beside the plan");
+}
+
 // The parts of the offset in the bone's words, of whichever two directions lie across the plan.
 TEST(GuidanceSeverity, Hazard31TheOffsetsPartsAreNamedByTheBonesAxes) {
   guidance::GuidanceNumbers g;
