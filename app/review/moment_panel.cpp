@@ -19,19 +19,19 @@ void draw_achieved(const widgets::Ui& ui, const SessionReview& review) {
   widgets::text_in(ui.theme.title, widgets::kText, "Planned and achieved");
   if (!review.achieved_problem.empty())
     return widgets::status_row(ui, widgets::Severity::Bad, "Not readable", review.achieved_problem);
-  if (review.achieved.empty())
+  if (review.drilled.empty())
     return widgets::text_in(ui.theme.body, widgets::kQuietText, "No tunnel was recorded as drilled.");
-  for (const operation::AchievedTunnel& achieved : review.achieved) {
+  for (const DrilledTunnel& drilled : review.drilled) {
+    const operation::AchievedTunnel& achieved = drilled.achieved;
     if (achieved.planned.bundle != norms::Bundle::Whole)
       widgets::text_in(ui.theme.strong, widgets::kText, tunnels::name_of(achieved.planned.key()) + " tunnel");
     draw_difference(ui, "As navigation measured it", operation::compare(achieved.planned, achieved.measured));
     if (achieved.truth)
       draw_difference(ui, "As it truly is (simulated)",
                       operation::compare(achieved.planned, *achieved.truth));
-    widgets::text_in(ui.theme.body, widgets::kQuietText,
-                     achieved.depth_mm.value_or(0) > 1
-                         ? "Depth " + widgets::fixed(*achieved.depth_mm, 1) + " mm"
-                         : "Depth not known");
+    widgets::text_in(
+        ui.theme.body, widgets::kQuietText,
+        achieved.depth_mm ? "Depth " + widgets::fixed(*achieved.depth_mm, 1) + " mm" : "Depth not known");
   }
 }
 

@@ -354,13 +354,14 @@ void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
   pane_.draw(ui, "review.view", area);
   const bool is_femur = review.session->header.bone == bones::BoneKind::Femur;
   const auto& plan = open_->standing().plan.plan;
+  const bool shows_drilled = !review.drilled_at(open_->glance().index).empty();
   const std::string planned = !plan ? ""
                               : plan->bundle == norms::Bundle::Whole
                                   ? ". Blue: planned"
                                   : ". Blue: planned " + tunnels::name_of(plan->key());
-  widgets::caption(ui, area, widgets::kText,
-                   std::string(is_femur ? "Femur" : "Tibia") + planned +
-                       (!review.achieved.empty() ? ". Banded: achieved" : ""));
+  widgets::caption(
+      ui, area, widgets::kText,
+      std::string(is_femur ? "Femur" : "Tibia") + planned + (shows_drilled ? ". Banded: achieved" : ""));
 }
 
 void ReviewView::show_scene() {
@@ -373,11 +374,8 @@ void ReviewView::show_scene() {
   const Standing& standing = open_->standing();
   const recording::RecordedSession::PlanChange& plan = standing.plan;
   if (plan.plan) scene::add_planned_tunnel(content, *plan.plan, plan.planned_length_mm);
-  for (const operation::AchievedTunnel& achieved : review.achieved) {
-    // Of a depth that nobody knows, in older records nought, the tunnel is drawn as long as planned.
-    const double depth_mm = achieved.depth_mm.value_or(0);
-    scene::add_achieved_tunnel(content, achieved.measured, depth_mm > 1 ? depth_mm : plan.planned_length_mm);
-  }
+  for (const DrilledTunnel* const drilled : review.drilled_at(frame.index))
+    scene::add_achieved_tunnel(content, drilled->achieved.measured, drilled->length_mm);
   if (standing.registration != nullptr && standing.registration->has_pose) {
     const geometry::RigidTransform bone_from_marker = standing.registration->marker_from_bone.inverse();
     std::vector<Eigen::Vector3d> touched;

@@ -72,6 +72,28 @@ std::map<std::string, std::shared_ptr<const registration::RegistrationSummary>> 
   return registrations;
 }
 
+// Of the plan that was in force at that frame or last before it, of those of this tunnel.
+double planned_length_mm(const SessionReview& review, const tunnels::TunnelKey& key,
+                         std::int64_t frame_index) {
+  double length_mm = 0;
+  for (const Standing& standing : review.standings)
+    if (standing.plan.plan && standing.plan.plan->key() == key &&
+        (length_mm == 0 || standing.from_frame <= frame_index))
+      length_mm = standing.plan.planned_length_mm;
+  return length_mm;
+}
+
+DrilledTunnel drilled_tunnel(const SessionReview& review, operation::AchievedTunnel achieved) {
+  DrilledTunnel tunnel{std::move(achieved)};
+  const tunnels::TunnelKey key = tunnel.achieved.planned.key();
+  const std::string file = operation::achieved_file_name(key);
+  for (const recording::SessionEvent& event : review.session->events)
+    if (event.kind == recording::kDrilledEvent && event.text == file) tunnel.from_frame = event.after_frame;
+  tunnel.length_mm = tunnel.achieved.depth_mm ? *tunnel.achieved.depth_mm
+                                              : planned_length_mm(review, key, tunnel.from_frame);
+  return tunnel;
+}
+
 }  // namespace
 
 const Standing& SessionReview::standing_at(std::int64_t frame_index) const {
@@ -79,6 +101,13 @@ const Standing& SessionReview::standing_at(std::int64_t frame_index) const {
       std::upper_bound(standings.begin() + 1, standings.end(), frame_index,
                        [](std::int64_t frame, const Standing& s) { return frame < s.from_frame; });
   return *std::prev(after);
+}
+
+std::vector<const DrilledTunnel*> SessionReview::drilled_at(std::int64_t frame_index) const {
+  std::vector<const DrilledTunnel*> there;
+  for (const DrilledTunnel& tunnel : drilled)
+    if (frame_index >= tunnel.from_frame && tunnel.length_mm > 0) there.push_back(&tunnel);
+  return there;
 }
 
 std::vector<Stretch> stretches_of(const std::vector<bool>& holds, std::size_t bridge) {
@@ -126,7 +155,7 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
         });
   try {  // a broken file must not hide the session: its reason is shown in its place
     for (const std::filesystem::path& file : operation::achieved_files(session_folder))
-      review.achieved.push_back(operation::read_achieved_file(file));
+      review.drilled.push_back(drilled_tunnel(review, operation::read_achieved_file(file)));
   } catch (const std::runtime_error& error) {
     review.achieved_problem = files::within_folder(session_folder, error.what());
   }

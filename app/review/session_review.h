@@ -33,6 +33,15 @@ struct Standing {
   std::shared_ptr<const registration::RegistrationSummary> registration;  // null: none yet, or void
 };
 
+// A tunnel as navigation measured it, and from where on there was one.
+struct DrilledTunnel {
+  operation::AchievedTunnel achieved;
+  // As deep as it was drilled; where nobody knows that, as it was planned when it was. 0: that is not known
+  // either, and it is not drawn.
+  double length_mm = 0;
+  std::int64_t from_frame = -1;  // of a record that does not say it: before the first
+};
+
 struct SessionReview {
   std::filesystem::path folder;
   std::shared_ptr<const recording::SessionOverview> session;   // never null
@@ -44,7 +53,7 @@ struct SessionReview {
   std::vector<TimeTrack> tracks;
   // Rising, and never empty. Not what the case plans by now.
   std::vector<Standing> standings = {{}};
-  std::vector<operation::AchievedTunnel> achieved;  // none, one, or those of two bundles
+  std::vector<DrilledTunnel> drilled;  // none, one, or those of two bundles
   std::string
       achieved_problem;  // why one of their files could not be read; empty when it was or is not there
   // What is missing or broken of the session: the rest is shown. Empty where nothing is.
@@ -52,6 +61,8 @@ struct SessionReview {
 
   // At the frame of that index.
   [[nodiscard]] const Standing& standing_at(std::int64_t frame_index) const;
+  // Those that are to be drawn there: drilled by then, and of a length that is known.
+  [[nodiscard]] std::vector<const DrilledTunnel*> drilled_at(std::int64_t frame_index) const;
 };
 
 // As far as the session is whole. Throws IoError or InvalidInput where nothing can be shown of it: no header,

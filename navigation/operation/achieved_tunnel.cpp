@@ -71,7 +71,10 @@ AchievedTunnel read_achieved_file(const std::filesystem::path& file) {
   AchievedTunnel achieved;
   achieved.planned = tunnel_from(root.object("planned"), key);
   achieved.measured = tunnel_from(root.object("measured"), key);
-  if (root.has("depth_mm")) achieved.depth_mm = root.number("depth_mm");
+  // Nought, or hardly more, stands in older files where nobody knew it.
+  constexpr double kLeastKnownDepth_mm = 1;
+  if (root.has("depth_mm") && root.number("depth_mm") > kLeastKnownDepth_mm)
+    achieved.depth_mm = root.number("depth_mm");
   achieved.timestamp_ns = root.integer("timestamp_ns");
   achieved.pose_count = root.int32("pose_count");
   achieved.sigma_offset_mm = root.number("sigma_offset_mm");

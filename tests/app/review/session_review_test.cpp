@@ -50,7 +50,38 @@ TEST(SessionReview, HoldsWhatGuidedAtEachMoment) {
     EXPECT_EQ(standing.registration != nullptr, i == 1 || i == 2) << i;
   }
   EXPECT_TRUE(review.problems.empty());
-  EXPECT_TRUE(review.achieved.empty());
+  EXPECT_TRUE(review.drilled.empty());
+}
+
+// Each tunnel is drawn from when it was drilled on; of a depth that nobody knows it is as long as what guided
+// there was planned, whatever is planned at the moment that is looked at.
+TEST(SessionReview, DrawsATunnelFromWhenItWasDrilledAndAsLongAsItsOwnPlan) {
+  const test::TemporaryFolder folder;
+  tunnels::Tunnel am{.entry_mm = {1, 2, 3}, .direction = {0, 0, 1}, .bundle = norms::Bundle::Anteromedial};
+  tunnels::Tunnel pl = am;
+  pl.bundle = norms::Bundle::Posterolateral;
+  {
+    recording::SessionRecorder recorder(folder.path(), test::session_header(), test::scripted_options());
+    for (int i = 0; i < 6; ++i) {
+      if (i == 1) recorder.set_plan(am, 31);
+      if (i == 3) recorder.add_event({0, std::string(recording::kDrilledEvent), "achieved_am.json", -1});
+      if (i == 4) recorder.set_plan(pl, 25);
+      if (i == 5) recorder.add_event({0, std::string(recording::kDrilledEvent), "achieved_pl.json", -1});
+      recorder.append(test::frame_result(i));
+    }
+    recorder.finish();
+  }
+  operation::write_achieved_file(folder / "achieved_am.json",
+                                 {.planned = am, .measured = am, .depth_mm = {}, .truth = {}});
+  operation::write_achieved_file(folder / "achieved_pl.json",
+                                 {.planned = pl, .measured = pl, .depth_mm = 18, .truth = {}});
+  const SessionReview review = read_review(folder.path());
+  EXPECT_TRUE(review.drilled_at(1).empty());
+  ASSERT_EQ(review.drilled_at(2).size(), 1U);
+  EXPECT_EQ(review.drilled_at(2).front()->length_mm, 31);
+  ASSERT_EQ(review.drilled_at(5).size(), 2U);
+  EXPECT_EQ(review.drilled_at(5).front()->length_mm, 31);
+  EXPECT_EQ(review.drilled_at(5).back()->length_mm, 18);
 }
 
 // A registration that cannot be read is told, and the session is shown.

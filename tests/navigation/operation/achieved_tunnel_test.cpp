@@ -36,6 +36,14 @@ TEST(AchievedTunnel, ASessionHoldsBothBundles) {
   EXPECT_EQ(read_achieved_file(files[1]).planned.bundle, Bundle::Posterolateral);
 }
 
+// Older files hold nought where nobody knew how deep it was.
+TEST(AchievedTunnel, ADepthOfNoughtIsNotKnown) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "achieved.json";
+  write_achieved_file(file, drilled(Bundle::Whole, 0));
+  EXPECT_FALSE(read_achieved_file(file).depth_mm);
+}
+
 // Of a single tunnel the file is as it always was.
 TEST(AchievedTunnel, OfASingleTunnelNothingIsNew) {
   const test::TemporaryFolder folder;
