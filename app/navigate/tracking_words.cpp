@@ -15,8 +15,13 @@ std::string record_trouble_of(const theatre::LiveState& live) {
                                                  : live.record_trouble;
 }
 
+// What a record holds that has begun is kept, however it ends.
+const char* trouble_title(const theatre::LiveState& live) {
+  return live.session_folder.empty() ? "Nothing is recorded" : "Record ended early";
+}
+
 SeverityText recording_row(const theatre::LiveState& live, bool pictures_come) {
-  if (!live.record_trouble.empty()) return {Severity::Bad, "Nothing is recorded", record_trouble_of(live)};
+  if (!live.record_trouble.empty()) return {Severity::Bad, trouble_title(live), record_trouble_of(live)};
   if (live.session_folder.empty())
     return {Severity::Caution, "Nothing is recorded", "the case has no folder"};
   if (live.phase != theatre::LiveState::Phase::Running) return {Severity::Quiet, "Recording", "ended"};
@@ -34,7 +39,7 @@ std::string range_text(const theatre::StageLatency& stage) {
 
 std::string record_notice(const theatre::LiveState& live, bool wants_video) {
   if (live.phase != theatre::LiveState::Phase::Running) return "";
-  if (!live.record_trouble.empty()) return "Nothing is recorded: " + record_trouble_of(live);
+  if (!live.record_trouble.empty()) return std::string(trouble_title(live)) + ": " + record_trouble_of(live);
   if (wants_video && !live.video_trouble.empty())
     return "The video is not recorded any more, poses and decisions are: " + live.video_trouble;
   return "";

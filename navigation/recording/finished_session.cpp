@@ -23,7 +23,8 @@ void FinishedSession::append_event(const SessionEvent& event) {
 }
 
 void FinishedSession::close_database() {
-  if (hashes_) hashes_->cover_sealed_database();
+  // One that somebody still reads is sealed, and hashed, another time.
+  if (hashes_ && SessionDatabase::open(database_file(folder_)).is_sealed()) hashes_->cover_sealed_database();
 }
 
 void FinishedSession::rewrite_file(const std::string& name, const std::function<void()>& write) {

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/recording/session_hashes.h"
 #include "planning/files/format.h"
@@ -69,7 +70,11 @@ class Checker {
     if (record.of == kDatabaseFile && !record.is_open()) {
       database_bytes_ = &record;  // its rows first: they tell what was changed
     } else if (record.is_open()) {
-      check_.notes.push_back(record.of + ": was being written when the record ended: not looked at");
+      check_.notes.push_back(
+          record.of == kDatabaseFile
+              ? record.of +
+                    ": its rows were looked at, its other bytes not: it was still open when the record ended"
+              : record.of + ": was being written when the record ended: not looked at");
       open_.insert(record.of);
     } else if (is_rows) {
       look_at_rows(record);
@@ -204,6 +209,7 @@ SessionCheck check_session(const fs::path& session_folder,
                            const std::function<bool()>& stops) {
   if (!fs::is_directory(session_folder)) throw IoError(session_folder, "no such session");
   SessionCheck check;
+  check.is_being_recorded = is_being_recorded(session_folder);
   Checker checker(session_folder, check);
   if (!fs::exists(chain_file(session_folder))) {
     check.findings.clear();  // a database alone that cannot be read says nothing of hashes
@@ -250,7 +256,9 @@ std::string check_words(const SessionCheck& check) {
       return files::format("as recorded: %lld hashes, %.1f MB of files%s",
                            static_cast<long long>(check.record_count),
                            static_cast<double>(check.covered_bytes) / 1e6,
-                           check.was_finished ? "" : "; cut off, whole up to its last hash");
+                           check.was_finished        ? ""
+                           : check.is_being_recorded ? "; being recorded, whole up to its last hash"
+                                                     : "; cut off, whole up to its last hash");
     case Outcome::Broken:
       return check.findings.front().text() +
              (check.findings.size() > 1 ? "; and " + std::to_string(check.findings.size() - 1) + " more"

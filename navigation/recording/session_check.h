@@ -33,7 +33,9 @@ struct SessionCheck {
     NoChain,   // and session.json does not say that there was one: nothing can be said
     Stopped,   // by `stops`; findings are what was found until then
   } outcome = Outcome::NotRun;
-  bool was_finished = false;  // false: cut off; what came after the chain's last record is not in it
+  bool is_being_recorded = false;  // when it was looked at (recording_lock.h)
+  bool was_finished =
+      false;  // false: cut off, or being recorded; what came after the chain's last record is not in it
   std::int64_t record_count = 0;
   std::int64_t covered_bytes = 0;  // of files
   std::string head;                // the chain's last hash

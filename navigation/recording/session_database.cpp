@@ -1,7 +1,9 @@
 #include "navigation/recording/session_database.h"
 
 #include <bit>
+#include <chrono>
 #include <limits>
+#include <thread>
 #include <utility>
 
 #include "planning/files/private_folder.h"
@@ -13,6 +15,10 @@ namespace {
 
 // States are stored as the numbers of their enumerators, whose order is therefore part of this format.
 constexpr int kSchemaVersion = 2;
+
+// For another connection that reads or writes just now.
+constexpr int kWait_ms = 5000;
+constexpr auto kSealWait = std::chrono::seconds(2);
 
 constexpr const char* kTables = R"(
 CREATE TABLE frames(
@@ -137,7 +143,10 @@ void Statement::append_value(int column, std::string& bytes) const {
 
 SessionDatabase::SessionDatabase(const std::filesystem::path& file, int flags) : file_(file) {
   const int result = sqlite3_open_v2(file.c_str(), &database_, flags, nullptr);
-  if (result == SQLITE_OK) return;
+  if (result == SQLITE_OK) {
+    sqlite3_busy_timeout(database_, kWait_ms);
+    return;
+  }
   const std::string reason = database_ ? sqlite3_errmsg(database_) : "out of memory";
   sqlite3_close(database_);
   throw IoError(file, reason);
@@ -164,20 +173,48 @@ SessionDatabase SessionDatabase::create(const std::filesystem::path& file) {
 SessionDatabase SessionDatabase::open(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) throw IoError(file, "no such file");
   SessionDatabase database(file, SQLITE_OPEN_READWRITE);
-  Statement version = database.prepare("PRAGMA user_version");
-  if (!version.step() || version.integer(0) < 1)
-    throw InvalidInput(file, "", "is not the record of a session");
-  if (version.integer(0) > kSchemaVersion) {
+  const std::int64_t version = database.version();  // its reading must have ended before leave_wal()
+  if (version < 1) throw InvalidInput(file, "", "is not the record of a session");
+  if (version > kSchemaVersion) {
     throw InvalidInput(file, "",
-                       "was written by a newer Arthronaut (version " + std::to_string(version.integer(0)) +
+                       "was written by a newer Arthronaut (version " + std::to_string(version) +
                            ", this one reads up to " + std::to_string(kSchemaVersion) + ")");
+  }
+  try {  // a session that could not be sealed at its end, since somebody was reading it
+    if (!database.is_sealed() && database.is_finished()) (void)database.leave_wal();
+  } catch (const IoError&) {
+    // Damaged: who reads it says so.
   }
   return database;
 }
 
-void SessionDatabase::seal() {
-  execute("PRAGMA wal_checkpoint(TRUNCATE)");
-  execute("PRAGMA journal_mode = DELETE");
+std::int64_t SessionDatabase::version() {
+  Statement statement = prepare("PRAGMA user_version");
+  return statement.step() ? statement.integer(0) : 0;
+}
+
+bool SessionDatabase::is_sealed() {
+  Statement mode = prepare("PRAGMA journal_mode");
+  return mode.step() && mode.text(0) != "wal";
+}
+
+bool SessionDatabase::is_finished() { return prepare("SELECT finished FROM ending").step(); }
+
+// False while another connection is open, whatever it does: SQLite asks for the file alone. It does not wait
+// for that by itself.
+bool SessionDatabase::leave_wal() {
+  const int result = sqlite3_exec(database_, "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr);
+  return result == SQLITE_OK && is_sealed();
+}
+
+bool SessionDatabase::seal() {
+  execute("PRAGMA wal_checkpoint(PASSIVE)");
+  const auto until = std::chrono::steady_clock::now() + kSealWait;
+  while (!leave_wal()) {
+    if (std::chrono::steady_clock::now() > until) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return true;
 }
 
 }  // namespace arthronaut::recording

@@ -60,8 +60,9 @@ class SessionDatabase {
  public:
   // A new database in WAL mode with its tables.
   static SessionDatabase create(const std::filesystem::path& file);
-  // An existing one; what a crash left in the WAL is taken in. Works in a read-only folder. Throws
-  // InvalidInput when the file is no session or of a newer version.
+  // An existing one; what a crash left in the WAL is taken in. Works in a read-only folder. While a session
+  // is being recorded it is held for as long as one reads, and no longer: see seal(). Throws InvalidInput
+  // when the file is no session or of a newer version.
   static SessionDatabase open(const std::filesystem::path& file);
   ~SessionDatabase();
   SessionDatabase(SessionDatabase&& other) noexcept;
@@ -69,11 +70,16 @@ class SessionDatabase {
 
   void execute(const char* sql);
   [[nodiscard]] Statement prepare(std::string_view sql) { return {database_, file_, sql}; }
-  // Folds the WAL in, so that one file remains which can be read anywhere.
-  void seal();
+  // Folds the WAL in, so that one file remains which can be read anywhere. False: another program has it open
+  // for longer than is waited for. All is kept then, and whoever opens the finished session next folds it.
+  [[nodiscard]] bool seal();
+  [[nodiscard]] bool is_sealed();
 
  private:
   SessionDatabase(const std::filesystem::path& file, int flags);
+  [[nodiscard]] std::int64_t version();
+  [[nodiscard]] bool is_finished();
+  [[nodiscard]] bool leave_wal();
 
   std::filesystem::path file_;
   sqlite3* database_ = nullptr;

@@ -11,6 +11,7 @@
 #include "navigation/pipeline/bounded_queue.h"
 #include "navigation/recording/picture_writer.h"
 #include "navigation/recording/record_writer.h"
+#include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/recording/video_files.h"
@@ -38,6 +39,7 @@ struct SessionRecorder::State {
   State(const std::filesystem::path& to, const SessionHeader& with,
         const pipeline::PipelineOptions& with_options, const DiskLimits& with_limits)
       : folder(to),
+        held(std::in_place, to),
         header(with),
         options(with_options),
         limits(with_limits),
@@ -178,6 +180,7 @@ struct SessionRecorder::State {
   }
 
   std::filesystem::path folder;
+  std::optional<RecordingLock> held;  // until it is finished
   std::mutex header_mutex;
   SessionHeader header;
   pipeline::PipelineOptions options;
@@ -329,9 +332,10 @@ void SessionRecorder::finish() {
   if (s.is_stuck) return;  // said at the call that met it; such a record is not finished
   s.cover_to_end();
   s.database.execute("INSERT INTO ending VALUES(1)");
-  s.database.seal();
-  s.hashes.cover_file(kDatabaseFile);
+  // Whoever looks at the session must not keep it from ending: its rows are in the chain already.
+  if (s.database.seal()) s.hashes.cover_file(kDatabaseFile);
   s.hashes.sync();
+  s.held.reset();
 }
 
 std::filesystem::path SessionRecorder::folder() const { return state_->folder; }

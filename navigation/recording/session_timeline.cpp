@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "navigation/recording/frame_record.h"
+#include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session_files.h"
 #include "planning/geometry/error.h"
 
@@ -104,8 +105,8 @@ class RowsAlong {
 }  // namespace
 
 struct SessionTimeline::State {
-  explicit State(const std::filesystem::path& folder)
-      : database(SessionDatabase::open(database_file(folder))) {}
+  explicit State(const std::filesystem::path& session_folder)
+      : folder(session_folder), database(SessionDatabase::open(database_file(folder))) {}
 
   // What is read before a table breaks off, or says what no program writes, stays. False: it did.
   template <typename Read>
@@ -141,7 +142,7 @@ struct SessionTimeline::State {
   }
 
   void read_frames() {
-    Rows rows(database,
+    Rows rows(*database,
               "SELECT frame, timestamp_ns, intrinsics_are_known, mark_state, mark_polarity FROM frames");
     while (rows.step()) {
       const Statement& row = rows.row();
@@ -168,7 +169,7 @@ struct SessionTimeline::State {
   }
 
   void read_markers() {
-    RowsAlong rows(database, "SELECT frame, marker_id, has_pose, state FROM markers", "frame, marker_id");
+    RowsAlong rows(*database, "SELECT frame, marker_id, has_pose, state FROM markers", "frame, marker_id");
     for (FrameGlance& glance : frames) {
       rows.visit(glance.index, [&](const Statement& row) {
         check_unkept([&] { (void)row.one_of(3, markers::MarkerState::Disagreeing); });
@@ -182,11 +183,11 @@ struct SessionTimeline::State {
 
   // A body of several markers is named by its first one, whose bit stands for the body then.
   void read_bodies() {
-    if (!database.prepare("SELECT 1 FROM sqlite_master WHERE name = 'bodies'").step()) return;
+    if (!database->prepare("SELECT 1 FROM sqlite_master WHERE name = 'bodies'").step()) return;
     std::uint32_t of_bodies = 0;
-    Statement ids = database.prepare("SELECT DISTINCT body_id FROM bodies");
+    Statement ids = database->prepare("SELECT DISTINCT body_id FROM bodies");
     while (ids.step()) of_bodies |= bit_of(ids.int32(0));
-    RowsAlong rows(database, "SELECT frame, body_id FROM bodies", "frame, body_id");
+    RowsAlong rows(*database, "SELECT frame, body_id FROM bodies", "frame, body_id");
     for (FrameGlance& glance : frames) {
       glance.posed &= ~of_bodies;
       rows.visit(glance.index, [&](const Statement& row) { glance.posed |= bit_of(row.int32(1)); });
@@ -195,7 +196,7 @@ struct SessionTimeline::State {
 
   void read_guidance() {
     // Of all columns, since older records end before the lateral part of the offset.
-    RowsAlong rows(database, "SELECT * FROM guidance");
+    RowsAlong rows(*database, "SELECT * FROM guidance");
     for (FrameGlance& glance : frames) {
       rows.visit(glance.index, [&](const Statement& row) {
         glance.guidance = row.one_of(1, guidance::kLastGuidanceState);
@@ -211,7 +212,9 @@ struct SessionTimeline::State {
     tell(rows.damage("the guidance"));
   }
 
-  SessionDatabase database;
+  std::filesystem::path folder;
+  std::optional<SessionDatabase>
+      database;  // nullopt once all is read: opened for every frame that is asked for
   std::vector<FrameGlance> frames;
   std::vector<int> marker_ids;
   std::vector<std::string> problems;
@@ -229,6 +232,8 @@ SessionTimeline::SessionTimeline(const std::filesystem::path& session_folder)
   s.table("the markers", [&] { s.read_markers(); });
   s.as_far_as_whole([&] { s.read_bodies(); });
   s.table("the guidance", [&] { s.read_guidance(); });
+  // Its recorder wants the file for itself when the session ends.
+  if (is_being_recorded(session_folder)) s.database.reset();
 }
 
 SessionTimeline::~SessionTimeline() = default;
@@ -249,7 +254,9 @@ const RecordedFrame& SessionTimeline::frame(std::size_t at) const {
   s.kept.intrinsics_are_known = glance.intrinsics_are_known;
   s.kept_is_whole = false;
   try {
-    auto found = recording::read_frames(s.database, glance.index, glance.index);
+    std::optional<SessionDatabase> anew;
+    if (!s.database) anew.emplace(SessionDatabase::open(database_file(s.folder)));
+    auto found = recording::read_frames(anew ? *anew : *s.database, glance.index, glance.index);
     s.kept_is_whole = !found.empty();
     if (s.kept_is_whole) s.kept = std::move(found.front());
   } catch (const IoError&) {

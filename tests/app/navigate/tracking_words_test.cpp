@@ -218,7 +218,7 @@ TEST(RecordNotice, Hazard14SaysThatTheVideoStopped) {
             "large");
   recorded.live.record_trouble = "/cases/knee/sessions/0001: recording stopped: only 50 MiB are free";
   EXPECT_EQ(record_notice(recorded.live, false),
-            "Nothing is recorded: recording stopped: only 50 MiB are free");
+            "Record ended early: recording stopped: only 50 MiB are free");
   recorded.live.phase = Phase::Ended;
   EXPECT_EQ(record_notice(recorded.live, true), "");
 }
@@ -228,8 +228,11 @@ TEST(RecordRows, Hazard13SayWhyNothingIsRecorded) {
   recorded.live.record_trouble = "the disk is full";
   EXPECT_EQ(recorded.rows()[0].severity, Severity::Bad);
   EXPECT_EQ(recorded.rows()[0].text, "the disk is full");
-  recorded.live.record_trouble.clear();
+  recorded.live.session_folder = "/cases/knee/sessions/0001";  // what came before is there
+  EXPECT_EQ(recorded.rows()[0].name, "Record ended early");
   recorded.live.session_folder.clear();
+  EXPECT_EQ(recorded.rows()[0].name, "Nothing is recorded");
+  recorded.live.record_trouble.clear();
   EXPECT_EQ(recorded.rows()[0].name, "Nothing is recorded");
 }
 

@@ -16,12 +16,14 @@
 #include <iterator>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <random>
 #include <thread>
 
 #include "navigation/recording/hash_chain.h"
 #include "navigation/recording/operation_record.h"
 #include "navigation/recording/session_hashes.h"
+#include "navigation/recording/session_timeline.h"
 #include "planning/geometry/error.h"
 #include "tests/navigation/recording/recorded_frames.h"
 #include "tests/temporary_folder.h"
@@ -124,7 +126,7 @@ TEST_F(SessionCheckTest, FindsAWholeSessionUnbroken) {
   const SessionCheck check = check_session(folder_, [&](std::int64_t done, std::int64_t) { told = done; });
   EXPECT_EQ(check.outcome, Outcome::Unbroken) << check_words(check);
   EXPECT_TRUE(check.was_finished);
-  EXPECT_TRUE(check.notes.empty());
+  EXPECT_THAT(check.notes, testing::IsEmpty());
   EXPECT_GT(told, 10);
   EXPECT_EQ(check.head, chain_head(folder_));
   EXPECT_EQ(check.head.size(), 64u);
@@ -148,6 +150,54 @@ TEST_F(SessionCheckTest, StaysUnbrokenWithWhatComesLater) {
   EXPECT_EQ(check.outcome, Outcome::Unbroken) << check_words(check);
   put_text(folder_ / "achieved.json", "[]\n");
   EXPECT_EQ(check_session(folder_).findings.size(), 1u);
+}
+
+// Whoever looks at a session while it is recorded keeps it from nothing, however long: a time line that stays
+// open lets go of the file by itself.
+TEST_F(SessionCheckTest, EndsWholeWhileATimeLineOfItIsLookedAt) {
+  std::optional<SessionTimeline> looked_at;
+  SessionRecorder recorder(folder_, test::session_header(), test::scripted_options());
+  for (int i = 0; i < kFrames; ++i) {
+    recorder.append(test::frame_result(i));
+    std::this_thread::sleep_for(std::chrono::milliseconds(17));
+    if (i == kFrames / 2) looked_at.emplace(folder_);
+  }
+  ASSERT_FALSE(looked_at->frames().empty());
+  EXPECT_NO_THROW(recorder.finish());
+  EXPECT_TRUE(looked_at->is_readable(looked_at->frames().size() - 1));
+  EXPECT_FALSE(fs::exists(folder_ / "session.sqlite-wal"));
+  const SessionCheck check = check_session(folder_);
+  EXPECT_TRUE(check.is_unbroken()) << check_words(check);
+  EXPECT_THAT(check.notes, testing::IsEmpty());
+}
+
+// Another program that holds the file open when the session ends: all is kept, and what comes later finds one
+// file that is whole.
+TEST_F(SessionCheckTest, EndsWholeWhileAnotherProgramReadsIt) {
+  std::optional<SessionRecorder> recorder(std::in_place, folder_, test::session_header(),
+                                          test::scripted_options());
+  std::optional<SessionDatabase> reader;
+  for (int i = 0; i < kFrames; ++i) {
+    recorder->append(test::frame_result(i));
+    std::this_thread::sleep_for(std::chrono::milliseconds(17));
+    if (i == kFrames / 2) reader.emplace(SessionDatabase::open(folder_ / "session.sqlite"));
+  }
+  EXPECT_NO_THROW(recorder->finish());
+  recorder.reset();
+  const SessionCheck meanwhile = check_session(folder_);
+  EXPECT_TRUE(meanwhile.is_unbroken()) << check_words(meanwhile);
+  EXPECT_THAT(meanwhile.notes, testing::ElementsAre(HasSubstr("session.sqlite: its rows were looked at")));
+  append_event(folder_, {9'000'000'000, "note", "after the end, still read"});
+  EXPECT_TRUE(check_session(folder_).is_unbroken());
+  reader.reset();
+  const RecordedSession session(folder_);
+  EXPECT_TRUE(session.was_finished());
+  EXPECT_EQ(session.frames().size(), std::size_t{kFrames});
+  EXPECT_FALSE(fs::exists(folder_ / "session.sqlite-wal"));
+  append_event(folder_, {9'500'000'000, "note", "after the end"});
+  const SessionCheck check = check_session(folder_);
+  EXPECT_TRUE(check.is_unbroken()) << check_words(check);
+  EXPECT_THAT(check.notes, testing::IsEmpty());
 }
 
 // One byte anywhere, in the head, in the middle and at the end: the stretch that holds it is named, and no
