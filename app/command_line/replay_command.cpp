@@ -4,6 +4,7 @@
 #include "app/command_line/option_checks.h"
 #include "app/command_line/tracking_report.h"
 #include "navigation/recording/cut_short.h"
+#include "navigation/recording/recording_lock.h"
 #include "navigation/recording/replay.h"
 #include "navigation/recording/session_check.h"
 #include "planning/cases/case.h"
@@ -65,7 +66,8 @@ void replay(Context& context, const ReplayArguments& arguments) {
   }
   context.say(format("session %s: %ld of %ld frames replayed", session.header().id.c_str(),
                      summary.replayed_frames, summary.recorded_frames));
-  if (const std::string cut = recording::cut_short_in_words(session.was_finished(), session.events());
+  if (const std::string cut = recording::cut_short_in_words(session.was_finished(), session.events(),
+                                                            recording::is_being_recorded(session.folder()));
       !cut.empty())
     context.say("the recording was cut short: " + cut);
   if (summary.frames_without_picture > 0)

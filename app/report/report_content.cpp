@@ -11,6 +11,7 @@
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/recording/cut_short.h"
+#include "navigation/recording/recording_lock.h"
 #include "navigation/registration/provenance.h"
 #include "planning/files/format.h"
 #include "planning/files/within_folder.h"
@@ -108,7 +109,8 @@ void add_looked_at(Content& content) {
   content.session_name = content.session->header().id;
   content.started_utc = content.session->header().started_utc;
   content.cut_short =
-      recording::cut_short_in_words(content.session->was_finished(), content.session->events());
+      recording::cut_short_in_words(content.session->was_finished(), content.session->events(),
+                                    recording::is_being_recorded(content.session->folder()));
   content.last_hash = recording::chain_head(folder);
   content.check = recording::check_session(folder);
   try {

@@ -7,7 +7,6 @@
 
 #include "app/widgets/list_rows.h"
 #include "app/widgets/source_banner.h"
-#include "navigation/recording/cut_short.h"
 #include "navigation/worker/freed_memory.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
@@ -77,6 +76,7 @@ void ReviewView::enter() {
 void ReviewView::choose(std::size_t session) {
   if (session >= sessions_.folders().size() || opening_.is_busy()) return;
   chosen_ = session;
+  comes_back_to_.reset();
   open_.reset();
   note_ = {};
   notice_.clear();
@@ -114,6 +114,7 @@ void ReviewView::take_opened() {
       open.playback.frame = i;
       break;
     }
+  if (comes_back_to_) open.playback.frame = open.timeline().at_index(*comes_back_to_);
   if (!open.review.session->video().empty())
     open.pictures = std::make_unique<PictureFetcher>(open.review, wake_);
   look_at_tunnel();
@@ -146,6 +147,7 @@ ReviewScreen ReviewView::screen() const {
 
 void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   take_opened();
+  follow_recording(ui.now_s);
   if (has_frames()) advance(open_->playback, open_->timeline(), ui.now_s);
   const float gap = ui.theme.px(12);
   widgets::Rect rest = area;
@@ -201,13 +203,7 @@ void ReviewView::draw_side(const widgets::Ui& ui, const widgets::Rect& area) {
   if (const auto pressed = sessions_.draw(ui, chosen_)) look_at(*pressed);
   ImGui::Separator();
   draw_buttons(ui);
-  if (open_) {
-    const recording::SessionOverview& session = *open_->review.session;
-    const std::string cut =
-        recording::cut_short_in_words(session.was_finished || !session.end_was_read, session.events);
-    if (!cut.empty()) widgets::status_row(ui, widgets::Severity::Caution, "Cut short", cut);
-    ui.log.note_state("cut_short", cut);
-  }
+  if (open_) draw_end(ui);
   if (open_) draw_check(ui);
   if (open_ && !has_frames())
     for (const std::string& problem : open_->review.problems)

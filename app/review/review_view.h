@@ -67,6 +67,8 @@ class ReviewView : public mode::Mode {
     std::string text;
   };
   void choose(std::size_t session);
+  void follow_recording(double now_s);
+  void draw_end(const widgets::Ui& ui) const;
   void look_at(std::size_t session);  // as the user chooses one: in the place of a CT after the operation
   void take_opened();
   void look_at_tunnel();
@@ -110,7 +112,9 @@ class ReviewView : public mode::Mode {
   worker::Awaited<SessionReview> opening_;
   bool opens_for_another_case_ = false;  // what opening_ reads is of the case that was open before
   std::optional<OpenSession> open_;
-  std::unique_ptr<ReportRun> report_;  // null: none was asked for
+  std::unique_ptr<ReportRun> report_;          // null: none was asked for
+  double looked_at_end_s_ = -1;                // whether what is being recorded has ended
+  std::optional<std::int64_t> comes_back_to_;  // the frame that was looked at before it was read again
   NoteField note_;
   PostopPage postop_;
   bool shows_postop_ = false;  // in the place of the session

@@ -7,6 +7,7 @@
 
 #include "app/widgets/list_rows.h"
 #include "app/widgets/wrapped_text.h"
+#include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session_facts.h"
 #include "navigation/worker/freed_memory.h"
 #include "planning/cases/case.h"
@@ -35,10 +36,12 @@ SessionLine session_line(const library::SessionFacts& facts) {
   line.words += (line.words.empty() ? "" : "; ") + facts.outcome();
   for (const std::string& doubt : doubts) line.words += "; " + doubt;
   const bool is_unreliable = !facts.registration_is_reliable.value_or(true);
-  line.severity = !facts.problem.empty()                                    ? widgets::Severity::Bad
-                  : !doubts.empty() || is_unreliable || !facts.was_finished ? widgets::Severity::Caution
-                  : facts.is_drilled()                                      ? widgets::Severity::Good
-                                                                            : widgets::Severity::Quiet;
+  line.is_being_recorded = facts.is_being_recorded && !facts.was_finished;
+  const bool was_cut_off = !facts.was_finished && !facts.is_being_recorded;
+  line.severity = !facts.problem.empty()                            ? widgets::Severity::Bad
+                  : !doubts.empty() || is_unreliable || was_cut_off ? widgets::Severity::Caution
+                  : facts.is_drilled()                              ? widgets::Severity::Good
+                                                                    : widgets::Severity::Quiet;
   return line;
 }
 
@@ -72,6 +75,12 @@ void SessionList::read() {
         return lines;
       },
       wake_);
+}
+
+bool SessionList::has_one_ended() const {
+  return std::ranges::any_of(lines_, [](const auto& of) {
+    return of.second.is_being_recorded && !recording::is_being_recorded(of.first);
+  });
 }
 
 void SessionList::take_read() {

@@ -22,6 +22,7 @@ namespace arthronaut::review {
 struct SessionLine {
   widgets::Severity severity = widgets::Severity::Quiet;  // Caution: in doubt; Bad: it cannot be read
   std::string words;
+  bool is_being_recorded = false;  // when it was read
 };
 [[nodiscard]] SessionLine session_line(const library::SessionFacts& facts);
 
@@ -36,6 +37,8 @@ class SessionList {
   // A reason that names files of these sessions, with their names alone: the folder stands in the list.
   [[nodiscard]] std::string within(std::string reason) const;
   [[nodiscard]] bool is_busy() const { return reading_.is_busy(); }
+  // One that was being recorded when it was read is not any more: its line is of before.
+  [[nodiscard]] bool has_one_ended() const;
   // The one that was pressed.
   [[nodiscard]] std::optional<std::size_t> draw(const widgets::Ui& ui, std::optional<std::size_t> chosen);
 

@@ -8,6 +8,7 @@
 #include "navigation/recording/case_sessions.h"
 #include "navigation/recording/counting_registration.h"
 #include "navigation/recording/of_drilled.h"
+#include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_database.h"
 #include "navigation/recording/session_files.h"
@@ -119,6 +120,7 @@ void read_record(const fs::path& folder, SessionFacts& facts) {
 SessionFacts read_session_facts(const fs::path& session_folder) {
   SessionFacts facts;
   facts.id = session_folder.filename().string();
+  facts.is_being_recorded = is_being_recorded(session_folder);
   // Each file by itself: what is whole is told although another one is broken.
   for (const auto read : {read_header, read_registration, read_achieved, read_record}) {
     try {

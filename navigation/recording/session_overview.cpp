@@ -4,6 +4,7 @@
 
 #include "navigation/camera/camera_file.h"
 #include "navigation/recording/kept_pictures.h"
+#include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session_database.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/registration/registration_file.h"
@@ -76,6 +77,7 @@ SessionOverview read_overview(const std::filesystem::path& session_folder) {
   SessionOverview overview;
   overview.folder = session_folder;
   if (!std::filesystem::is_directory(session_folder)) throw IoError(session_folder, "no such session");
+  overview.is_being_recorded = is_being_recorded(session_folder);
   overview.header = read_session_header(session_folder, overview.options);
   as_far_as_whole(overview, [&] {
     overview.options.calibration = camera::read_camera_file(session_folder / "camera.json").calibration;

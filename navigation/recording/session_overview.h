@@ -18,6 +18,7 @@ struct SessionOverview {
   pipeline::PipelineOptions options;
   bool was_finished = false;  // false: a crash cut it off, where its end could be read
   bool end_was_read = false;
+  bool is_being_recorded = false;    // when it was read (recording_lock.h)
   std::vector<SessionEvent> events;  // in the order they were added
   // Of a video by append_picture(), rising by frames; empty when the video is the source's own.
   std::vector<KeptPicture> pictures;
@@ -27,6 +28,8 @@ struct SessionOverview {
   std::vector<std::string> problems;
 
   [[nodiscard]] std::filesystem::path video() const;  // empty when none was kept
+  // It was neither finished nor cut off.
+  [[nodiscard]] bool goes_on() const { return is_being_recorded && !was_finished; }
   // Of a kPlanEvent. Throws InvalidInput.
   [[nodiscard]] RecordedSession::PlanChange plan_of(const SessionEvent& event) const;
 };

@@ -169,7 +169,7 @@ std::string SessionFacts::outcome() const {
     return files::format("drilled, %.1f mm and %.1f\u00B0 from the plan", *entry_offset_mm,
                          angle_deg.value_or(0));
   if (!problem.empty()) return "cannot be read: " + problem;
-  const std::string end = was_finished ? "" : ", cut off";
+  const std::string end = was_finished ? "" : is_being_recorded ? ", being recorded" : ", cut off";
   if (!registration_is_reliable) return "not registered" + end;
   return (*registration_is_reliable ? "registered, not drilled" : "registration not reliable") + end;
 }
@@ -194,7 +194,8 @@ std::vector<std::string> SessionFacts::doubts() const {
   if (was_registered && *registration_is_reliable && !was_verified) doubts.emplace_back("not verified");
   if (alarm_count > 0)
     doubts.push_back(std::to_string(alarm_count) + (alarm_count == 1 ? " alarm" : " alarms"));
-  if (is_drilled() && !was_finished && problem.empty()) doubts.emplace_back("cut off");
+  if (is_drilled() && !was_finished && problem.empty())
+    doubts.emplace_back(is_being_recorded ? "being recorded" : "cut off");
   if (is_drilled() && !problem.empty()) doubts.push_back("cannot be read whole: " + problem);
   return doubts;
 }

@@ -23,6 +23,7 @@ struct SessionFacts {
   std::string source_kind;   // "live", "recording", "simulation"; empty in older records
   bool is_exercise = false;  // training: no operation, and in no CaseRecord
   bool was_finished = false;
+  bool is_being_recorded = false;                // when it was looked at: not cut off
   std::optional<bool> registration_is_reliable;  // of the last registration
   std::optional<double> registration_rms_mm;
   std::optional<double> predicted_error_mm;  // of that registration: one sigma at its target

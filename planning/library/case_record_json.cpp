@@ -51,6 +51,7 @@ ordered_json to_json(const SessionFacts& facts) {
   put(node, "verifying_min", facts.verifying_min);
   put(node, "drilling_min", facts.drilling_min);
   if (!facts.problem.empty()) node["problem"] = facts.problem;
+  if (facts.is_being_recorded) node["being_recorded"] = true;
   return node;
 }
 
@@ -74,6 +75,7 @@ SessionFacts session_from(const json& node) {
   take(node, "verifying_min", facts.verifying_min);
   take(node, "drilling_min", facts.drilling_min);
   facts.problem = node.value("problem", std::string());
+  facts.is_being_recorded = node.value("being_recorded", false);
   return facts;
 }
 

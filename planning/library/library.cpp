@@ -176,8 +176,11 @@ std::vector<CaseRecord> Library::look(const std::function<bool(std::size_t, std:
         one = {now, read_case_record(one.record.folder, state_->read_session)};
         // What could not be read may be read the next time, by a newer program or from a disk that is well
         // again: it is not known by what its files look like.
-        const auto is_broken = [](const SessionFacts& session) { return !session.problem.empty(); };
-        if (!one.record.problem.empty() || std::ranges::any_of(one.record.sessions, is_broken))
+        // One that is being recorded may be cut off without a file that changes.
+        const auto may_change = [](const SessionFacts& session) {
+          return !session.problem.empty() || session.is_being_recorded;
+        };
+        if (!one.record.problem.empty() || std::ranges::any_of(one.record.sessions, may_change))
           one.fingerprint = 0;
         changed.push_back(one);
       }

@@ -38,6 +38,16 @@ TEST(SessionList, SaysWhatItWas) {
   EXPECT_EQ(session_line(facts).words, "exercise, tibia; not registered");
 }
 
+// What is being recorded is neither ticked nor doubted for having no end yet.
+TEST(SessionList, SaysWhatIsBeingRecorded) {
+  library::SessionFacts facts;
+  facts.bone = "femur";
+  facts.is_being_recorded = true;
+  EXPECT_EQ(session_line(facts).words, "femur; not registered, being recorded");
+  EXPECT_EQ(session_line(facts).severity, widgets::Severity::Quiet);
+  EXPECT_TRUE(session_line(facts).is_being_recorded);
+}
+
 // Each doubt is said, and none of them has a tick.
 TEST(SessionList, SaysWhatIsDoubtfulOfIt) {
   library::SessionFacts facts = drilled();

@@ -1,5 +1,6 @@
 #include "navigation/recording/session.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -9,11 +10,15 @@
 #include <chrono>
 #include <fstream>
 #include <future>
+#include <optional>
 #include <random>
 #include <thread>
 
 #include "navigation/recording/cut_short.h"
+#include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session_check.h"
+#include "navigation/recording/session_facts.h"
+#include "navigation/recording/session_overview.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "tests/navigation/recording/recorded_frames.h"
@@ -260,11 +265,33 @@ TEST_F(Session, Hazard12AVideoThatCannotBeWrittenEndsAlone) {
   EXPECT_TRUE(check.is_unbroken()) << recording::check_words(check);
 }
 
+// A session that goes on is not one that was cut off, for whoever looks at it.
+TEST_F(Session, SaysThatItIsBeingRecorded) {
+  const auto overview = [&] { return recording::read_overview(folder_); };
+  std::optional<recording::SessionRecorder> recorder(std::in_place, folder_, test::session_header(),
+                                                     options_);
+  EXPECT_TRUE(recording::is_being_recorded(folder_));
+  EXPECT_TRUE(overview().goes_on());
+  EXPECT_EQ(recording::read_session_facts(folder_).outcome(), "not registered, being recorded");
+  EXPECT_THAT(recording::check_words(recording::check_session(folder_)),
+              testing::EndsWith("; being recorded, whole up to its last hash"));
+  recorder->finish();
+  EXPECT_FALSE(overview().goes_on());
+  EXPECT_FALSE(recording::is_being_recorded(folder_));
+  EXPECT_EQ(recording::read_session_facts(folder_).outcome(), "not registered");
+  EXPECT_FALSE(recording::is_being_recorded(folder_ / "nowhere"));
+}
+
 // A whole session says nothing of the kind, also after one that stopped for want of room was finished.
 TEST_F(Session, SaysWhyItIsCutShort) {
-  const auto words = recording::cut_short_in_words;
+  const auto words = [](bool was_finished, const std::vector<recording::SessionEvent>& events,
+                        bool is_being_recorded = false) {
+    return recording::cut_short_in_words(was_finished, events, is_being_recorded);
+  };
   EXPECT_EQ(words(true, {{0, "note", "all well"}}), "");
   EXPECT_EQ(words(false, {}), "the program ended before the session did");
+  EXPECT_EQ(words(false, {}, true), "it is being recorded now");
+  EXPECT_EQ(words(true, {}, true), "");  // it ended just now
   EXPECT_EQ(words(true, {{0, std::string(recording::kVideoStoppedEvent), "only 1.9 GiB are free"},
                          {0, std::string(recording::kRecordingStoppedEvent), "only 0.1 GiB are free"}}),
             "the video stopped: only 1.9 GiB are free; the recording stopped: only 0.1 GiB are free");
