@@ -99,6 +99,26 @@ std::shared_ptr<DcmDataset> open_dicom(const std::filesystem::path& file, std::s
   return read_dataset(file, buffer, EXS_LittleEndianExplicit);
 }
 
+std::string series_uid_before_damage(const std::filesystem::path& file) {
+  prepare_dcmtk();
+  DcmInputFileStream stream{OFFilename(file.c_str())};
+  if (stream.status().bad()) return "";
+  DcmMetaInfo meta;
+  DcmDataset dataset;
+  try {
+    read_object(meta, file, stream, EXS_Unknown);
+    const DcmXfer syntax(text_of(meta, DCM_TransferSyntaxUID).c_str());
+    if (syntax.getXfer() == EXS_Unknown || syntax.getStreamCompression() != ESC_none) return "";
+    read_object(dataset, file, stream, syntax.getXfer());
+  } catch (const InvalidInput&) {
+    // What was read before it stays.
+  }
+  // Of what was read last a part may be missing, and half a UID is another series'.
+  const unsigned long count = dataset.card();
+  if (count == 0 || !(dataset.getElement(count - 1)->getTag() > DCM_SeriesInstanceUID)) return "";
+  return text_of(dataset, DCM_SeriesInstanceUID);
+}
+
 std::string text_of(DcmItem& item, const DcmTagKey& key) {
   OFString found;
   if (item.findAndGetOFStringArray(key, found).bad()) return "";

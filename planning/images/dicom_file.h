@@ -25,6 +25,10 @@ namespace arthronaut::images {
 [[nodiscard]] std::shared_ptr<DcmDataset> open_dicom(const std::filesystem::path& file,
                                                      std::size_t most_bytes);
 
+// Which series a file is of that open_dicom() refuses, as far as what stands before its damage says it; empty
+// where that says nothing. Does not throw for what it finds.
+[[nodiscard]] std::string series_uid_before_damage(const std::filesystem::path& file);
+
 // All values of the element, a backslash between them, without blanks around; empty when absent.
 [[nodiscard]] std::string text_of(DcmItem& item, const DcmTagKey& key);
 // The same in UTF-8, from the character set that the data set names. Text that is not of it stays as it is.

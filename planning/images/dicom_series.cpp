@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "planning/bones/mesh_file.h"
 #include "planning/geometry/error.h"
@@ -81,6 +82,25 @@ DicomSlices chosen_series(const fs::path& source, DicomStudy study, const std::s
   return std::move(*matching.front());
 }
 
+// What is broken and of another series keeps nobody from this one. Of what does not say its series the slices
+// tell whether one is missing between them (stacked()). Throws what its reading threw for one of this series.
+std::vector<std::string> left_out_beside(const DicomSlices& chosen, const std::vector<BrokenDicom>& broken) {
+  std::vector<std::string> lines;
+  for (const BrokenDicom& one : broken) {
+    if (one.series_uid == chosen.front().series_uid) std::rethrow_exception(one.error);
+    const std::string& why = one.skipped.reason;
+    lines.push_back(
+        "left out: " + one.skipped.file.filename().string() + ": " + why +
+        (one.series_uid.empty() ? "; it does not say which series it is of" : "; of another series"));
+  }
+  constexpr std::size_t kMostNamed = 5;
+  if (lines.size() <= kMostNamed) return lines;
+  const std::size_t more = lines.size() - kMostNamed;
+  lines.resize(kMostNamed);
+  lines.push_back("left out: " + std::to_string(more) + " more broken " + (more == 1 ? "file" : "files"));
+  return lines;
+}
+
 // Of one series, so its first slice speaks for all; the images are all that are of its class.
 DicomOrigin origin_of(const DicomSlices& slices) {
   DicomOrigin origin = *slices.front().origin;
@@ -98,9 +118,12 @@ DicomOrigin origin_of(const DicomSlices& slices) {
 }  // namespace
 
 Volume read_dicom(const fs::path& source, const VolumeFileOptions& options) {
-  DicomStudy study = read_dicom_study(source, options.most_bytes, BrokenFile::Throws,
+  DicomStudy study = read_dicom_study(source, options.most_bytes,
                                       [&](double fraction) { report(options, kHeadersFraction * fraction); });
+  const std::vector<BrokenDicom> broken = std::exchange(study.broken, {});
+  if (study.series.empty() && !broken.empty()) std::rethrow_exception(broken.front().error);
   DicomSlices chosen = chosen_series(source, std::move(study), options.series);
+  const std::vector<std::string> left_out = left_out_beside(chosen, broken);
   const std::string description = described(chosen);
   DicomStack stack = stacked(source, std::move(chosen));
   DicomSlices& slices = stack.slices;
@@ -110,6 +133,7 @@ Volume read_dicom(const fs::path& source, const VolumeFileOptions& options) {
   volume.format = "DICOM";
   volume.notes = {description};
   volume.notes.insert(volume.notes.end(), stack.notes.begin(), stack.notes.end());
+  volume.notes.insert(volume.notes.end(), left_out.begin(), left_out.end());
   volume.modality = first.modality;
   volume.patient = first.patient;
   volume.size = {first.frame.columns, first.frame.rows, static_cast<int>(slices.size())};

@@ -63,7 +63,7 @@ std::string without_name(const fs::path& file, const std::string& message) {
 
 }  // namespace
 
-DicomStudy read_dicom_study(const fs::path& source, std::size_t most_bytes, BrokenFile broken,
+DicomStudy read_dicom_study(const fs::path& source, std::size_t most_bytes,
                             const std::function<void(double)>& progress) {
   const std::vector<fs::path> files = files_of(source, most_bytes);
   DicomStudy study;
@@ -76,9 +76,9 @@ DicomStudy read_dicom_study(const fs::path& source, std::size_t most_bytes, Brok
       if (!found) study.others.push_back(file);
       if (found && found->empty()) study.skipped.push_back({file, "is no image"});
     } catch (const std::runtime_error& error) {
-      // One broken file must not hide the others from who looks what there is.
-      if (broken == BrokenFile::Throws) throw;
-      study.skipped.push_back({file, without_name(file, error.what())});
+      study.broken.push_back({{file, without_name(file, error.what())},
+                              series_uid_before_damage(file),
+                              std::current_exception()});
     }
     if (found) {
       slice_count += found->size();

@@ -2,6 +2,7 @@
 // Inner header of images.
 #pragma once
 
+#include <exception>
 #include <map>
 #include <string>
 #include <vector>
@@ -14,18 +15,25 @@ namespace arthronaut::images {
 
 using DicomSlices = std::vector<DicomSlice>;
 
+// One that cannot be read, and which series it is of, where that stands before its damage.
+struct BrokenDicom {
+  SkippedFile skipped;
+  std::string series_uid;
+  std::exception_ptr error;
+};
+
 struct DicomStudy {
   std::map<std::string, DicomSlices> series;  // by UID
-  std::vector<SkippedFile> skipped;
+  std::vector<SkippedFile> skipped;           // DICOM files that are no image
+  std::vector<BrokenDicom> broken;            // one of them hides none of the others
   std::vector<std::filesystem::path> others;  // no DICOM
   std::size_t dicom_count = 0;
 };
 
-enum class BrokenFile { Throws, IsSkipped };
-
-// Headers alone are read. `progress` gets a fraction of 0 to 1. Throws IoError, InvalidInput.
+// Headers alone are read. `progress` gets a fraction of 0 to 1. Throws IoError, InvalidInput: of what is
+// there as a whole, not of one file.
 [[nodiscard]] DicomStudy read_dicom_study(const std::filesystem::path& source, std::size_t most_bytes,
-                                          BrokenFile broken, const std::function<void(double)>& progress);
+                                          const std::function<void(double)>& progress);
 
 // "CT series 3 "Knee 0.6", 400 images".
 [[nodiscard]] std::string described(const DicomSlices& slices);

@@ -134,12 +134,13 @@ SeriesList find_series(const fs::path& source, const VolumeFileOptions& options)
     list.series.push_back(volume_file(source, options));
     return list;
   }
-  DicomStudy study = read_dicom_study(source, options.most_bytes, BrokenFile::IsSkipped,
-                                      [&](double fraction) { report(options, fraction); });
+  DicomStudy study =
+      read_dicom_study(source, options.most_bytes, [&](double fraction) { report(options, fraction); });
   for (auto& [uid, slices] : study.series) list.series.push_back(series_of(source, std::move(slices)));
   std::stable_sort(list.series.begin(), list.series.end(),
                    [](const ImageSeries& a, const ImageSeries& b) { return number_of(a) < number_of(b); });
   list.skipped = std::move(study.skipped);
+  for (BrokenDicom& broken : study.broken) list.skipped.push_back(std::move(broken.skipped));
   for (const fs::path& other : study.others) {
     if (is_volume_source(other)) {
       list.series.push_back(volume_file(other, options));

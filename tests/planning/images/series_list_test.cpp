@@ -31,6 +31,44 @@ void write_series(const std::filesystem::path& folder, const std::string& uid, i
   ASSERT_EQ(k, 4);
 }
 
+// One slice of series `uid` that breaks off within its pixels.
+void write_broken(const std::filesystem::path& file, const std::string& uid, std::size_t bytes = 0) {
+  test::DicomSliceForm form = test::dicom_slices(test::oblique_volume()).begin()->second;
+  form.series_uid = uid;
+  const std::string whole = test::dicom(form);
+  test::write_bytes(file, whole.substr(0, bytes > 0 ? bytes : whole.size() - 3));
+}
+
+// A file that is broken keeps nobody from another series, and is said to be left out. One of the series
+// itself does; of what does not say its series the others tell whether a slice is missing.
+TEST(SeriesList, ABrokenFileOfAnotherSeriesIsLeftOut) {
+  const TemporaryFolder folder;
+  write_series(folder.path(), "1.2.3.4");
+  write_broken(folder / "other.dcm", "1.2.3.5");
+  write_broken(folder / "short.dcm", "1.2.3.4", 300);
+  for (const char* const series : {"", "1.2.3.4"}) {
+    const Volume volume = read_volume(folder.path(), {.series = series});
+    EXPECT_EQ(volume.size, test::oblique_volume().size);
+    EXPECT_THAT(volume.notes,
+                testing::Contains(testing::AllOf(HasSubstr("left out: other.dcm: "), HasSubstr("cut off"),
+                                                 HasSubstr("of another series"))));
+    EXPECT_THAT(volume.notes,
+                testing::Contains(testing::AllOf(HasSubstr("left out: short.dcm: "),
+                                                 HasSubstr("does not say which series it is of"))));
+  }
+  write_broken(folder / "same.dcm", "1.2.3.4");
+  EXPECT_THAT(test::message_of<InvalidInput>([&] { (void)read_volume(folder.path()); }),
+              testing::AllOf(HasSubstr("same.dcm"), HasSubstr("cut off")));
+}
+
+TEST(SeriesList, TheSliceThatABrokenFileWasIsMissed) {
+  const TemporaryFolder folder;
+  write_series(folder.path(), "1.2.3.4", 1);
+  write_broken(folder / "short.dcm", "1.2.3.4", 300);
+  EXPECT_THAT(test::message_of<InvalidInput>([&] { (void)read_volume(folder.path()); }),
+              HasSubstr("a slice is missing"));
+}
+
 TEST(SeriesList, SaysWhatEachSeriesIsAndWhatIsWrongWithIt) {
   const TemporaryFolder folder;
   write_series(folder / "whole", "1.2.3.4");
