@@ -68,9 +68,11 @@ void import(Context& context, const ImportArguments& arguments) {
   if (process.state() != importing::ImportProcess::State::Done) throw InvalidInput(process.message());
   importing::BoneImport import = process.take_result();
   if (arguments.without_identity) import.forget_patient();
+  const std::vector<std::string> replaced = importing::replaced_in_words(folder, import);
   const cases::Case target = importing::add_to_case(folder, import, arguments.name, arguments.source);
 
   for (const auto& line : import.lines) context.say(line);
+  for (const auto& line : replaced) context.say(line);
   std::vector<std::string> doubts;
   for (const importing::ImportedBone& imported : import.bones) {
     const std::string bone(bones::to_text(imported.bone.kind));

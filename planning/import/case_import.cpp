@@ -95,23 +95,46 @@ void forget_replaced(const fs::path& folder, cases::Case& target, const BoneImpo
   if (is_replaced) cases::save_case(folder, target);
 }
 
+std::vector<bones::BoneKind> replaced_bones(const cases::Case& target, const BoneImport& import) {
+  std::vector<bones::BoneKind> kinds;
+  for (const ImportedBone& imported : import.bones)
+    if (target.bones.contains(imported.bone.kind)) kinds.push_back(imported.bone.kind);
+  return kinds;
+}
+
+// Whether images that the case has are of bones that none of is left: all of them are replaced by those of an
+// image of its own, which lies elsewhere. Meshes and label maps come without; they are often made in an image
+// that is there.
+bool replaces_images(const cases::Case& target, const BoneImport& import, const cases::Studies& studies) {
+  if (!import.image || import.image->image.is_label_map) return false;
+  const std::vector<bones::BoneKind> replaced = replaced_bones(target, import);
+  if (replaced.empty() || replaced.size() < target.bones.size()) return false;
+  const std::string& frame = import.origin.frame_of_reference_uid;
+  return frame.empty() || std::ranges::none_of(studies, [&](const auto& study) {
+           return study.second.frame_of_reference_uid == frame;
+         });
+}
+
 void put_bones(cases::Case& target, const BoneImport& import) {
   for (const ImportedBone& imported : import.bones) target.bones[imported.bone.kind] = imported.bone;
+}
+
+// Whether the case has the import's image already.
+bool image_there(const fs::path& folder, const cases::Case& target, const BoneImport& import) {
+  const cases::CaseImage& image = import.image->image;
+  return std::ranges::any_of(target.images, [&](const cases::CaseImage& other) {
+    return other.size == image.size && other.spacing_mm == image.spacing_mm &&
+           other.modality == image.modality && other.is_label_map == image.is_label_map &&
+           holds_same(folder / other.file, import.image->volume);
+  });
 }
 
 // Beside the bones, which were made from it. Empty when there is none to store: the same volume once more
 // keeps its place.
 std::optional<cases::CaseImage> store_new_image(const fs::path& folder, const cases::Case& target,
                                                 const BoneImport& import) {
-  if (!import.image) return std::nullopt;
+  if (!import.image || image_there(folder, target, import)) return std::nullopt;
   cases::CaseImage image = import.image->image;
-  const auto& there = target.images;
-  const auto same = std::find_if(there.begin(), there.end(), [&](const cases::CaseImage& other) {
-    return other.size == image.size && other.spacing_mm == image.spacing_mm &&
-           other.modality == image.modality && other.is_label_map == image.is_label_map &&
-           holds_same(folder / other.file, import.image->volume);
-  });
-  if (same != there.end()) return std::nullopt;
   int number = 1;
   const auto is_taken = [&] { return fs::exists(folder / ("images/" + std::to_string(number) + ".nrrd")); };
   while (is_taken()) ++number;
@@ -164,8 +187,10 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
   // What cannot be read is found out before anything is forgotten or written.
   cases::BoneDoubts doubts = cases::load_bone_doubts(folder);
   cases::Studies studies = cases::load_studies(folder);
+  const bool is_other_knee = replaces_images(target, import, studies);
   const auto image = store_new_image(folder, target, import);
   try {
+    if (is_other_knee && image) target.images.clear();
     forget_replaced(folder, target, import);
     // Before its bone: of a doubt too many, after a crash, nobody drills wrongly.
     save_doubts_of(folder, import, target.side, std::move(doubts));
@@ -221,6 +246,21 @@ void refuse_missing_side(const fs::path& folder, const fs::path& source, const B
   // Two bones may tell it together, by their shapes.
   const bool is_one_label = !options.labels.empty() && (options.labels.size() == 1 || options.kind);
   if (is_mesh || (is_one_label && !is_side_in_segments(source))) refuse_unknown_side(source);
+}
+
+std::vector<std::string> replaced_in_words(const fs::path& folder, const BoneImport& import) {
+  if (!fs::exists(folder / "case.json")) return {};
+  const cases::Case target = cases::load_case(folder);
+  std::string bones;
+  for (const bones::BoneKind kind : replaced_bones(target, import))
+    bones += (bones.empty() ? "its " : " and its ") + std::string(bones::to_text(kind));
+  if (bones.empty()) return {};
+  std::vector<std::string> words{"replaced in the case: " + bones};
+  if (!replaces_images(target, import, cases::load_studies(folder)) || image_there(folder, target, import))
+    return words;
+  for (const cases::CaseImage& image : target.images)
+    words.push_back(image.file + ", of the bones before, is no image of the case any more; its file stays");
+  return words;
 }
 
 cases::Case add_to_case(const fs::path& folder, const BoneImport& import, const std::string& name,

@@ -303,6 +303,65 @@ TEST(CaseImport, AReplacedBoneLosesItsCartilage) {
   EXPECT_TRUE(cases::load_cartilage(folder / "a", BoneKind::Tibia));
 }
 
+// A CT of 4 x 3 x 2 voxels of that value, as an import has it beside its bones.
+void add_image(BoneImport& import, const TemporaryFolder& folder, float value) {
+  images::Volume volume;
+  volume.size = {4, 3, 2};
+  volume.modality = "CT";
+  volume.values.assign(24, value);
+  volume.values.front() = 0.5F;  // no label map
+  images::write_volume(folder / "ct.nrrd", volume);
+  BoneImportOptions options;
+  options.side = Side::Right;
+  options.images_only = true;
+  import.image = import_bones(folder / "ct.nrrd", options).image;
+}
+
+// Another knee's CT takes the place of a case's bones: it is said, and the image before is not shown with
+// bones that are not of it.
+TEST(CaseImport, AnotherKneeLeavesNoImageOfTheOneBefore) {
+  const TemporaryFolder folder;
+  BoneImport femur = imported(BoneKind::Femur);
+  add_image(femur, folder, 100);
+  EXPECT_THAT(replaced_in_words(folder / "a", femur), IsEmpty());
+  add_to_case(folder / "a", femur, "", "bone.stl");
+  EXPECT_THAT(replaced_in_words(folder / "a", femur), ElementsAre("replaced in the case: its femur"));
+  add_to_case(folder / "a", femur, "", "bone.stl");  // the same once more
+  ASSERT_EQ(cases::load_case(folder / "a").images.size(), 1U);
+
+  BoneImport both = imported(BoneKind::Femur);
+  both.bones.push_back(imported(BoneKind::Tibia).bones[0]);
+  add_image(both, folder, 200);
+  EXPECT_THAT(
+      replaced_in_words(folder / "a", both),
+      ElementsAre("replaced in the case: its femur",
+                  "images/1.nrrd, of the bones before, is no image of the case any more; its file stays"));
+  add_to_case(folder / "a", both, "", "bone.stl");
+  const cases::Case after = cases::load_case(folder / "a");
+  ASSERT_EQ(after.images.size(), 1U);
+  EXPECT_EQ(cases::load_image(folder / "a", after.images[0]).values.back(), 200);
+  EXPECT_TRUE(std::filesystem::exists(folder / "a/images/1.nrrd"));
+
+  // The tibia that stays is of the image that is there.
+  BoneImport one = imported(BoneKind::Femur);
+  add_image(one, folder, 300);
+  add_to_case(folder / "a", one, "", "bone.stl");
+  EXPECT_EQ(cases::load_case(folder / "a").images.size(), 2U);
+}
+
+// Bones of another series of the same place: its images still show where they lie.
+TEST(CaseImport, AnImageOfTheSameFrameOfReferenceStays) {
+  const TemporaryFolder folder;
+  BoneImport femur = imported(BoneKind::Femur);
+  femur.origin.study_uid = "1.2";
+  femur.origin.frame_of_reference_uid = "1.2.7";
+  add_image(femur, folder, 100);
+  add_to_case(folder / "a", femur, "", "bone.stl");
+  add_image(femur, folder, 200);
+  add_to_case(folder / "a", femur, "", "bone.stl");
+  EXPECT_EQ(cases::load_case(folder / "a").images.size(), 2U);
+}
+
 // A bone that is planned on is not exchanged under its tunnel.
 TEST(CaseImport, ABoneThatIsPlannedOnStays) {
   const TemporaryFolder folder;
