@@ -11,25 +11,21 @@ namespace fs = std::filesystem;
 fs::path thumbnail_file(const fs::path& case_folder) { return case_folder / "cache" / "thumbnail.png"; }
 
 bool has_thumbnail(const fs::path& case_folder) {
-  std::error_code error;
-  const auto made = fs::last_write_time(thumbnail_file(case_folder), error);
-  if (error) return false;
-  for (const char* file : {"case.json", "plan.json"}) {
-    const auto written = fs::last_write_time(case_folder / file, error);
-    if (!error && written > made) return false;
-  }
-  return true;
+  return is_of_now(thumbnail_file(case_folder), case_folder) && plan_verdict(case_folder);
 }
 
-cases::Case load_for_thumbnail(const fs::path& case_folder) {
+ThumbnailCase load_for_thumbnail(const fs::path& case_folder) {
   constexpr std::size_t kTriangles = 30'000;
-  cases::Case knee = cases::load_case(case_folder);
+  ThumbnailCase loaded{cases::load_case(case_folder), {}};
+  loaded.verdict = judge_plan(loaded.knee);
+  cases::Case& knee = loaded.knee;
   for (auto& [kind, bone] : knee.bones) bone.mesh = *scene::simplified(bone.mesh, kTriangles);
-  return knee;
+  return loaded;
 }
 
-void draw_thumbnail(const fs::path& case_folder, const cases::Case& knee) {
-  const scene::Image picture = scene::render_plan_picture({.knee = &knee,
+void draw_thumbnail(const fs::path& case_folder, const ThumbnailCase& loaded) {
+  keep_plan_verdict(case_folder, loaded.verdict);
+  const scene::Image picture = scene::render_plan_picture({.knee = &loaded.knee,
                                                            .only_bone = {},
                                                            .achieved = {},
                                                            .curve_points_in_bone = {},

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "app/library/plan_verdict.h"
 #include "planning/cases/case.h"
 
 namespace arthronaut::workstation_library {
@@ -11,13 +12,17 @@ namespace arthronaut::workstation_library {
 inline constexpr int kThumbnailWidth = 200, kThumbnailHeight = 160;
 
 [[nodiscard]] std::filesystem::path thumbnail_file(const std::filesystem::path& case_folder);
-// There, and not older than case and plan.
+// There with the plan's verdict, and neither older than case and plan.
 [[nodiscard]] bool has_thumbnail(const std::filesystem::path& case_folder);
-// The case, its bones as coarse as a small picture needs: seconds where they are fine. Throws IoError or
-// InvalidInput for a case that cannot be read.
-[[nodiscard]] cases::Case load_for_thumbnail(const std::filesystem::path& case_folder);
-// Draws it (off-screen, see scene/plan_picture.h) and keeps the picture: some 100 ms. Throws IoError where it
-// cannot be written, InvalidInput for a case without bones, DeviceError without OpenGL.
-void draw_thumbnail(const std::filesystem::path& case_folder, const cases::Case& knee);
+struct ThumbnailCase {
+  cases::Case knee;
+  PlanVerdict verdict;
+};
+// The case, its bones as coarse as a small picture needs, and what is wrong in its plan: seconds where they
+// are fine. Throws IoError or InvalidInput for a case that cannot be read.
+[[nodiscard]] ThumbnailCase load_for_thumbnail(const std::filesystem::path& case_folder);
+// Draws it (off-screen, see scene/plan_picture.h) and keeps picture and verdict: some 100 ms. Throws IoError
+// where it cannot be written, InvalidInput for a case without bones, DeviceError without OpenGL.
+void draw_thumbnail(const std::filesystem::path& case_folder, const ThumbnailCase& loaded);
 
 }  // namespace arthronaut::workstation_library

@@ -16,7 +16,23 @@ using library::CaseRecord;
 using library::CaseState;
 using widgets::Severity;
 
-Severity severity_of(const CaseRecord& record) {
+using workstation_library::PlanVerdict;
+
+// A tick says that every bone is planned and that no check finds it wrong; nobody has looked: no tick.
+Severity severity_of_plan(const CaseRecord& record, const PlanVerdict* verdict) {
+  if (record.planned.empty() || verdict == nullptr) return Severity::Quiet;
+  if (!verdict->wrong.empty()) return Severity::Caution;
+  return record.is_planned_whole() ? Severity::Good : Severity::Quiet;  // nor for half a plan
+}
+
+std::string plan_in_words(const CaseRecord& record, const PlanVerdict* verdict) {
+  if (verdict == nullptr || verdict->wrong.empty()) return record.plan_in_words();
+  const std::size_t more = verdict->wrong.size() - 1;
+  return record.plan_in_words() + "; wrong: " + verdict->wrong.front() +
+         (more > 0 ? "; and " + std::to_string(more) + " more" : "");
+}
+
+Severity severity_of(const CaseRecord& record, const PlanVerdict* verdict) {
   switch (record.state()) {
     case CaseState::Missing:
       return Severity::Caution;
@@ -25,7 +41,7 @@ Severity severity_of(const CaseRecord& record) {
     case CaseState::NotPlanned:
       return Severity::Quiet;
     case CaseState::Planned:
-      return record.is_planned_whole() ? Severity::Good : Severity::Quiet;  // no tick for half a plan
+      return severity_of_plan(record, verdict);
     case CaseState::Navigated:
     case CaseState::Drilled:
       break;
@@ -202,12 +218,13 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
                        wide));
   widgets::draw_text(draw, ui.theme.body, at.x + width - right, at.y + ui.theme.px(6), widgets::kQuietText,
                      when_in_words(used_utc(record), files::utc_now()));
-  const Severity severity = severity_of(record);
+  const PlanVerdict* const verdict = pictures_.verdict_of(record.folder);
+  const Severity severity = severity_of(record, verdict);
   widgets::draw_sign(draw, {x + ui.theme.px(10), at.y + ui.theme.px(48)}, ui.theme.px(9), severity);
   const std::size_t count = record.sessions.size();
-  std::string what = capital(record.state() == CaseState::Planned ? record.plan_in_words()
+  std::string what = capital(record.state() == CaseState::Planned ? plan_in_words(record, verdict)
                                                                   : std::string(to_text(record.state())));
-  if (severity == Severity::Caution || severity == Severity::Bad)
+  if (record.state() != CaseState::Planned && (severity == Severity::Caution || severity == Severity::Bad))
     what += ": " + record.last_outcome();
   else if (count > 0)
     what += ", " + std::to_string(count) + (count == 1 ? " session" : " sessions, the last") +
@@ -244,13 +261,13 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_picture(*ImGui::GetWindowDrawList(),
                record->is_there && record->problem.empty() ? pictures_.of(record->folder) : nullptr, place);
   ImGui::Dummy({width, place.height});
-  const Severity severity = severity_of(*record);
-  if (severity == Severity::Caution || severity == Severity::Bad)
+  const PlanVerdict* const verdict = pictures_.verdict_of(record->folder);
+  const Severity severity = severity_of(*record, verdict);
+  if (record->state() != CaseState::Planned && (severity == Severity::Caution || severity == Severity::Bad))
     widgets::status_row(ui, severity, capital(std::string(to_text(record->state()))), record->last_outcome());
   if (!record->side.empty()) widgets::status_row(ui, Severity::Quiet, "Side", record->side + " knee");
   if (record->problem.empty())
-    widgets::status_row(ui, record->is_planned_whole() ? Severity::Good : Severity::Quiet, "Plan",
-                        record->plan_in_words());
+    widgets::status_row(ui, severity_of_plan(*record, verdict), "Plan", plan_in_words(*record, verdict));
   if (const library::SessionFacts* last = record->last_session()) {
     std::string words;
     for (const std::string& part : {files::local_day(last->started_utc), last->what(), last->outcome()})

@@ -17,6 +17,7 @@ const widgets::VideoTexture* CasePictures::of(const fs::path& case_folder) {
     if (wanted_.empty()) wanted_ = case_folder;
     return nullptr;
   }
+  verdicts_[case_folder] = workstation_library::plan_verdict(case_folder);
   try {  // a picture is an ornament: a list without it is whole
     const auto frame = std::make_shared<const camera::Frame>(
         sources::read_picture(workstation_library::thumbnail_file(case_folder)));
@@ -29,6 +30,11 @@ const widgets::VideoTexture* CasePictures::of(const fs::path& case_folder) {
   return nullptr;
 }
 
+const workstation_library::PlanVerdict* CasePictures::verdict_of(const fs::path& case_folder) const {
+  const auto known = verdicts_.find(case_folder);
+  return known != verdicts_.end() && known->second ? &*known->second : nullptr;
+}
+
 void CasePictures::poll() {
   std::erase_if(left_, [](const auto& one) { return one->is_ready(); });
   if (making_->is_busy()) {
@@ -39,9 +45,9 @@ void CasePictures::poll() {
   made_ = std::exchange(wanted_, {});
   making_->start(
       [folder = made_, shared = shared_] {
-        const cases::Case knee = workstation_library::load_for_thumbnail(folder);
+        const workstation_library::ThumbnailCase loaded = workstation_library::load_for_thumbnail(folder);
         const std::scoped_lock lock(shared->drawing);
-        if (shared->is_wanted) workstation_library::draw_thumbnail(folder, knee);
+        if (shared->is_wanted) workstation_library::draw_thumbnail(folder, loaded);
       },
       wake_);
 }
@@ -71,6 +77,7 @@ void CasePictures::finish() {
 
 void CasePictures::forget_all() {
   shown_.clear();
+  verdicts_.clear();
   without_.clear();
   wanted_.clear();
 }

@@ -13,6 +13,7 @@
 #include <set>
 #include <vector>
 
+#include "app/library/plan_verdict.h"
 #include "app/widgets/video_texture.h"
 #include "navigation/worker/awaited.h"
 
@@ -28,6 +29,9 @@ class CasePictures {
   // Of a case that is in view. Null while it has none; it is then the next to be made. A case that cannot be
   // drawn stays without.
   [[nodiscard]] const widgets::VideoTexture* of(const std::filesystem::path& case_folder);
+  // What is wrong in its plan; null until of() has its picture.
+  [[nodiscard]] const workstation_library::PlanVerdict* verdict_of(
+      const std::filesystem::path& case_folder) const;
   void poll();
   // From here on nothing is drawn off-screen until another picture is asked for: waits while one is drawn,
   // not while its case is read, which goes on for itself and comes to nothing.
@@ -46,6 +50,7 @@ class CasePictures {
 
   std::function<void()> wake_;
   std::map<std::filesystem::path, std::unique_ptr<widgets::VideoTexture>> shown_;
+  std::map<std::filesystem::path, std::optional<workstation_library::PlanVerdict>> verdicts_;
   std::set<std::filesystem::path> without_;  // have none, and will have none until forget_all()
   std::filesystem::path wanted_, made_;      // next to be made; being made
   std::shared_ptr<Making> shared_ = std::make_shared<Making>();                                // never null

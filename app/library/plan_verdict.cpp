@@ -1,0 +1,66 @@
+#include "app/library/plan_verdict.h"
+
+#include <sstream>
+
+#include "planning/files/atomic_file.h"
+#include "planning/files/private_folder.h"
+#include "planning/geometry/error.h"
+#include "planning/plan_review/plan_review.h"
+
+namespace arthronaut::workstation_library {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kFirstLine = "arthronaut.plan_verdict 1";
+
+}  // namespace
+
+fs::path plan_verdict_file(const fs::path& case_folder) { return case_folder / "cache" / "plan_verdict.txt"; }
+
+bool is_of_now(const fs::path& made, const fs::path& case_folder) {
+  std::error_code error;
+  const auto when = fs::last_write_time(made, error);
+  if (error) return false;
+  for (const char* file : {"case.json", "plan.json"}) {
+    const auto written = fs::last_write_time(case_folder / file, error);
+    if (!error && written > when) return false;
+  }
+  return true;
+}
+
+PlanVerdict judge_plan(const cases::Case& knee) {
+  PlanVerdict verdict;
+  if (knee.plan.tunnels.empty()) return verdict;
+  const plan_review::CaseReview review(knee);
+  for (const auto& [key, tunnel] : review.tunnels())
+    for (const std::string& words : tunnels::wrong_in_words(review.checks(key)))
+      verdict.wrong.push_back(tunnels::name_of(key) + ": " + words);
+  return verdict;
+}
+
+void keep_plan_verdict(const fs::path& case_folder, const PlanVerdict& verdict) {
+  std::ostringstream text;
+  text << kFirstLine << '\n';
+  for (const std::string& wrong : verdict.wrong) text << wrong << '\n';
+  files::create_private_folder(plan_verdict_file(case_folder).parent_path());
+  files::write_atomically(plan_verdict_file(case_folder), text.str());
+}
+
+std::optional<PlanVerdict> plan_verdict(const fs::path& case_folder) {
+  const fs::path file = plan_verdict_file(case_folder);
+  if (!is_of_now(file, case_folder)) return std::nullopt;
+  try {  // a cache: what cannot be read is made again
+    std::istringstream text(files::read_text(file));
+    std::string line;
+    if (!std::getline(text, line) || line != kFirstLine) return std::nullopt;
+    PlanVerdict verdict;
+    while (std::getline(text, line)) verdict.wrong.push_back(line);
+    return verdict;
+  } catch (const IoError&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace arthronaut::workstation_library
