@@ -266,13 +266,15 @@ void PlanView::add_view_actions(widgets::Actions& actions) {
 
 void PlanView::add_slice_actions(widgets::Actions& actions) {
   const auto has_slices = [this] { return state_.shows_slices && slices_.volume() != nullptr; };
-  actions.add({"plan.slices", "Slices",
-               "Three slices of the images beside the bones, linked by the cross-hair", GLFW_KEY_S, 0, false,
-               [this] { return model_ != nullptr; }, [this] { return state_.shows_slices; },
-               [this] {
-                 state_.shows_slices = !state_.shows_slices;
-                 slices_.use(MeasuringTool::None);
-               }});
+  actions.add(
+      {"plan.slices", "Slices",
+       "Three slices of the images beside the bones, linked by the cross-hair; needs a case with images",
+       GLFW_KEY_S, 0, false, [this] { return model_ != nullptr && slices_.has_images(); },
+       [this] { return state_.shows_slices; },
+       [this] {
+         state_.shows_slices = !state_.shows_slices;
+         slices_.use(MeasuringTool::None);
+       }});
   actions.add({"plan.paint",
                "Paint bones",
                "Corrects the bones in the images, or grows them from painted strokes",
@@ -305,10 +307,12 @@ void PlanView::add_slice_actions(widgets::Actions& actions) {
 }
 
 void PlanView::add_volume_actions(widgets::Actions& actions) {
-  actions.add({"plan.volume", "Images in 3D",
-               "The images in the bones' place: bone, bone and soft tissue, the bones' surfaces again",
-               GLFW_KEY_V, 0, false, [this] { return model_ != nullptr; }, [this] { return volume_.is_on(); },
-               [this] { volume_.next(); }});
+  actions.add(
+      {"plan.volume", "Images in 3D",
+       "The images in the bones' place: bone, bone and soft tissue, the bones' surfaces again; needs a "
+       "case with images",
+       GLFW_KEY_V, 0, false, [this] { return model_ != nullptr && slices_.has_images(); },
+       [this] { return volume_.is_on(); }, [this] { volume_.next(); }});
   const auto threshold = [&](const char* id, const char* label, const char* tooltip, int key, int steps) {
     actions.add({id,
                  label,

@@ -30,6 +30,7 @@ class SlicePanes {
   // Another case; its images are not read yet. joint: what is shown of them at first, the cross-hair in its
   // middle.
   void open(const cases::Case& knee, const std::filesystem::path& folder, const geometry::Bounds& joint);
+  [[nodiscard]] bool has_images() const { return !images_.empty(); }
   // Begins to load, once.
   void want();
   void tick();  // takes over what was loaded

@@ -230,8 +230,10 @@ TEST_F(PlanWindow, ImagesTakeTheBonesPlaceByAKey) {
   RunningWorkstation without(display, folder_.path());
   open(without);
   without.press("v");
-  EXPECT_TRUE(without.wait_for_state(
-      "volume", "This case has no images: it was made of meshes, or by an older version."));
+  EXPECT_TRUE(without.wait_for_state("untaken_key", "V did nothing: Images in 3D is not possible now"));
+  without.press("s");  // the 3D view keeps its room
+  EXPECT_TRUE(without.wait_for_state("untaken_key", "S did nothing: Slices is not possible now"));
+  EXPECT_EQ(without.state("volume"), "");
 }
 
 // One key makes both tunnels, one undo takes them back; landmarks are gone through by keys, and confirming
