@@ -128,7 +128,7 @@ void add_import_command(CLI::App& app, Context& context) {
                   "Least value of bone in a grey volume; default for CT: 250 HU, 180 HU for coarse voxels")
       ->check(finite());
   sub->add_option("--series", arguments->series, "Series number or UID, for DICOM with several");
-  sub->add_option("--name", arguments->name, "Name of the case; default: \"Knee\" and the date");
+  sub->add_option("--name", arguments->name, "Name of the case; default: \"Knee\", date and time");
   sub->add_option("--memory-limit-gib", arguments->memory_limit_gib,
                   "Memory that reading and surface making may take; default: 2")
       ->check(above_zero());

@@ -53,7 +53,7 @@ class ImportWork {
   // Choosing. Which bone a mesh of the list is.
   void set_bone(std::size_t source, bones::BoneKind bone);
   // Asking. The side must be known then, or said; the one that is said last holds, and becomes of the case
-  // alone: result() tells what was found. Name: of the case, empty for "Knee" and the date.
+  // alone: result() tells what was found. Name: of the case, empty for "Knee", date and time.
   void set_side(bones::Side side);
   // Asking. Whether the front of a mesh looks to the patient's back, as in the other axes it would not; and
   // the import once more with such meshes in these.

@@ -2,6 +2,14 @@
 
 namespace arthronaut::window {
 
+WhoseLine line_of_case(const std::string& case_name) {
+  constexpr std::size_t kLongestTail = 12;
+  const std::size_t blank = case_name.rfind(' ');
+  if (blank == std::string::npos || blank == 0 || case_name.size() - blank > kLongestTail)
+    return {case_name, "", false};
+  return {case_name.substr(0, blank), case_name.substr(blank), false};
+}
+
 std::vector<WhoseLine> whose_knee(const std::optional<cases::Identity>& identity,
                                   const std::string& case_name, bones::Side side) {
   std::vector<WhoseLine> lines;
@@ -15,8 +23,10 @@ std::vector<WhoseLine> whose_knee(const std::optional<cases::Identity>& identity
       lines.push_back({id, (id.empty() || born.empty() ? "" : "  \u00B7  ") + born, true});
   }
   const std::string knee = std::string(bones::to_text(side)) + " knee";
-  if (lines.empty()) return {{case_name, "", false}, {"", knee, false}};  // there is room for the whole name
-  lines.push_back({case_name, "  \u2013  " + knee, false});
+  WhoseLine of_case = line_of_case(case_name);
+  if (lines.empty()) return {of_case, {"", knee, false}};  // there is room for the whole name
+  of_case.rest += "  \u2013  " + knee;
+  lines.push_back(of_case);
   return lines;
 }
 

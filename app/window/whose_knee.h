@@ -16,6 +16,9 @@ struct WhoseLine {
   bool is_of_patient = false;
 };
 
+// The name of a case: its last word tells two of a day apart, and is never cut unless it is long itself.
+[[nodiscard]] WhoseLine line_of_case(const std::string& case_name);
+
 // The patient as far as known, the name of the case, its side. Two or three lines: of a case without a
 // patient its name has one to itself, which tells two of a day apart.
 [[nodiscard]] std::vector<WhoseLine> whose_knee(const std::optional<cases::Identity>& identity,

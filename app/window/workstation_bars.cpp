@@ -130,9 +130,11 @@ void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& 
   const cases::Case& knee = model()->knee();
   const std::string side_words = std::string(bones::to_text(knee.side)) + " knee";
   // A birth date tells two of one name apart and comes before a number, which nobody knows by heart.
-  std::string name = knee.name, born;
+  const WhoseLine of_case = line_of_case(knee.name);
+  std::string name = of_case.may_be_cut, born = of_case.rest;
   if (const auto& identity = case_->identity()) {
     name = identity->name_in_words();
+    born.clear();
     for (const std::string& part : {identity->birth_date_in_words(), identity->patient_id})
       if (!part.empty()) born += (name.empty() && born.empty() ? "" : " \u00B7 ") + part;
   }

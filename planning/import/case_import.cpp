@@ -45,8 +45,8 @@ cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, con
   refuse_what_is_no_case(folder);
   if (!import.side) refuse_unknown_side(source);
   cases::Case created;
-  // Not by the source's or the folder's name: it often is the patient's.
-  created.name = name.empty() ? "Knee " + files::local_day(files::utc_now()) : name;
+  // Not by the source's or the folder's name: it often is the patient's. The time tells two of a day apart.
+  created.name = name.empty() ? "Knee " + files::local_time_in_words(files::utc_now()) : name;
   created.side = *import.side;
   created.created_utc = files::utc_now();
   return created;

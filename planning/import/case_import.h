@@ -25,7 +25,7 @@ void refuse_missing_side(const std::filesystem::path& folder, const std::filesys
                                                          const BoneImport& import);
 
 // Writes the case with these bones into `folder`, and returns it. `name` becomes the case's name; empty:
-// "Knee" and the date, or the one it has. `source` is for messages.
+// "Knee", date and time, or the one it has. `source` is for messages.
 //
 // The bones' doubts, in a knee of the case's side, stay with the case (cases/bone_doubts.h).
 //

@@ -24,10 +24,20 @@ TEST(WhoseKnee, NeitherBirthDateNorSideIsCutShort) {
   EXPECT_NE(kept.find("left knee"), std::string::npos) << kept;
 }
 
+// The number, or the time, by which two cases of a day are told apart is not what is cut.
+TEST(WhoseKnee, WhatTellsTwoOfADayApartIsNotCut) {
+  EXPECT_EQ(line_of_case("Knee 2026-11-24 14:05:31").rest, " 14:05:31");
+  EXPECT_EQ(line_of_case("Knee").may_be_cut, "Knee");
+  EXPECT_EQ(line_of_case("A Donaudampfschifffahrt").may_be_cut, "A Donaudampfschifffahrt");
+  const auto lines =
+      whose_knee(cases::Identity{"Muster^Anna", "4711", "19900131"}, "Knee 2026-11-24 2", bones::Side::Left);
+  EXPECT_EQ(lines.back().may_be_cut + "|" + lines.back().rest, "Knee 2026-11-24| 2  \u2013  left knee");
+}
+
 TEST(WhoseKnee, OnlyWhatIsKnownHasALine) {
   const auto alone = whose_knee(std::nullopt, "Knee 2026-11-24 2", bones::Side::Right);
   ASSERT_EQ(alone.size(), 2U);
-  EXPECT_EQ(alone[0].may_be_cut + "|" + alone[0].rest, "Knee 2026-11-24 2|");
+  EXPECT_EQ(alone[0].may_be_cut + "|" + alone[0].rest, "Knee 2026-11-24| 2");
   EXPECT_EQ(alone[1].may_be_cut + "|" + alone[1].rest, "|right knee");
   const auto lines = whose_knee(cases::Identity{"", "", "19900131"}, "Knee", bones::Side::Right);
   ASSERT_EQ(lines.size(), 2U);

@@ -42,6 +42,8 @@ TEST(CaseImport, MakesACaseAndAddsToIt) {
       add_to_case(folder / "Mustermann.arthro", imported(BoneKind::Femur), "", "bone.stl");
   // A folder may carry the patient's name: the case does not take it over.
   EXPECT_THAT(made.name, AllOf(Not(IsEmpty()), Not(HasSubstr("Mustermann"))));
+  // By its time: a second one of the same day has another name.
+  EXPECT_THAT(made.name, testing::MatchesRegex("Knee ....-..-.. ..:..:.."));
   EXPECT_THAT(folder.names(), ElementsAre("Mustermann.arthro"));
   add_to_case(folder / "Mustermann.arthro", imported(BoneKind::Tibia), "Other", "bone.stl");
   const cases::Case both = cases::load_case(folder / "Mustermann.arthro");
