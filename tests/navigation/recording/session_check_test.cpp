@@ -386,7 +386,8 @@ TEST_F(SessionCheckTest, FindsThatTheEndIsGoneOfASessionWithPictures) {
   // As a power cut leaves it between the seal and the database's own hash.
   put_text(folder_ / "chain.csv", without_last_lines(chain, 1));
   EXPECT_TRUE(check_session(folder_).is_unbroken());
-  EXPECT_THAT(check_session(folder_).notes, ElementsAre(HasSubstr("session.sqlite: was being written")));
+  EXPECT_THAT(check_session(folder_).notes,
+              ElementsAre(HasSubstr("session.sqlite: its rows were looked at")));
 }
 
 // A chain that was deleted is told from one that never was.
