@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/command_line/adopted_file.h"
 #include "app/command_line/cartilage_option.h"
 #include "app/command_line/command.h"
 #include "app/command_line/interruption.h"
@@ -21,7 +22,6 @@
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_lock.h"
-#include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "planning/landmarks/anatomical_axes.h"
 
@@ -67,27 +67,6 @@ fs::path file_to_use(const std::string& given, const fs::path& of_case, const st
   if (fs::exists(of_case)) return of_case;
   throw InvalidInput(of_case, "", "is not in the case yet: give " + option);
 }
-
-// A file that is given, to become the case's: as it was before the run, whatever becomes of it meanwhile.
-class Adopted {
- public:
-  Adopted(std::string given, fs::path of_case) : given_(std::move(given)), of_case_(std::move(of_case)) {
-    const bool is_the_cases = given_.empty() || fs::absolute(given_).lexically_normal() ==
-                                                    fs::absolute(of_case_).lexically_normal();
-    if (!is_the_cases) text_ = files::read_text(given_);
-  }
-  void write(const Context& context) const {
-    if (!text_) return;
-    const bool is_replaced = fs::exists(of_case_) && files::read_text(of_case_) != *text_;
-    files::write_atomically(of_case_, *text_);
-    if (is_replaced) context.say("The case's " + of_case_.filename().string() + " is now " + given_ + ".");
-  }
-
- private:
-  std::string given_;
-  fs::path of_case_;
-  std::optional<std::string> text_;
-};
 
 fs::path camera_file_of(const NavigateArguments& arguments) {
   return file_to_use(arguments.camera, cases::camera_file(arguments.case_folder), "--camera");
@@ -250,8 +229,8 @@ void navigate(Context& context, const NavigateArguments& arguments,
   const cases::CaseLock lock = cases::lock_or_refuse(arguments.case_folder);
   if (!lock.notice().empty()) context.say(lock.notice() + ".");
   const cases::Case knee = cases::load_case(arguments.case_folder);
-  const Adopted camera(arguments.camera, cases::camera_file(arguments.case_folder));
-  const Adopted tools(arguments.tools, cases::tools_file(arguments.case_folder));
+  const AdoptedFile camera(arguments.camera, cases::camera_file(arguments.case_folder));
+  const AdoptedFile tools(arguments.tools, cases::tools_file(arguments.case_folder));
   theatre::NavigateOptions options = navigate_options(context, arguments, knee);
   std::vector<std::string> doubts = camera_doubts(camera_file_of(arguments));  // before it becomes the case's
   const bones::BoneKind kind = options.operation.bone;

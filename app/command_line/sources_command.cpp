@@ -13,7 +13,7 @@ namespace arthronaut::command_line {
 
 namespace {
 
-using json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 using sources::CameraFacts;
 using sources::CameraInput;
 using sources::CameraMode;
@@ -25,23 +25,25 @@ struct SourcesArguments {
 
 std::string path_of(const CameraFacts& facts) { return "/dev/video" + std::to_string(facts.index); }
 
-json json_of(const CameraMode& mode) {
-  json written{{"format", mode.format}, {"size_px", {mode.size_px.x(), mode.size_px.y()}}};
-  written["frames_per_second"] = mode.frames_per_second > 0 ? json(mode.frames_per_second) : json(nullptr);
+ordered_json json_of(const CameraMode& mode) {
+  ordered_json written{{"format", mode.format}, {"size_px", {mode.size_px.x(), mode.size_px.y()}}};
+  written["frames_per_second"] =
+      mode.frames_per_second > 0 ? ordered_json(mode.frames_per_second) : ordered_json(nullptr);
   return written;
 }
 
-json json_of(const CameraInput& input) {
+ordered_json json_of(const CameraInput& input) {
   return {{"index", input.index},     {"name", input.name},           {"in_use", input.is_in_use},
           {"trouble", input.trouble}, {"standards", input.standards}, {"standard", input.standard}};
 }
 
-json json_of(const CameraFacts& facts) {
-  json written{{"source", path_of(facts)}, {"name", facts.name},      {"identity", facts.identity},
-               {"trouble", facts.trouble}, {"inputs", json::array()}, {"modes", json::array()}};
+ordered_json json_of(const CameraFacts& facts) {
+  ordered_json written{{"source", path_of(facts)},        {"name", facts.name},
+                       {"identity", facts.identity},      {"trouble", facts.trouble},
+                       {"inputs", ordered_json::array()}, {"modes", ordered_json::array()}};
   for (const CameraInput& input : facts.inputs) written["inputs"].push_back(json_of(input));
   for (const CameraMode& mode : facts.modes) written["modes"].push_back(json_of(mode));
-  written["opened_as"] = facts.chosen ? json_of(*facts.chosen) : json(nullptr);
+  written["opened_as"] = facts.chosen ? json_of(*facts.chosen) : ordered_json(nullptr);
   return written;
 }
 
@@ -90,7 +92,8 @@ void list_sources(Context& context, const SourcesArguments& arguments) {
   } else {
     throw InvalidInput(arguments.camera, "", "is no camera: /dev/video0");
   }
-  json document = {{"format", "arthronaut.sources"}, {"version", 1}, {"cameras", json::array()}};
+  ordered_json document = {
+      {"format", "arthronaut.sources"}, {"version", 1}, {"cameras", ordered_json::array()}};
   for (const sources::CameraAddress& address : addresses) {
     const CameraFacts facts = sources::camera_facts(address);
     if (!arguments.camera.empty() && !facts.trouble.empty()) throw DeviceError(facts.trouble);

@@ -93,7 +93,7 @@ struct GuidanceNumbers {
 [[nodiscard]] Eigen::Vector3d crossing_of(const Eigen::Vector3d& point_mm, const Eigen::Vector3d& direction,
                                           const tunnels::Tunnel& plan);
 
-// Allocates nothing, but where it looks for a drill's exit.
+// Allocates nothing once it has looked for a drill's exit (Surface::first_hit).
 [[nodiscard]] GuidanceNumbers compute_guidance(const GuidanceInput& input);
 
 }  // namespace arthronaut::guidance

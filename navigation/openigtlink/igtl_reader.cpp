@@ -141,6 +141,7 @@ bool IgtlReader::begin_body() {
     listener_.refused("what comes is no OpenIGTLink");
     return false;
   }
+  listener_.header(message_.version, message_.type);
   has_header_ = true;
   to_come_ = message_.body_size;
   is_passed_over_ = !is_read(message_.type) || message_.body_size > kMostBody;

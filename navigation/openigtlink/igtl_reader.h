@@ -29,6 +29,8 @@ namespace arthronaut::openigtlink {
 class MessageListener {
  public:
   virtual ~MessageListener() = default;
+  // Of every message, whatever its type, before the rest of it.
+  virtual void header(int /*version*/, std::string_view /*type*/) {}
   // LPS, mm; empty: what came is no rigid pose. stamp_utc_s: 0 where the message has none.
   virtual void pose(std::string_view device,
                     const std::optional<geometry::RigidTransform>& target_from_source,

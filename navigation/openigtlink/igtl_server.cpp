@@ -11,7 +11,6 @@
 #include <atomic>
 #include <csignal>
 #include <cstdint>
-#include <cstring>
 #include <mutex>
 #include <optional>
 #include <string_view>
@@ -175,6 +174,24 @@ class Outgoing {
   std::array<Held, kTransformNames.size()> held_;
 };
 
+// What a client says is heard for what it wants; its own poses are nobody's here.
+class WishListener : public MessageListener {
+ public:
+  explicit WishListener(Wishes& wishes) : wishes_(wishes) {}
+  void header(int version, std::string_view type) override {
+    if (version > 1) wishes_.reads_version_2 = true;
+    if (type == "GET_IMAGE") wishes_.one_picture = true;
+    if (type == "STT_IMAGE") wishes_.pictures = true;
+    if (type == "STP_IMAGE") wishes_.pictures = false;
+  }
+  void pose(std::string_view, const std::optional<geometry::RigidTransform>&, double) override {}
+  void status(std::string_view, bool, std::string_view) override {}
+  void refused(const std::string&) override {}
+
+ private:
+  Wishes& wishes_;
+};
+
 // Sends to one client until that fails; then the worker has ended. Letting it go waits for the message at
 // hand, kPatience_ms at most.
 class Client {
@@ -209,45 +226,17 @@ class Client {
  private:
   using Reader = worker::Worker<Nothing, Nothing>;
 
-  // Some of it, `most` bytes at most; 0: no more will come.
-  static std::size_t receive(igtl::ClientSocket& socket, std::uint8_t* to, std::uint64_t most,
-                             const Reader::Inbox& inbox) {
-    constexpr std::uint64_t kPiece = 4096;
-    while (!inbox.stops()) {
-      const int count = socket.Receive(to, static_cast<int>(std::min(most, kPiece)), 0);
-      if (count >= 0) return static_cast<std::size_t>(count);
-    }
-    return 0;
-  }
-
-  // Ends with the connection. By hand: the library takes apart no header but that of its own version, and
+  // Ends with the connection. The library's own reading takes apart no header but that of its version, and
   // would not find where the next message begins.
   static void read_wishes(igtl::ClientSocket& socket, Wishes& wishes, const Reader::Inbox& inbox) {
     constexpr int kLook_ms = 200;
-    constexpr std::size_t kType = 2, kLongestType = 12, kBodySize = 42, kAfterBodySize = 50;
     socket.SetReceiveTimeout(kLook_ms);
-    std::array<std::uint8_t, 4096> passed_over;
-    while (true) {
-      std::array<std::uint8_t, IgtlReader::kHeaderSize> header;
-      for (std::size_t have = 0; have < header.size();) {  // which may come in pieces
-        const std::size_t more = receive(socket, header.data() + have, header.size() - have, inbox);
-        if (more == 0) return;
-        have += more;
-      }
-      if (header[0] > 0 || header[1] > 1) wishes.reads_version_2 = true;
-      const auto* const type_at = reinterpret_cast<const char*>(header.data()) + kType;
-      const std::string_view type(type_at, ::strnlen(type_at, kLongestType));
-      if (type == "GET_IMAGE") wishes.one_picture = true;
-      if (type == "STT_IMAGE") wishes.pictures = true;
-      if (type == "STP_IMAGE") wishes.pictures = false;
-      std::uint64_t body_size = 0;
-      for (std::size_t i = kBodySize; i < kAfterBodySize; ++i) body_size = body_size << 8 | header[i];
-      while (body_size > 0) {
-        const std::size_t more = receive(socket, passed_over.data(),
-                                         std::min<std::uint64_t>(body_size, passed_over.size()), inbox);
-        if (more == 0) return;
-        body_size -= more;
-      }
+    WishListener listener(wishes);
+    IgtlReader reader(listener);
+    std::array<std::uint8_t, 4096> bytes;
+    while (!inbox.stops()) {
+      const int count = socket.Receive(bytes.data(), static_cast<int>(bytes.size()), 0);
+      if (count == 0 || (count > 0 && !reader.take({bytes.data(), static_cast<std::size_t>(count)}))) return;
     }
   }
 

@@ -182,7 +182,8 @@ std::optional<RayHit> Surface::first_hit(const Eigen::Vector3d& origin_mm,
   const double furthest_mm = (tree_->bounds.center_mm() - origin_mm).norm() + tree_->bounds.size_mm().norm();
   // What lies behind the first hit is not asked: the ray is followed in longer and longer stretches until one
   // holds a hit.
-  std::vector<std::int32_t> near;
+  // A drill's exit is looked for in every frame: kept for the next one.
+  thread_local std::vector<std::int32_t> near;
   std::optional<RayHit> first;
   for (double reach_mm = kFirstReach_mm, before_mm = 0; before_mm < furthest_mm;
        before_mm = reach_mm, reach_mm *= 2) {

@@ -237,6 +237,13 @@ std::size_t read_sizes(const std::filesystem::path& file, const Header& header, 
 
 }  // namespace
 
+std::vector<std::string> nrrd_segment_names(const std::filesystem::path& file, std::string_view text) {
+  std::vector<std::string> names;
+  for (const StoredSegment& segment : segments_of(file, parse_header(file, text)))
+    names.push_back(segment.name);
+  return names;
+}
+
 Volume parse_nrrd(const std::filesystem::path& file, std::string_view text, std::size_t most_bytes) {
   const Header header = parse_header(file, text);
   Volume volume;

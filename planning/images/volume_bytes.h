@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "planning/images/volume.h"
 #include "planning/images/volume_file.h"
@@ -18,6 +19,10 @@ namespace arthronaut::images {
 enum class Scalar { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float32, Float64 };
 [[nodiscard]] std::size_t bytes_per(Scalar type);
 [[nodiscard]] double decoded(Scalar type, std::endian order, const char* bytes);
+
+// Of 3D Slicer's segmentations, by the header alone, which ends in `text`. Throws InvalidInput.
+[[nodiscard]] std::vector<std::string> nrrd_segment_names(const std::filesystem::path& file,
+                                                          std::string_view text);
 
 // `text` is the whole file. Throw InvalidInput.
 [[nodiscard]] Volume parse_nifti(const std::filesystem::path& file, std::string_view text,

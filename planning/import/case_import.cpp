@@ -11,6 +11,7 @@
 #include "planning/files/utc_clock.h"
 #include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
+#include "planning/images/volume_bytes.h"
 #include "planning/import/failure_reason.h"
 #include "planning/import/import_side.h"
 
@@ -209,20 +210,20 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
   save_studies_of(folder, import, std::move(studies));
 }
 
-// 3D Slicer's segmentations alone name their segments, in the header.
+// 3D Slicer's segmentations alone name their segments; before all of it is read, by the header.
 bool is_side_in_segments(const fs::path& source) {
-  constexpr std::size_t kHeader = 1 << 16;
-  std::string header(kHeader, '\0');
+  constexpr std::size_t kLongestHeader = 1 << 16;
+  std::string header(kLongestHeader, '\0');
   std::ifstream stream(source, std::ios::binary);
-  stream.read(header.data(), kHeader);
+  stream.read(header.data(), kLongestHeader);
   header.resize(static_cast<std::size_t>(stream.gcount()));
-  header.resize(std::min(header.find("\n\n"), header.size()));
-  constexpr std::string_view kName = "_Name:=";
-  for (std::size_t at = header.find(kName); at != std::string::npos; at = header.find(kName, at)) {
-    at += kName.size();
-    std::string name = header.substr(at, header.find_first_of("\r\n", at) - at);
-    std::ranges::replace(name, '/', ' ');  // it is no path
-    if (side_in_name(name)) return true;
+  try {
+    for (std::string& name : images::nrrd_segment_names(source, header)) {
+      std::ranges::replace(name, '/', ' ');  // it is no path
+      if (side_in_name(name)) return true;
+    }
+  } catch (const InvalidInput&) {
+    // Another format, which names none.
   }
   return false;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "planning/geometry/quantile.h"
 #include "planning/postop/bone_grid.h"

@@ -1,17 +1,11 @@
 // Where a bore ends within the bone, and how well that is seen. Inner header of postop.
 #pragma once
 
-#include <limits>
 #include <optional>
 
 #include "planning/postop/drilled_mouth.h"
 
 namespace arthronaut::postop {
-
-struct BlindEnd {
-  double from_entry_mm = 0;
-  double sigma_mm = std::numeric_limits<double>::infinity();  // see end_sigma_mm; infinite: not asked
-};
 
 // What of a bore tells where it ends: the grey from here to there off its axis.
 struct TellingRing {

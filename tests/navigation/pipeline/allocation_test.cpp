@@ -7,6 +7,7 @@
 #include "navigation/tracker/pose_book.h"
 #include "tests/counted_allocations.h"
 #include "tests/navigation/pipeline/scripted_markers.h"
+#include "tests/planning/geometry/shapes.h"
 
 namespace arthronaut {
 namespace {
@@ -26,6 +27,7 @@ TEST(NavigationPipelineAllocation, NothingPerFrameAfterTheFirstFrames) {
   options.calibration.rotation_center_px = options.calibration.principal_point_px;
   pipeline::NavigationPipeline pipeline(options, std::make_unique<test::ScriptedMarkers>(&script));
   pipeline.set_plan(tunnels::Tunnel{}, 30);
+  pipeline.set_bone(std::make_shared<const geometry::Surface>(test::box({60, 60, 60})));
   registration::RegistrationSummary registration;
   registration.has_pose = registration.reliable = true;
   registration.reasons.clear();

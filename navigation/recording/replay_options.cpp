@@ -1,0 +1,28 @@
+// What a replay needs of a case.
+#include "navigation/recording/replay.h"
+#include "planning/bones/mesh_hash.h"
+#include "planning/cases/case.h"
+#include "planning/geometry/surface.h"
+
+namespace arthronaut::recording {
+
+ReplayOptions replay_options_of(const std::filesystem::path& case_folder, const RecordedSession& session) {
+  const cases::Case knee = cases::load_case(case_folder);
+  ReplayOptions options;
+  const auto found = knee.bones.find(session.header().bone);
+  if (found == knee.bones.end()) return options;
+  const std::string& recorded = session.header().mesh_sha256;
+  if (!recorded.empty() && recorded != bones::mesh_sha256(found->second.mesh)) {
+    options.other_bone = "the case's " + std::string(bones::to_text(found->first)) +
+                         " is not the mesh that this session was recorded with: nothing is registered again";
+    return options;
+  }
+  options.bone = std::make_shared<const registration::SurfaceIndex>(
+      found->second.mesh, cases::surface_index_file(case_folder, found->first));
+  options.surface = std::make_shared<const geometry::Surface>(found->second.mesh);
+  if (const auto cartilage = cases::load_cartilage(case_folder, found->first))
+    options.cartilage.emplace().points_mm = cartilage->vertices_mm;
+  return options;
+}
+
+}  // namespace arthronaut::recording
