@@ -19,11 +19,15 @@ struct ResumeArguments {
   bool json = false;
 };
 
-nlohmann::ordered_json json_of(const std::optional<recording::Resumable>& resumable) {
+nlohmann::ordered_json json_of(const recording::ResumeSearch& search) {
   nlohmann::ordered_json json = {
-      {"format", "arthronaut.resumable"}, {"version", 1}, {"is_found", resumable.has_value()}};
-  if (!resumable) return json;
-  const recording::Resumable& found = *resumable;
+      {"format", "arthronaut.resumable"}, {"version", 1}, {"is_found", search.left.has_value()}};
+  json["passed_over"] = search.passed_over;
+  if (!search.left) {
+    json["why_none"] = search.why_none;
+    return json;
+  }
+  const recording::Resumable& found = *search.left;
   const operation::ResumeOperation& was = found.operation;
   json["session"] = was.session;
   json["bone"] = bones::to_text(found.header.bone);
@@ -47,7 +51,6 @@ nlohmann::ordered_json json_of(const std::optional<recording::Resumable>& resuma
   for (const tunnels::TunnelKey& key : found.drilled) json["drilled"].push_back(tunnels::name_of(key));
   json["depth_stop_mm"] = nullptr;
   if (was.depth_stop_mm) json["depth_stop_mm"] = *was.depth_stop_mm;
-  json["passed_over"] = found.passed_over;
   return json;
 }
 
@@ -69,7 +72,6 @@ void say(const Context& context, const recording::Resumable& found) {
   for (const tunnels::TunnelKey& key : found.drilled)
     context.say("drilled already: " + tunnels::name_of(key) + " tunnel");
   if (was.depth_stop_mm) context.say(files::format("depth stop: %.1f mm, as read", *was.depth_stop_mm));
-  for (const std::string& broken : found.passed_over) context.say("passed over: " + broken);
 }
 
 void resume(Context& context, const ResumeArguments& arguments) {
@@ -78,19 +80,18 @@ void resume(Context& context, const ResumeArguments& arguments) {
   const auto bone = knee.bones.find(kind);
   if (bone == knee.bones.end())
     throw InvalidInput(arguments.case_folder, "", "the case has no " + arguments.bone);
-  const auto found = recording::find_resumable(arguments.case_folder, kind,
-                                               bones::mesh_sha256(bone->second.mesh), knee.plan.of(kind));
+  const recording::ResumeSearch search = recording::find_resumable(
+      arguments.case_folder, kind, bones::mesh_sha256(bone->second.mesh), knee.plan.of(kind));
   if (arguments.json)
-    files::write_json("-", json_of(found));
-  else if (found)
-    say(context, *found);
-  if (!found)
-    context.say_unreliable(
-        "what can be resumed",
-        {"no operation on the " + arguments.bone +
-         " was left in the middle; what navigate ran on a recording is run again, not resumed"});
-  else if (!found->refusal.empty())
-    context.say_unreliable("the registration", {"is not brought back: " + found->refusal});
+    files::write_json("-", json_of(search));
+  else if (search.left)
+    say(context, *search.left);
+  if (!arguments.json)
+    for (const std::string& broken : search.passed_over) context.say("passed over: " + broken);
+  if (!search.left)
+    context.say_unreliable("what can be resumed", {"nothing was left in the middle: " + search.why_none});
+  else if (!search.left->refusal.empty())
+    context.say_unreliable("the registration", {"is not brought back: " + search.left->refusal});
 }
 
 }  // namespace
@@ -105,8 +106,9 @@ void add_resume_command(CLI::App& app, Context& context) {
   command->add_option("--bone", arguments->bone, "femur or tibia")
       ->check(CLI::IsMember({"femur", "tibia"}))
       ->capture_default_str();
-  command->add_flag("--json", arguments->json,
-                    "As JSON on standard output; \"is_found\" is false when there is nothing");
+  command->add_flag(
+      "--json", arguments->json,
+      "As JSON on standard output; \"is_found\" is false when there is nothing, \"why_none\" says why");
   command->callback([&context, arguments] { resume(context, *arguments); });
 }
 

@@ -121,7 +121,7 @@ Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedT
   if (was.depth_stop_mm)
     card.lines.push_back(
         {Severity::Quiet, "Depth stop", files::format("%.1f mm, as read", *was.depth_stop_mm)});
-  for (const std::string& broken : found.passed_over)
+  for (const std::string& broken : left.passed_over)
     card.lines.push_back({Severity::Bad, "Newer, cannot be read", broken});
   return card;
 }

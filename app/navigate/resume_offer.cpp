@@ -48,10 +48,13 @@ ResumeOffer::Found ResumeOffer::search(const Search& search) {
   Found all{search.number, {}};
   for (const auto& [kind, mesh] : search.meshes) {
     try {  // without it the operation begins afresh: no reason to end anything
-      auto found =
+      recording::ResumeSearch found =
           recording::find_resumable(search.case_folder, kind, bones::mesh_sha256(mesh), search.plan.of(kind));
-      if (!found) continue;
-      LeftBehind left{std::move(*found)};
+      if (!found.left) {
+        for (const std::string& broken : found.passed_over) log::error("nothing can be resumed: " + broken);
+        continue;
+      }
+      LeftBehind left{std::move(*found.left), std::move(found.passed_over)};
       const registration::Provenance& of = left.found.operation.of;
       const bool is_simulated = of.source == sources::SourceKind::Simulation;
       const auto camera = open_case::camera_of(is_simulated, search.case_folder);

@@ -20,6 +20,7 @@ namespace arthronaut::navigate {
 
 struct LeftBehind {
   recording::Resumable found;
+  std::vector<std::string> passed_over;  // newer sessions that cannot be read, with the reason each
   // What it was navigated with is what the case has now.
   bool has_same_camera = false, has_same_tools = false;
 };

@@ -6,6 +6,7 @@
 
 #include "navigation/camera/doubted_camera_file.h"
 #include "navigation/camera/medium.h"
+#include "planning/files/format.h"
 #include "planning/files/json_covariance.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
@@ -39,6 +40,24 @@ double read_medium(const files::JsonObject& root) {
   return index;
 }
 
+// Far wider than any endoscope's, so that what lies beyond is a slip: a decimal point, another unit. It would
+// otherwise show as markers that are never found.
+void check_plausible(const files::JsonObject& root, const Calibration& c) {
+  const double largest_px = c.image_size_px.maxCoeff();
+  if (c.focal_px < largest_px / 20 || c.focal_px > largest_px * 20)
+    root.fail("focal_px",
+              files::format("must lie between a twentieth of the picture's longer side and twenty "
+                            "times it: %g px of a picture of %g px",
+                            c.focal_px, largest_px));
+  if (c.aspect_ratio < 0.5 || c.aspect_ratio > 2) root.fail("aspect_ratio", "must lie in [0.5, 2]");
+  const auto require_near_picture = [&](const char* key, const Eigen::Vector2d& point_px) {
+    if (point_px.minCoeff() < -largest_px || point_px.maxCoeff() > 2 * largest_px)
+      root.fail(key, "must lie no further from the picture than that is wide");
+  };
+  require_near_picture("principal_point_px", c.principal_point_px);
+  require_near_picture("rotation_center_px", c.rotation_center_px);
+}
+
 }  // namespace
 
 CalibrationRecord read_camera_file(const std::filesystem::path& file) {
@@ -55,6 +74,7 @@ CalibrationRecord read_camera_file(const std::filesystem::path& file) {
   c.distortion_xi = root.number("distortion_xi");
   if (c.distortion_xi < -2 || c.distortion_xi > 1) root.fail("distortion_xi", "must lie in [-2, 1]");
   c.rotation_center_px = root.vector2("rotation_center_px");
+  check_plausible(root, c);
   c.reference_mark_angle_deg = root.number("reference_mark_angle_deg");
   const auto boundary = root.object("boundary");
   c.boundary.center_px = boundary.vector2("center_px");

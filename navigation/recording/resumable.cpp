@@ -190,34 +190,44 @@ std::optional<Resumable> resumable_from(const RecordedSession& newest) {
   return found;
 }
 
+// Why the newest session leaves nothing to go on with; empty: its end decides.
+std::string why_over(const RecordedSession& newest, const std::string& mesh_sha256,
+                     const std::vector<tunnels::TunnelKey>& planned) {
+  const SessionHeader& header = newest.header();
+  if (header.source_kind.empty() || header.registers_after_mm > 0)
+    return "nobody was at its pedal: what navigate ran on a recording is run again, not resumed";
+  if (!header.mesh_sha256.empty() && !mesh_sha256.empty() && header.mesh_sha256 != mesh_sha256)
+    return "it is of another surface of the bone than the case has now";
+  return has_come_to_its_end(newest, planned) ? "its tunnels are drilled, it came to its end" : "";
+}
+
 }  // namespace
 
-std::optional<Resumable> find_resumable(const std::filesystem::path& case_folder, bones::BoneKind bone,
-                                        const std::string& mesh_sha256,
-                                        const std::vector<tunnels::TunnelKey>& planned) {
+ResumeSearch find_resumable(const std::filesystem::path& case_folder, bones::BoneKind bone,
+                            const std::string& mesh_sha256, const std::vector<tunnels::TunnelKey>& planned) {
   std::vector<std::filesystem::path> folders = cases::session_folders(case_folder);
   std::reverse(folders.begin(), folders.end());
-  std::vector<std::string> passed_over;
+  ResumeSearch search;
   for (const std::filesystem::path& folder : folders) {
     try {  // one broken session must not hide the others for good; that it was passed over is told
       pipeline::PipelineOptions options;
       if (read_session_header(folder, options).bone != bone) continue;
       const RecordedSession session(folder);
-      const SessionHeader& header = session.header();
-      if (is_exercise(header)) continue;
-      if (session.frames().empty() && header.continues.empty()) continue;
-      const bool was_somebody_there = !header.source_kind.empty() && header.registers_after_mm <= 0;
-      const bool is_same_mesh =
-          header.mesh_sha256.empty() || mesh_sha256.empty() || header.mesh_sha256 == mesh_sha256;
-      if (!was_somebody_there || !is_same_mesh || has_come_to_its_end(session, planned)) return std::nullopt;
-      auto found = resumable_from(session);
-      if (found) found->passed_over = std::move(passed_over);
-      return found;
+      if (is_exercise(session.header())) continue;
+      if (session.frames().empty() && session.header().continues.empty()) continue;
+      std::string why = why_over(session, mesh_sha256, planned);
+      if (why.empty()) search.left = resumable_from(session);
+      if (!search.left)
+        search.why_none = "session " + session.header().id + ": " +
+                          (why.empty() ? "it came to nothing that could be gone on with" : why);
+      return search;
     } catch (const std::runtime_error& error) {  // its files may go away meanwhile, too
-      passed_over.emplace_back(error.what());
+      search.passed_over.emplace_back(error.what());
     }
   }
-  return std::nullopt;
+  search.why_none = "no operation on the " + std::string(bones::to_text(bone)) + " is recorded" +
+                    (search.passed_over.empty() ? "" : " in what can be read");
+  return search;
 }
 
 }  // namespace arthronaut::recording

@@ -25,20 +25,25 @@ struct Resumable {
   SessionHeader header;                                // of the newest session of it
   std::chrono::system_clock::time_point last_written;  // when that was
   bool was_finished = false;                           // false: it was cut off, as by a crash
+};
+
+struct ResumeSearch {
+  std::optional<Resumable> left;
+  std::string why_none;                  // nothing is left: "session 0003-...: its tunnels are drilled"
   std::vector<std::string> passed_over;  // newer sessions that cannot be read, with the reason each
 };
 
 // Of the newest session of this bone (by its number, see cases::session_folders) and of those that it goes on
 // from. That session decides, as in find_registration(): what was in doubt at its end brings no older
-// registration back, and after an alarm nothing that rests on the world marker. nullopt: there is none; it is
-// of another mesh (mesh_sha256 as bones::mesh_sha256; empty: not known, matches any); nobody was at its
-// pedal; its tunnels were drilled, so it came to its end; or it had come to nothing. Sessions without a frame
-// say nothing. planned: the bone's planned tunnels, as the case has them now; after one of two bundles'
-// tunnels was drilled the operation goes on while the other one is planned and not drilled. Reads all of it,
-// seconds after an hour of operation: not for the window's thread. Throws what reading the case's folder
-// throws.
-[[nodiscard]] std::optional<Resumable> find_resumable(const std::filesystem::path& case_folder,
-                                                      bones::BoneKind bone, const std::string& mesh_sha256,
-                                                      const std::vector<tunnels::TunnelKey>& planned);
+// registration back, and after an alarm nothing that rests on the world marker. Nothing is left: there is
+// none; it is of another mesh (mesh_sha256 as bones::mesh_sha256; empty: not known, matches any); nobody was
+// at its pedal; its tunnels were drilled, so it came to its end; or it had come to nothing. Sessions without
+// a frame say nothing. planned: the bone's planned tunnels, as the case has them now; after one of two
+// bundles' tunnels was drilled the operation goes on while the other one is planned and not drilled. Reads
+// all of it, seconds after an hour of operation: not for the window's thread. Throws what reading the case's
+// folder throws.
+[[nodiscard]] ResumeSearch find_resumable(const std::filesystem::path& case_folder, bones::BoneKind bone,
+                                          const std::string& mesh_sha256,
+                                          const std::vector<tunnels::TunnelKey>& planned);
 
 }  // namespace arthronaut::recording

@@ -160,7 +160,8 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   const auto told = nlohmann::json::parse(resumed.output);
   EXPECT_EQ(told.at("format"), "arthronaut.resumable");
   EXPECT_FALSE(told.at("is_found"));
-  EXPECT_THAT(resumed.errors, HasSubstr("no operation on the femur was left in the middle"));
+  EXPECT_THAT(told.at("why_none"), HasSubstr("nobody was at its pedal"));
+  EXPECT_THAT(resumed.errors, HasSubstr("nothing was left in the middle: session"));
 
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open((session / "session.sqlite").c_str(), &database), SQLITE_OK);

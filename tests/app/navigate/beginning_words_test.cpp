@@ -110,7 +110,7 @@ TEST(ResumeCard, Hazard16TellsWhatIsNotBroughtBackAndWhy) {
   left.found.operation.depth_stop_mm = 21.5;
   left.has_same_camera = false;
   left.found.was_finished = true;
-  left.found.passed_over = {"0008/session.json: broken"};
+  left.passed_over = {"0008/session.json: broken"};
   const Card card = card_of(left, std::chrono::hours(3 * 24));
   EXPECT_EQ(line_of(card, "Session").text, "0007-20260131-120000, femur, ended 3 days ago");
   EXPECT_EQ(line_of(card, "Registration").severity, Severity::Bad);

@@ -97,6 +97,11 @@ TEST_F(CameraFile, RefusalsNameThePlace) {
   expect(with(good, "590.25", "-1"), "focal_px");
   expect(with(good, "590.25", "\"wide\""), "focal_px: must be a number");
   expect(with(good, "590.25", "1e999"), "out of range");
+  expect(with(good, "590.25", "1e300"), "focal_px: must lie between a twentieth");
+  expect(with(good, "590.25", "0.59025"), "focal_px: must lie between a twentieth");
+  expect(with(good, "1.001", "1001"), "aspect_ratio: must lie in");
+  expect(with(good, "962", "962000"), "principal_point_px: must lie no further");
+  expect(with(good, "958", "-95800"), "rotation_center_px: must lie no further");
   expect(with(good, "\"version\": 1", "\"version\": 2"), "newer");
   expect(with(good, "arthronaut.camera", "arthronaut.tools"), "format");
   expect(with(good, "\"radius_px\"", "\"radius\""), "boundary.radius_px: is missing");

@@ -190,7 +190,7 @@ TEST(KilledRecord, HoldsEveryCommandButThoseOfTheLastSecond) {
       EXPECT_LE(kept, killed.at_the_end + 1) << "the last one may have been given while the signal came";
 
       const auto left =
-          recording::find_resumable(folders[at]->path(), bones::BoneKind::Femur, "the phantom's", {});
+          recording::find_resumable(folders[at]->path(), bones::BoneKind::Femur, "the phantom's", {}).left;
       const operation::OperationStatePtr expected = state_after(kept);
       // On a busy machine all that one was given may lie in its last second, and nothing had come of it yet.
       ASSERT_EQ(left.has_value(), expected->depth_stop_mm.has_value() ||

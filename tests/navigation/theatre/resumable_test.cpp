@@ -4,82 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
-#include "navigation/operation/achieved_tunnel.h"
-#include "navigation/recording/operation_record.h"
 #include "navigation/recording/session_check.h"
 #include "navigation/sources/exercise_source.h"
-#include "planning/cases/case.h"
-#include "tests/navigation/operation/phantom_operation.h"
-#include "tests/temporary_folder.h"
+#include "tests/navigation/theatre/resumable_fixture.h"
 
 namespace arthronaut::recording {
 namespace {
-
-using namespace operation;
-using arthronaut::registration::phantom_bone;
-using sources::SourceKind;
-using test::PhantomOperation;
-
-class ResumableTest : public ::testing::Test {
- protected:
-  // A source of the operation from here on, in a record of its own.
-  void begin(PhantomOperation& run, const SourceSetup& source) {
-    end(run);
-    const std::filesystem::path folder = cases::create_session_folder(folder_.path());
-    sources::SourceInfo info;
-    info.name = source_name_;
-    record_ = std::make_unique<OperationRecord>(folder, run.operation().setup(), source, info, continues_);
-    continues_ = folder.filename().string();
-    if (!early_.empty()) record_->add(std::exchange(early_, {}));
-    run.on_journal = [this](const auto& entries) { record_->add(entries); };
-    run.on_frame = [this](const OperationState& state) { record_->add_frame(nullptr, state, false); };
-    run.start(source);
-  }
-  void end(PhantomOperation& run) {
-    if (record_ == nullptr) return;
-    run.operation().end_source();
-    record_->add(run.operation().take_journal());
-    record_->finish(run.operation().strokes_in_use());
-    record_.reset();
-    run.on_frame = {};
-  }
-  // Another program: what is given before its first source goes to the record of that one.
-  void resume(PhantomOperation& run, const ResumeOperation& left) {
-    run.on_journal = [this](const auto& entries) {
-      early_.insert(early_.end(), entries.begin(), entries.end());
-    };
-    run.apply(left);
-    continues_ = left.session;
-  }
-  [[nodiscard]] std::optional<Resumable> found(const std::string& mesh = "the phantom's") const {
-    return find_resumable(folder_.path(), bones::BoneKind::Femur, mesh, planned_);
-  }
-  [[nodiscard]] GiveRegistration given(PhantomOperation& run, const SourceSetup& source) const {
-    return test::true_registration(trial_, provenance_of(run.operation().setup(), source));
-  }
-  [[nodiscard]] strokes::Curves part(std::ptrdiff_t from, std::ptrdiff_t to) const {
-    return {trial_.curves.begin() + from, trial_.curves.begin() + to};
-  }
-  // Strokes, a registration, two touches and a control point.
-  void operate(PhantomOperation& run, const SourceSetup& source) {
-    begin(run, source);
-    run.draw(part(0, 150));
-    run.apply(Draw{false});
-    run.apply(given(run, source));
-    run.touch(test::on_bone(trial_, 0));
-    run.touch(test::on_bone(trial_, 5));
-    run.touch(test::on_bone(trial_, 2), TouchControlPoint{});
-  }
-
-  const test::TemporaryFolder folder_;
-  experiments::Trial trial_ = phantom_bone().trial(experiments::TrialNoise::Dry, 1);
-  std::unique_ptr<OperationRecord> record_;
-  std::vector<JournalEntry> early_;
-  std::string continues_, source_name_ = "script";
-  std::vector<tunnels::TunnelKey> planned_{bones::BoneKind::Femur};
-};
 
 // Hazard 40: an exercise is never gone on with, and hides no operation that was left before it.
 TEST_F(ResumableTest, Hazard40AnExerciseIsPassedOver) {
@@ -310,108 +241,6 @@ TEST_F(ResumableTest, Hazard16AMarkerPlacedAnewInTheLastMomentCounts) {
       {.kind = std::string(recording::kCommandEvent), .text = operation::to_text(MarkerPlacedAnew{})});
   const auto left = found();
   EXPECT_FALSE(left && left->operation.registration);
-}
-
-TEST_F(ResumableTest, IsNoneWhereNothingWasLeftInTheMiddle) {
-  EXPECT_FALSE(found()) << "no session";
-  const SourceSetup source = test::scripted_source(SourceKind::Live);
-  {
-    PhantomOperation run;
-    begin(run, source);
-    run.apply(Draw{false});
-    run.show(run.frame());
-    end(run);
-    EXPECT_FALSE(found()) << "it had come to nothing";
-  }
-  {
-    PhantomOperation run;
-    operate(run, source);
-    end(run);
-  }
-  EXPECT_TRUE(found());
-  EXPECT_FALSE(found("another")) << "another mesh";
-  EXPECT_FALSE(find_resumable(folder_.path(), bones::BoneKind::Tibia, "", planned_)) << "another bone";
-  {
-    OperationSetup setup = test::phantom_setup();
-    setup.registers_after_mm = 40;
-    PhantomOperation run(setup);
-    operate(run, source);
-    end(run);
-    EXPECT_FALSE(found()) << "nobody was at the pedal";
-  }
-  {
-    PhantomOperation run;
-    operate(run, source);
-    for (int i = 0; i < 200; ++i) run.show_guide(0.02 * i - 1);
-    run.apply(TunnelDrilled{});
-    ASSERT_EQ(run.state()->drilled.outcome, DrilledState::Outcome::Recorded);
-    end(run);
-    EXPECT_FALSE(found()) << "it had come to its end";
-  }
-  {
-    PhantomOperation run;
-    operate(run, source);
-    for (int i = 0; i < 200; ++i) run.show_guide(0.02 * i - 1);
-    run.apply(TunnelDrilled{});
-    run.apply(TakeBackDrilled{});
-    end(run);
-    EXPECT_TRUE(found()) << "it was not drilled after all";
-    const std::filesystem::path session = cases::session_folders(folder_.path()).back();
-    EXPECT_TRUE(std::filesystem::exists(session / "achieved.json")) << "as a part of the record";
-    EXPECT_TRUE(operation::achieved_files(session).empty()) << "nothing tells of it as achieved";
-    EXPECT_EQ(check_session(session).outcome, SessionCheck::Outcome::Unbroken);
-  }
-}
-
-// The first of two bundles' tunnels is drilled: the operation is not at its end while the other one is
-// planned.
-TEST_F(ResumableTest, GoesOnWhileTheOtherBundlesTunnelIsNotDrilled) {
-  const tunnels::TunnelKey am{bones::BoneKind::Femur, norms::Bundle::Anteromedial};
-  const tunnels::TunnelKey pl{bones::BoneKind::Femur, norms::Bundle::Posterolateral};
-  planned_ = {am, pl};
-  const SourceSetup source = test::scripted_source(SourceKind::Live);
-  const auto drill = [&](PhantomOperation& run) {
-    for (int i = 0; i < 200; ++i) run.show_guide(0.02 * i - 1);
-    run.apply(TunnelDrilled{});
-    ASSERT_EQ(run.state()->drilled.outcome, DrilledState::Outcome::Recorded);
-  };
-  OperationSetup setup = test::phantom_setup();
-  setup.plan->tunnel.bundle = am.bundle;
-  PhantomOperation run(setup);
-  operate(run, source);
-  drill(run);
-  end(run);
-  const auto left = found();
-  ASSERT_TRUE(left) << "PL is not drilled";
-  EXPECT_EQ(left->drilled, std::vector<tunnels::TunnelKey>{am});
-  EXPECT_TRUE(left->operation.registration);
-  planned_ = {am};
-  EXPECT_FALSE(found()) << "nothing else is planned";
-  planned_ = {am, pl};
-  PlannedTunnel other = *setup.plan;
-  other.tunnel.bundle = pl.bundle;
-  run.on_journal = [this](const auto& entries) {
-    early_.insert(early_.end(), entries.begin(), entries.end());
-  };
-  run.apply(OfferPlan{other});  // in the next record, which goes on from this one
-  begin(run, source);
-  drill(run);
-  end(run);
-  EXPECT_FALSE(found()) << "both are drilled";
-}
-
-// A newer session that cannot be read is passed over, and that is told.
-TEST_F(ResumableTest, ABrokenSessionIsToldNotSilentlyPassedOver) {
-  PhantomOperation run;
-  operate(run, test::scripted_source(SourceKind::Live));
-  end(run);
-  const std::filesystem::path broken = cases::create_session_folder(folder_.path());
-  std::ofstream(broken / "session.json") << "{";
-  const auto left = found();
-  ASSERT_TRUE(left);
-  EXPECT_EQ(left->operation.session, continues_);
-  ASSERT_EQ(left->passed_over.size(), 1U);
-  EXPECT_NE(left->passed_over.front().find(broken.filename().string()), std::string::npos);
 }
 
 }  // namespace
