@@ -307,29 +307,35 @@ void add_plan_command(CLI::App& app, Context& context) {
           ->excludes(by_default)
           ->excludes(direction)
           ->excludes(remove);
-  sub->add_option(
-         "--export", arguments->export_folder,
-         "Folder for plan.json, plan.csv, plan.mrk.json and the drilled bones (STL and PLY), in place of an "
-         "earlier export; no case's, and nothing that another program changed or wrote")
-      ->check(a_file());
+  auto* exports =
+      sub->add_option("--export", arguments->export_folder,
+                      "Folder for plan.json, plan.csv, plan.mrk.json and the drilled bones (STL and PLY), in "
+                      "place of an "
+                      "earlier export; no case's, and nothing that another program changed or wrote")
+          ->check(a_file());
   auto* json =
       sub->add_flag("--json", arguments->as_json, "Print the tunnel as JSON, without --bone every tunnel");
-  sub->add_flag("--list", arguments->list, "Show the plan")
-      ->excludes(direction)
-      ->excludes(by_default)
-      ->excludes(markups);
+  auto* list = sub->add_flag("--list", arguments->list, "Show the plan")
+                   ->excludes(direction)
+                   ->excludes(by_default)
+                   ->excludes(markups);
   auto* take = sub->add_option("--take", arguments->version, "Take a kept version as the plan")
                    ->check(above_zero())
                    ->excludes(by_default)
                    ->excludes(markups)
                    ->excludes(direction)
                    ->excludes(remove);
-  sub->add_flag("--keep", arguments->keeps, "Keep the plan as a version beside the one that is worked on");
+  auto* keep = sub->add_flag("--keep", arguments->keeps,
+                             "Keep the plan as a version beside the one that is worked on");
   sub->add_flag("--versions", arguments->lists_versions, "List the kept versions and how each differs")
       ->excludes(by_default)
       ->excludes(markups)
       ->excludes(direction)
       ->excludes(take)
+      ->excludes(remove)
+      ->excludes(keep)
+      ->excludes(exports)
+      ->excludes(list)
       ->excludes(json);
   entry->needs(direction);
   footprint->needs(direction);

@@ -64,6 +64,9 @@ std::string text_of(const json& node, const char* key, const std::string& otherw
 }
 
 Vector3d position_of(const json& point, double sign, const Place& place) {
+  // Of such a point 3D Slicer writes the last place that it had.
+  if (const std::string status = text_of(point, "positionStatus", "defined"); status != "defined")
+    place.fail("is not placed: its positionStatus is \"" + status + "\"");
   const auto found = point.find("position");
   if (found == point.end() || !found->is_array() || found->size() != 3)
     place.fail("has no position of three numbers");
@@ -115,8 +118,7 @@ void read_markup(const json& node, const Place& place, MarkupsPlan& plan) {
     for (const auto bundle :
          {norms::Bundle::Whole, norms::Bundle::Anteromedial, norms::Bundle::Posterolateral})
       if (name == tunnel_name({bone, bundle})) key = {bone, bundle};
-    const bool is_tunnel = key.has_value();
-    if (!is_tunnel && name != landmarks_name(bone)) continue;
+    if (!key) continue;
     const std::string system = text_of(node, "coordinateSystem", "LPS");
     if (system != "LPS" && system != "RAS" && system != "0" && system != "1")
       place.fail("is in the coordinate system \"" + system + "\", neither LPS nor RAS");
@@ -130,10 +132,8 @@ void read_markup(const json& node, const Place& place, MarkupsPlan& plan) {
       const Place here{place.file, place.place + ".controlPoints[" + std::to_string(i) + "]"};
       if (!(*points)[i].is_object()) here.fail("is no control point");
       positions.push_back(position_of((*points)[i], sign, here));
-      if (!is_tunnel)
-        plan.landmarks[bone][text_of((*points)[i], "label", std::to_string(i))] = positions.back();
     }
-    if (is_tunnel) take_tunnel(*key, positions, diameter_of(node, place), place, plan);
+    take_tunnel(*key, positions, diameter_of(node, place), place, plan);
   }
 }
 

@@ -25,13 +25,13 @@ namespace arthronaut::plan_export {
 struct MarkupsPlan {
   std::map<tunnels::TunnelKey, tunnels::Tunnel> tunnels;
   std::set<tunnels::TunnelKey> without_diameter;  // of them, of which the file does not say it
-  std::map<bones::BoneKind, landmarks::Landmarks> landmarks;
 };
-// Reads what markups_of wrote, also after 3D Slicer moved it: lines and point lists by their names, others
-// are passed over. A diameter that is not said is what is usual of the bundle. Throws IoError or InvalidInput
-// (file, place, reason): no markups, a unit other than mm, a line without two points or without length, a
-// position that is not finite, a diameter that cannot be planned (tunnels/diameter_range.h), a tunnel that is
-// there twice, a bone's single tunnel beside one of a bundle.
+// Reads the tunnels that markups_of wrote, also after 3D Slicer moved them: lines by their names; all else is
+// passed over, the landmarks too. A diameter that is not said is what is usual of the bundle. Throws IoError
+// or InvalidInput (file, place, reason): no markups, a unit other than mm, a line without two points or
+// without length, a point that was taken away or not placed yet ("positionStatus"), a position that is not
+// finite, a diameter that cannot be planned (tunnels/diameter_range.h), a tunnel that is there twice, a
+// bone's single tunnel beside one of a bundle.
 [[nodiscard]] MarkupsPlan read_markups(const std::filesystem::path& file);
 
 struct TakenTunnels {

@@ -10,6 +10,7 @@
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
 #include "planning/files/remove_file.h"
+#include "planning/files/sha256.h"
 #include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
@@ -45,6 +46,21 @@ bool are_the_same(const std::map<tunnels::TunnelKey, tunnels::Tunnel>& a,
          });
 }
 
+constexpr const char* kSums = "SHA256SUMS";
+
+std::vector<fs::path> exported_files(const fs::path& folder) {
+  std::vector<fs::path> files{folder / "plan.json", folder / "plan.csv", folder / "plan.mrk.json"};
+  for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
+    for (const fs::path& file : drilled_files(folder, kind)) files.push_back(file);
+  std::erase_if(files, [](const fs::path& file) { return !fs::exists(file); });
+  return files;
+}
+
+// A line of SHA256SUMS, as sha256sum writes it.
+std::string sum_of(const fs::path& file) {
+  return files::sha256_of_file(file) + "  " + file.filename().string() + "\n";
+}
+
 }  // namespace
 
 std::string plan_csv(const cases::Case& knee) {
@@ -74,6 +90,13 @@ std::string plan_csv(const cases::Case& knee) {
 void refuse_foreign(const fs::path& folder) {
   const fs::path plan_file = folder / "plan.json", csv = folder / "plan.csv",
                  markups = folder / "plan.mrk.json";
+  if (const fs::path sums = folder / kSums; fs::exists(sums)) {
+    const std::string known = files::read_text(sums);
+    for (const fs::path& file : exported_files(folder))
+      if (known.find(sum_of(file)) == std::string::npos)
+        throw InvalidInput(file, "",
+                           "was changed since it was exported: move it away, or export into another folder");
+  }
   cases::Plan plan;
   if (fs::exists(plan_file)) plan = cases::plan_from(files::read_text(plan_file), plan_file);
   if (fs::exists(csv) && !files::read_text(csv).starts_with(kColumns))
@@ -122,6 +145,9 @@ ExportSummary export_plan(const cases::Case& knee, const fs::path& folder, const
       bones::write_mesh_stl(stl, mesh);
       bones::write_mesh_ply(ply, mesh);
     }
+    std::string sums;
+    for (const fs::path& file : exported_files(unfinished)) sums += sum_of(file);
+    files::write_atomically(unfinished / kSums, sums);
     // What an earlier plan left drilled would pass for this one's.
     for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
       if (!drilled.contains(kind))
@@ -132,6 +158,7 @@ ExportSummary export_plan(const cases::Case& knee, const fs::path& folder, const
     const auto [stl, ply] = drilled_files(folder, kind);
     summary.files.insert(summary.files.end(), {stl, ply});
   }
+  summary.files.push_back(folder / kSums);
   return summary;
 }
 

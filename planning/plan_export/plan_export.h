@@ -13,21 +13,23 @@ namespace arthronaut::plan_export {
 
 struct ExportSummary {
   std::vector<std::filesystem::path>
-      files;                        // written, in the order plan.json, plan.csv, plan.mrk.json, meshes
+      files;  // written, in the order plan.json, plan.csv, plan.mrk.json, meshes, SHA256SUMS
   std::vector<std::string> doubts;  // a tunnel that is not of this mesh, a bone that could not be drilled
   bool was_stopped = false;         // by `stop`: nothing is written
 };
 
 // Writes plan.json, plan.csv, plan.mrk.json and, of every bone that is planned on, femur_drilled.stl and .ply
 // or tibia_drilled.stl and .ply (LPS, mm); one of an earlier plan that this one does not drill is removed.
+// SHA256SUMS, for sha256sum -c, holds the hash of each.
 // Everything is computed before anything is written, each file whole or not at all; the folder is made where
 // needed. Throws InvalidInput when nothing is planned, and as refuse_foreign() does; IoError.
 [[nodiscard]] ExportSummary export_plan(const cases::Case& knee, const std::filesystem::path& folder,
                                         const std::stop_token& stop = {});
 
 // An earlier export is written over, nothing else. Throws InvalidInput, which names the file, where one of
-// these names is another program's: a plan.json that is no plan, a plan.csv of other columns, and a
-// plan.mrk.json whose tunnels were moved since, which somebody may still want to read back.
+// these names is another program's: one that is not as SHA256SUMS has it, such as landmarks or tunnels that
+// were moved in 3D Slicer, which somebody may still want to read back; where that file is not there, a
+// plan.json that is no plan, a plan.csv of other columns, and a plan.mrk.json with other tunnels.
 void refuse_foreign(const std::filesystem::path& folder);
 
 // One row a tunnel, header first: bone, entry, direction, diameter, exit, length, wall (empty where the

@@ -71,10 +71,9 @@ std::vector<Reader> case_readers() {
           {"markups", "input.mrk.json", text(kMarkups),
            [](const fs::path& folder, std::string_view bytes) {
              const auto plan = plan_export::read_markups(put(folder, "input.mrk.json", bytes));
-             for (const auto& [bone, marks] : plan.landmarks) {
-               for (const auto& [name, point] : marks)
-                 if (!point.allFinite()) return std::string("a landmark that is not finite");
-             }
+             for (const auto& [key, tunnel] : plan.tunnels)
+               if (!tunnel.entry_mm.allFinite() || !(std::abs(tunnel.direction.norm() - 1) < 1e-9))
+                 return std::string("a tunnel without a place or a direction");
              return std::string();
            }},
           {"measurements", "measurements.json",

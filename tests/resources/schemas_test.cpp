@@ -20,6 +20,7 @@
 #include "planning/library/cohort.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/postop/achieved_file.h"
+#include "tests/resources/described.h"
 #include "tests/resources/json_schema.h"
 #include "tests/temporary_folder.h"
 
@@ -38,21 +39,16 @@ class Schemas : public ::testing::Test {
   static json schema_of(const std::string& name) {
     return read(fs::path(ARTHRONAUT_SCHEMAS) / (name + ".schema.json"));
   }
-  static std::string violations_of(const json& document, const std::string& name) {
-    std::string text;
-    for (const std::string& violation : violations(document, schema_of(name))) text += violation + "\n";
-    return text;
-  }
   // As written it fits; without any of what the schema calls required it fits no more, and the reader refuses
   // it.
   template <class Read>
   void expect_described(const fs::path& file, const std::string& name, const Read& read_again) {
     const json written = read(file);
-    EXPECT_EQ(violations_of(written, name), "") << name;
+    EXPECT_EQ(test::undescribed(written, name), "") << name;
     for (const std::string key : schema_of(name).at("required")) {
       json broken = written;
       broken.erase(key);
-      EXPECT_NE(violations_of(broken, name), "") << key;
+      EXPECT_NE(test::undescribed(broken, name), "") << key;
       std::ofstream(file) << broken;
       EXPECT_THROW(read_again(), InvalidInput) << name << " without " << key;
     }
@@ -224,11 +220,11 @@ TEST_F(Schemas, DescribeTheListOfCases) {
   const library::Identities named{{records[0].folder, {"Muster^Anna", "4711", "19900131"}}};
   for (const library::Identities* identities : {static_cast<const library::Identities*>(nullptr), &named}) {
     library::write_cases_json(file, records, identities);
-    EXPECT_EQ(violations_of(read(file), "cases"), "");
+    EXPECT_EQ(test::undescribed(read(file), "cases"), "");
   }
   json broken = read(file);
   broken["cases"][0]["state"] = "lost";
-  EXPECT_NE(violations_of(broken, "cases"), "");
+  EXPECT_NE(test::undescribed(broken, "cases"), "");
 }
 
 // A registration that stands, and one that found nothing.
@@ -242,21 +238,21 @@ TEST_F(Schemas, DescribeTheRegistration) {
   found.inlier_fraction = 0.9;
   for (const registration::RegistrationSummary& summary : {found, registration::RegistrationSummary()}) {
     registration::write_registration_file(file, summary);
-    EXPECT_EQ(violations_of(read(file), "registration"), "");
+    EXPECT_EQ(test::undescribed(read(file), "registration"), "");
   }
   registration::write_registration_file(file, found);
   expect_described(file, "registration", [&] { (void)registration::read_registration_file(file); });
   registration::write_registration_file(file, found, registration::RegisteredMesh{"5f", {}});
-  EXPECT_EQ(violations_of(read(file), "registration"), "");
+  EXPECT_EQ(test::undescribed(read(file), "registration"), "");
   // And what it is of, as the sessions of an operation and `register` for a case write it.
   registration::Provenance of;
   of.mesh_sha256 = of.camera = of.tools = "5f";
   of.refractive_index = 1.3401;
   registration::write_registration_file(file, found, &of);
   json written = read(file);
-  EXPECT_EQ(violations_of(written, "registration"), "");
+  EXPECT_EQ(test::undescribed(written, "registration"), "");
   written["of"]["bone"] = "patella";
-  EXPECT_NE(violations_of(written, "registration"), "");
+  EXPECT_NE(test::undescribed(written, "registration"), "");
 }
 
 // A tunnel and a bone that were found, and ones that were not.
@@ -270,13 +266,13 @@ TEST_F(Schemas, DescribeWhatWasAchieved) {
       file, {{bones::BoneKind::Femur, found}, {bones::BoneKind::Tibia, {}}},
       {{bones::BoneKind::Femur, {.grid = {{"High to low", 35, 38}}, .wall_mm = 1.5}}});
   const json written = read(file);
-  EXPECT_EQ(violations_of(written, "achieved"), "");
+  EXPECT_EQ(test::undescribed(written, "achieved"), "");
   EXPECT_TRUE(written.at("tunnels").at(1).at("entry_mm").is_null());
   for (const char* key : {"/tunnels/0/offset_mm", "/tunnels/1/reasons", "/tunnels/0/grid/0/planned_percent",
                           "/bones/0/rms_mm", "/bones"}) {
     json broken = written;
     broken[json::json_pointer(key)] = "none";
-    EXPECT_NE(violations_of(broken, "achieved"), "") << key;
+    EXPECT_NE(test::undescribed(broken, "achieved"), "") << key;
   }
 }
 
@@ -295,7 +291,7 @@ TEST_F(Schemas, DescribeBodiesOfSeveralMarkers) {
     document[json::json_pointer(place)] = value;
     std::ofstream(file) << document;
     EXPECT_THROW((void)tools::read_tools_file(file), InvalidInput) << place;
-    return violations_of(document, "tools");
+    return test::undescribed(document, "tools");
   };
   EXPECT_NE(broken("/tools/0/marker_id", 2), "");
   EXPECT_NE(broken("/tools/0/size_mm", 4), "");
@@ -312,7 +308,7 @@ TEST_F(Schemas, CatchWhatIsWrong) {
   const auto broken = [&](const char* place, const json& value) {
     json document = good;
     document[json::json_pointer(place)] = value;
-    return violations_of(document, "tools");
+    return test::undescribed(document, "tools");
   };
   EXPECT_NE(broken("/version", 2), "");
   EXPECT_NE(broken("/world_markers/0/size_mm", 0), "");

@@ -7,7 +7,7 @@
 #include "navigation/training/score_file.h"
 #include "navigation/training/trainee.h"
 #include "planning/geometry/error.h"
-#include "tests/resources/json_schema.h"
+#include "tests/resources/described.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut {
@@ -21,12 +21,6 @@ class TrainingSchemas : public ::testing::Test {
   static json read(const fs::path& file) {
     std::ifstream in(file);
     return json::parse(in);
-  }
-  static std::string violations_of(const json& document, const std::string& name) {
-    const json schema = read(fs::path(ARTHRONAUT_SCHEMAS) / (name + ".schema.json"));
-    std::string text;
-    for (const std::string& violation : violations(document, schema)) text += violation + "\n";
-    return text;
   }
   // One that drilled nothing: parts without a value.
   static training::Score score() {
@@ -45,11 +39,11 @@ class TrainingSchemas : public ::testing::Test {
 TEST_F(TrainingSchemas, DescribeScores) {
   training::write_score_file(folder_ / "score.json", score());
   const json written = read(folder_ / "score.json");
-  EXPECT_EQ(violations_of(written, "score"), "");
+  EXPECT_EQ(test::undescribed(written, "score"), "");
   for (const char* key : {"/points", "/parts/0/points", "/level", "/better", "/parts/0/value"}) {
     json broken = written;
     broken[json::json_pointer(key)] = "wild";
-    EXPECT_NE(violations_of(broken, "score"), "") << key;
+    EXPECT_NE(test::undescribed(broken, "score"), "") << key;
   }
 }
 
@@ -58,12 +52,12 @@ TEST_F(TrainingSchemas, DescribeScoresOverTime) {
   training::add_to_training_file(file, score());
   training::add_to_training_file(file, score());
   const json written = read(file);
-  EXPECT_EQ(violations_of(written, "training"), "");
+  EXPECT_EQ(test::undescribed(written, "training"), "");
   for (const char* key : {"exercise", "level", "when_utc", "trainee", "knee", "seed", "session", "is_done",
                           "points", "parts", "better"}) {
     json broken = written;
     broken.at("scores").at(1).erase(key);
-    EXPECT_NE(violations_of(broken, "training"), "") << key;
+    EXPECT_NE(test::undescribed(broken, "training"), "") << key;
     std::ofstream(file) << broken;
     EXPECT_THROW((void)training::read_training_file(file), InvalidInput) << key;
   }
@@ -79,12 +73,12 @@ TEST_F(TrainingSchemas, DescribeHands) {
   frames[2].input.press = simulator::Press::ControlPoint;
   training::write_hand_file(file, frames);
   const json written = read(file);
-  EXPECT_EQ(violations_of(written, "hand"), "");
+  EXPECT_EQ(test::undescribed(written, "hand"), "");
   EXPECT_EQ(written.at("frames"), 3);
   for (const char* key : {"frame", "held", "moves_scope", "move", "tilt", "turn_lens", "drill", "press"}) {
     json broken = written;
     broken.at("pushes").at(0).erase(key);
-    EXPECT_NE(violations_of(broken, "hand"), "") << key;
+    EXPECT_NE(test::undescribed(broken, "hand"), "") << key;
     std::ofstream(file) << broken;
     EXPECT_THROW((void)training::read_hand_file(file), InvalidInput) << key;
   }

@@ -13,6 +13,7 @@
 #include "navigation/simulator/simulated_ruler.h"
 #include "planning/files/json_document.h"
 #include "tests/app/command_line/program.h"
+#include "tests/resources/described.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut {
@@ -137,6 +138,7 @@ TEST_F(CheckFluidCommand, AccuracyIsMeasuredKeptAndListed) {
   const auto listed = accuracy({"list", "--json"});
   EXPECT_EQ(listed.exit_code, 0) << listed.errors;
   const auto json = nlohmann::json::parse(listed.output);
+  EXPECT_EQ(test::undescribed(json, "accuracy_list"), "");
   ASSERT_EQ(json.at("checks").size(), 1u);
   EXPECT_NEAR(json["checks"][0].at("distance_mm").get<double>(), 10.0, 0.05);
   EXPECT_EQ(json["checks"][0].at("frames"), 24);

@@ -11,6 +11,7 @@
 #include "planning/files/atomic_file.h"
 #include "tests/app/command_line/program.h"
 #include "tests/planning/pacs/sent_series.h"
+#include "tests/resources/described.h"
 
 namespace arthronaut {
 namespace {
@@ -57,8 +58,7 @@ TEST_F(PacsCommand, FindsFetchesAndSends) {
   EXPECT_THAT(words.output,
               AllOf(HasSubstr("Muster^Anna, ID 4711"), HasSubstr("44 images"), HasSubstr(series_)));
   const auto found = nlohmann::json::parse(run({"find", "--patient", "4711", "--json"}).output);
-  EXPECT_EQ(found["format"], "arthronaut.pacs_find");
-  EXPECT_EQ(found["version"], 1);
+  EXPECT_EQ(test::undescribed(found, "pacs_find"), "");
   EXPECT_EQ(found["complete"], true);
   const auto& study = found["patients"][0]["studies"][0];
   EXPECT_EQ(study["images"], kImageCount);
@@ -68,7 +68,7 @@ TEST_F(PacsCommand, FindsFetchesAndSends) {
   const auto got = run({"get", "--series", series_, "-o", got_ / "scan", "--json"});
   ASSERT_EQ(got.exit_code, 0) << got.errors;
   const auto fetched = nlohmann::json::parse(got.output);
-  EXPECT_EQ(fetched["format"], "arthronaut.pacs_get");
+  EXPECT_EQ(test::undescribed(fetched, "pacs_get"), "");
   EXPECT_EQ(fetched["images"], kImageCount);
   EXPECT_EQ(fetched["way"], "C-GET");
   EXPECT_THAT(got_.names(), ElementsAre("scan"));
@@ -77,7 +77,7 @@ TEST_F(PacsCommand, FindsFetchesAndSends) {
   const auto sent = run({"send", got_ / "scan", "--json", "--commitment-wait-s", "0"});
   ASSERT_EQ(sent.exit_code, 0) << sent.errors;
   const auto stored = nlohmann::json::parse(sent.output);
-  EXPECT_EQ(stored["format"], "arthronaut.pacs_send");
+  EXPECT_EQ(test::undescribed(stored, "pacs_send"), "");
   EXPECT_EQ(stored["stored"], true);
   EXPECT_EQ(stored["commitment"], "awaited");
   EXPECT_EQ(stored["files"].size(), std::size_t{kImageCount});

@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "navigation/strokes/poses_file.h"
 #include "navigation/tools/tool_set.h"
+#include "planning/files/atomic_file.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 #include "tests/app/command_line/program.h"
+#include "tests/resources/described.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut {
@@ -171,6 +174,11 @@ TEST_F(RigCommand, PivotTakesTheWorldThatTheToolsDeclare) {
   EXPECT_THAT(run_program(arguments).output, HasSubstr("no world marker in view"));
   arguments.insert(arguments.end(), {"--tools", folder_ / "tools.json"});
   EXPECT_THAT(run_program(arguments).output, HasSubstr("world: marker 10, 60 frames with both"));
+  const auto written = [this] { return nlohmann::json::parse(files::read_text(folder_ / "tip.json")); };
+  EXPECT_EQ(test::undescribed(written(), "tip"), "");
+  arguments.emplace_back("--spin");
+  (void)run_program(arguments);
+  EXPECT_EQ(test::undescribed(written(), "axis"), "");
 }
 
 // Wrong input names what is wrong.

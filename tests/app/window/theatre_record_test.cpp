@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "navigation/recording/session.h"
 #include "tests/app/window/theatre.h"
+#include "tests/resources/described.h"
 
 namespace arthronaut::test {
 namespace {
@@ -127,6 +129,11 @@ TEST_F(Theatre, Hazard12AKilledOperationIsResumedAndGuidesAfterOneTouch) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // that it stands is committed by then
     app.kill();
   }
+  const auto [told_with, told] = run_arthronaut("resume '" + case_folder().string() + "' --json");
+  EXPECT_EQ(told_with, 0) << told;
+  const nlohmann::json resumable = nlohmann::json::parse(told);
+  EXPECT_EQ(test::undescribed(resumable, "resumable"), "");
+  EXPECT_EQ(resumable.at("session"), left);
   {
     RunningWorkstation app(display, folder_.path());
     show_navigate(app);
