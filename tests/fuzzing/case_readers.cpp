@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/cases/identity.h"
