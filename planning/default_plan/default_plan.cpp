@@ -369,11 +369,4 @@ const tunnels::Tunnel* beside(const tunnels::TunnelKey& key,
   return found == planned.end() ? nullptr : &found->second;
 }
 
-std::map<bones::BoneKind, DefaultTunnel> plan_knee(const std::vector<BoneInput>& bones, bones::Side side,
-                                                   const Options& options) {
-  std::map<bones::BoneKind, DefaultTunnel> plan;
-  for (const BoneInput& bone : bones) plan[bone.bone->kind] = plan_bone(bone, side, options);
-  return plan;
-}
-
 }  // namespace arthronaut::default_plan

@@ -86,9 +86,4 @@ struct DefaultTunnel {
 [[nodiscard]] const tunnels::Tunnel* beside(const tunnels::TunnelKey& key,
                                             const std::map<tunnels::TunnelKey, tunnels::Tunnel>& planned);
 
-// Every bone that is given, at once.
-[[nodiscard]] std::map<bones::BoneKind, DefaultTunnel> plan_knee(const std::vector<BoneInput>& bones,
-                                                                 bones::Side side,
-                                                                 const Options& options = {});
-
 }  // namespace arthronaut::default_plan

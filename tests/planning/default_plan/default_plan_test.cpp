@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
+#include <vector>
 
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -47,6 +49,12 @@ const Knee& knee_of(Side side) {
   return side == Side::Right ? right : left;
 }
 
+std::map<BoneKind, DefaultTunnel> plan_both(const Knee& knee, bool with_landmarks, Side side) {
+  std::map<BoneKind, DefaultTunnel> plan;
+  for (const BoneInput& input : knee.inputs(with_landmarks)) plan[input.bone->kind] = plan_bone(input, side);
+  return plan;
+}
+
 // A drill comes to the femur from the front, below and medially and leaves on the lateral side; to the tibia
 // it goes down, forwards and medially. In the phantom's frame: lateral is -x on the right, anterior -y,
 // proximal z.
@@ -54,7 +62,7 @@ TEST(DefaultPlan, AimsAsADrillCanFollow) {
   for (const Side side : {Side::Left, Side::Right}) {
     const Knee& knee = knee_of(side);
     const double lateral = side == Side::Right ? -1 : 1;
-    const auto plan = plan_knee(knee.inputs(true), side);
+    const auto plan = plan_both(knee, true, side);
     const auto& femur = plan.at(BoneKind::Femur);
     ASSERT_TRUE(femur.is_usable()) << femur.message;
     EXPECT_TRUE(femur.doubts.empty()) << femur.doubts[0];
@@ -82,7 +90,7 @@ TEST(DefaultPlan, AimsAsADrillCanFollow) {
 TEST(DefaultPlan, PassesTheChecksOfItsOwnPlan) {
   for (const Side side : {Side::Left, Side::Right}) {
     for (const bool with_landmarks : {true, false}) {
-      for (const auto& [kind, made] : plan_knee(knee_of(side).inputs(with_landmarks), side)) {
+      for (const auto& [kind, made] : plan_both(knee_of(side), with_landmarks, side)) {
         ASSERT_TRUE(made.is_usable()) << made.message;
         for (const auto& check : made.failed)
           ADD_FAILURE() << bones::to_text(side) << " " << check.name << ": " << check.text;
@@ -176,7 +184,7 @@ TEST(DefaultPlan, NamesTheCheckThatNoAimPasses) {
 // Without landmarks they are proposed, and that is a doubt which names them.
 TEST(DefaultPlan, SaysThatNobodyHasConfirmedItsLandmarks) {
   const Knee& knee = knee_of(Side::Right);
-  for (const auto& [kind, tunnel] : plan_knee(knee.inputs(false), Side::Right)) {
+  for (const auto& [kind, tunnel] : plan_both(knee, false, Side::Right)) {
     ASSERT_TRUE(tunnel.is_usable()) << tunnel.message;
     ASSERT_FALSE(tunnel.doubts.empty());
     EXPECT_NE(tunnel.doubts[0].find(kind == BoneKind::Femur ? "blumensaat_anterior" : "plateau_medial"),
