@@ -72,8 +72,10 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
   }
   if (measure_from_edges(frame, start, is_found, fit, picture, trend, observation)) {
     // No hand turns it there: another tilt that the picture allows.
-    if (!stood_lately(frame) || goes_on_from_published(frame, observation.camera_from_marker)) return true;
-    observation.state = MarkerState::Doubtful;
+    if (stood_lately(frame) && !goes_on_from_published(frame, observation.camera_from_marker))
+      observation.state = MarkerState::Doubtful;
+    else if (is_identified(frame, picture, fit.converged ? misfit_of(fit) : 1, observation))
+      return true;
   }
   if (is_found) refused_[refused_count_++ % refused_.size()] = Refused{fit, picture.motion, observation};
   return false;

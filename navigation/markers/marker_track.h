@@ -10,6 +10,7 @@
 
 #include "navigation/camera/camera_model.h"
 #include "navigation/markers/camera_smear.h"
+#include "navigation/markers/code_evidence.h"
 #include "navigation/markers/direct_alignment.h"
 #include "navigation/markers/edge_pose.h"
 #include "navigation/markers/edge_profiles.h"
@@ -61,6 +62,8 @@ struct MarkerTrackOptions {
   // The other pose that a square allows is out of the question when it explains the corners this many times
   // worse, or the grey levels this many times.
   double clear_ratio = 10, other_noise = 1.15;
+  // Logarithm of how much likelier than any other code of the dictionary a marker under highlights has to be.
+  double sure_lead = 2;
   DirectOptions direct;
 };
 
@@ -155,6 +158,12 @@ class MarkerTrack {
                         MarkerObservation& observation);
   void report_direct(const TrackedFrame& frame, const DirectPose& fit, std::optional<double> max_rms_px,
                      MarkerObservation& observation);
+  // It is this marker and no other one of the dictionary that stands there, where highlights leave that open:
+  // by this frame and those before since it is followed. What stays open is gone on from.
+  bool is_identified(const TrackedFrame& frame, const Smear& picture, double misfit,
+                     MarkerObservation& observation);
+  // It went on to there since it was seen last.
+  [[nodiscard]] bool goes_on_to(const TrackedFrame& frame, const geometry::RigidTransform& pose) const;
   // The cells at the pose, as far as they are seen, are this marker's.
   [[nodiscard]] bool is_confirmed_by_code(const TrackedFrame& frame,
                                           const geometry::RigidTransform& pose) const;
@@ -180,6 +189,8 @@ class MarkerTrack {
     double misfit = 0;
   };
   std::optional<Guess> guess_;      // of this frame, until it is final
+  CodeEvidence evidence_;           // of which marker it is, since it is followed
+  bool is_sure_ = false;            // that it is this one
   bool is_motion_guessed_ = false;  // what is known of the motion comes from a pose that did not stand
   // What was measured last is smeared over more than a cell: neither edges nor cells can be told.
   bool is_beyond_edges_ = false;

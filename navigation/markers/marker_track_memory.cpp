@@ -16,6 +16,36 @@ bool MarkerTrack::is_confirmed_by_code(const TrackedFrame& frame, const RigidTra
   return false;
 }
 
+bool MarkerTrack::goes_on_to(const TrackedFrame& frame, const RigidTransform& pose) const {
+  constexpr double kMostSides = 0.5, kMostTurnRad = 0.6;
+  if (!motion_.is_known_at(frame.timestamp_ns)) return false;
+  const auto supposed = motion_.predicted(frame.timestamp_ns);
+  if (!supposed) return false;
+  const double apart = (pose.translation_mm.normalized() - supposed->translation_mm.normalized()).norm();
+  return apart * pose.translation_mm.norm() < kMostSides * marker_.size_mm &&
+         geometry::rotation_angle_rad(supposed->rotation.conjugate() * pose.rotation) < kMostTurnRad;
+}
+
+bool MarkerTrack::is_identified(const TrackedFrame& frame, const Smear& picture, double misfit,
+                                MarkerObservation& observation) {
+  const RigidTransform& pose = observation.camera_from_marker;
+  if (!goes_on_to(frame, pose)) {
+    is_sure_ = false;
+    evidence_.start_over();
+  }
+  if (is_sure_) return true;
+  is_sure_ = !evidence_.add(frame.image, frame.camera, pose, marker_.size_mm, code_, picture);
+  if (is_sure_) return true;
+  const auto declared = std::find_if(frame.codes.declared.begin(), frame.codes.declared.end(),
+                                     [&](const MarkerCode& code) { return code.id == code_.id; });
+  const double lead = evidence_.lead(frame.codes, declared - frame.codes.declared.begin());
+  is_sure_ = lead >= options_.sure_lead;
+  if (is_sure_) return true;
+  observation.state = MarkerState::Glare;
+  if (lead > -options_.sure_lead) go_on_from(pose, misfit);
+  return false;
+}
+
 bool MarkerTrack::measure_recovered(const TrackedFrame& frame, const RigidTransform& start,
                                     MarkerObservation& observation) {
   const bool is_found = !motion_.is_known_at(frame.timestamp_ns);
@@ -67,7 +97,8 @@ void MarkerTrack::forget() {
   guess_.reset();
   refused_count_ = 0;
   explained_.reset();
-  is_undecided_ = is_motion_guessed_ = false;
+  evidence_.start_over();
+  is_undecided_ = is_motion_guessed_ = is_sure_ = false;
   is_duplicate = false;
 }
 

@@ -25,5 +25,19 @@ TEST(HardClips, HighlightsOnOneMarkerMakeNoSecondOneOfAnother) {
   EXPECT_EQ(frames, kFrames);
 }
 
+// Highlights hide what tells marker 3, which is shown, from marker 11, cell by cell. It was tracked as that
+// one in all frames of the clip.
+TEST(HardClips, Hazard48AMarkerThatIsNotDeclaredIsNotTakenForOneThatIs) {
+  const ClipRecipe recipe = recipe_of(Hardness::Glare, 6, 4);
+  HardClip clip(recipe);
+  std::vector<markers::DeclaredMarker> declared;
+  for (const int id : {8, 9, 10, 11}) declared.push_back({id, recipe.marker_size_mm});
+  const auto tracker = markers::make_tracker(declared);
+  for (camera::GrayView picture = clip.next(); picture.data; picture = clip.next()) {
+    for (const auto& seen : tracker->track(picture, clip.camera(), clip.timestamp_ns()))
+      EXPECT_FALSE(seen.is_tracked()) << "marker " << seen.id;
+  }
+}
+
 }  // namespace
 }  // namespace arthronaut::hard_clips
