@@ -248,7 +248,9 @@ void NavigateView::read_live() {
     used_before_->is_new_stream = false;
     note_stream(known_streams_file(), used_before_->pictures.address);
   }
-  const bool is_same = live_->operation->registration == seen->operation->registration;
+  const bool is_same =
+      live_->operation->registration == seen->operation->registration && live_->phase == seen->phase &&
+      operation::unverified_of(*live_->operation) == operation::unverified_of(*seen->operation);
   if (is_same && is_of_source_before(*live_) == is_of_source_before(*seen)) return;
   words_ = words_of(*live_);
   if (registration().change_count != seen->operation->registration->change_count)

@@ -83,6 +83,21 @@ Missing missing_of_registration(const Known& known) {
   return known.state.time_out == operation::TimeOut::Due ? Missing::TimeOut : Missing::Nothing;
 }
 
+// What was skipped is not done, however far the operation has gone on without it.
+Missing missing_of(operation::Unverified unverified) {
+  switch (unverified) {
+    case operation::Unverified::Nothing:
+      return Missing::Nothing;
+    case operation::Unverified::Touches:
+      return Missing::Touches;
+    case operation::Unverified::ControlPoint:
+      return Missing::ControlPoint;
+    case operation::Unverified::GuideCheck:
+      return Missing::GuideCheck;
+  }
+  return Missing::Nothing;
+}
+
 Missing first_of(std::initializer_list<Missing> wanted) {
   const auto found =
       std::find_if(wanted.begin(), wanted.end(), [](Missing m) { return m != Missing::Nothing; });
@@ -146,11 +161,7 @@ Missing rest_of(Step step, const Known& known) {
         return state.verification == operation::Verification::ByTouches || known.context.was_verified
                    ? Missing::Nothing
                    : Missing::Touches;
-      if (state.verification == operation::Verification::NotYet) return Missing::Touches;
-      if (state.control_point_due != operation::ControlPointDue::None) return Missing::ControlPoint;
-      if (!state.guide_check.may_guide()) return Missing::GuideCheck;
-      // What was skipped is not done, however far the operation has gone on without it.
-      return state.verification == operation::Verification::ByTouches ? Missing::Nothing : Missing::Touches;
+      return missing_of(operation::unverified_of(state));
     }
     case Step::Guide:
       return known.is_drilled() ? Missing::Nothing : Missing::Tunnel;

@@ -43,7 +43,7 @@ std::optional<registration::Provenance> now_of(const operation::OperationState& 
 SeverityText against(const operation::RegistrationState& state, std::size_t i,
                      const std::optional<registration::Provenance>& now) {
   const operation::RegistrationEntry& entry = (*state.history)[i];
-  if (entry.marker_has_moved) return {Severity::Quiet, "", "the marker has moved since"};
+  if (entry.marker_has_moved) return {Severity::Quiet, "", "the marker was moved or taken out since"};
   if (i == state.entry_in_force) {
     const Standing standing = state.in_force.standing;
     const bool is_revoked =
@@ -67,6 +67,24 @@ std::string words_of_touches(const operation::Touches& touches) {
 // Nobody should read a nought where something was measured.
 std::string tenths_of_mm(double value) {
   return (value < 0.05 ? std::string("under 0.1") : widgets::fixed(value, 1)) + " mm";
+}
+
+// That the touches lie on the bone is not all that the step of verifying asks: what it lacks stands here,
+// too.
+RegistrationWords with_what_is_unverified(RegistrationWords words, const operation::OperationState& state) {
+  using operation::Unverified;
+  if (!is_verified(*state.registration)) return words;
+  const Unverified missing = operation::unverified_of(state);
+  if (missing == Unverified::ControlPoint) {
+    const bool is_set = state.registration->touches.has_control_point();
+    words.state = {
+        Severity::Caution, is_set ? "Control point to be touched" : "No control point",
+        is_set ? "The touches lie on the bone. Whether the marker sits where it sat, nobody has checked."
+               : "The touches lie on the bone. Nothing tells whether the marker moves."};
+  } else if (missing == Unverified::GuideCheck) {
+    words.state = {Severity::Caution, "Guide not checked", "The touches lie on the bone."};
+  }
+  return words;
 }
 
 }  // namespace
@@ -249,14 +267,21 @@ RegistrationWords words_of(const theatre::LiveState& live) {
   if (words.state.severity == Severity::Bad && words.touch && words.touch->number.severity == Severity::Good)
     words.touch->number.severity = Severity::Quiet;
   const bool has_begun = state.point_count > 0 || !state.history->empty();
+  const bool nothing_is_drawn =
+      live.phase != theatre::LiveState::Phase::Running && state.in_force.standing == Standing::None;
   if (is_of_source_before(live))
     words.state = {Severity::Quiet, "No picture yet",
                    has_begun ? "What guides by its pictures is judged when they come." : ""};
   else if (waits_for_time_out(*live.operation))
     words.state = {Severity::Caution, "Waits for the time-out",
                    "What was drawn counts once patient, knee and plan are confirmed."};
+  else if (live.operation->marker_is_out)
+    words.state = {Severity::Quiet, "The marker is out", "What was registered by it has done its work."};
+  else if (nothing_is_drawn && state.bone_trouble.empty())  // nothing collects, whatever it had come to
+    words.state = {Severity::Quiet, "Not registered",
+                   state.point_count > 0 ? "What was drawn is kept. It goes on with the next pictures." : ""};
   else
-    return words;
+    return with_what_is_unverified(std::move(words), *live.operation);
   words.progress = 0;
   words.missing.clear();
   words.assumed.clear();

@@ -255,6 +255,16 @@ Step step_of(NextAction action) {
   return Step::Plan;
 }
 
+Unverified unverified_of(const OperationState& state) {
+  const bool is_verified = state.verification == Verification::ByTouches;
+  if (state.drilled.outcome == DrilledState::Outcome::Recorded)
+    return is_verified ? Unverified::Nothing : Unverified::Touches;
+  if (state.verification == Verification::NotYet) return Unverified::Touches;
+  if (state.control_point_due != ControlPointDue::None) return Unverified::ControlPoint;
+  if (!state.guide_check.may_guide()) return Unverified::GuideCheck;
+  return is_verified ? Unverified::Nothing : Unverified::Touches;
+}
+
 std::uint64_t digest_of_frame(const OperationState& state) {
   Digest digest;
   if (state.frame_count > 0) add_frame(digest, state.frame);

@@ -160,6 +160,12 @@ using OperationStatePtr = std::shared_ptr<const OperationState>;
 [[nodiscard]] NextAction next_action_of(const OperationState& state);
 [[nodiscard]] Step step_of(NextAction action);
 
+// What the seventh step still lacks: touches that verify what guides (skipped ones are not there), the
+// control point, set or touched again, or the check of a nominal guide. Of a tunnel that is recorded the
+// touches alone count still.
+enum class Unverified { Nothing, Touches, ControlPoint, GuideCheck };
+[[nodiscard]] Unverified unverified_of(const OperationState& state);
+
 // Numbers over everything in the state but `contour` (what follows from that is in them): two runs with the
 // same numbers did the same. The first to the last bit of every pose and covariance of the frame; the second
 // of everything else: registration, touches, alarms, plan, steps. 64-bit FNV-1a over the binary values.

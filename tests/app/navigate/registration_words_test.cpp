@@ -68,16 +68,19 @@ struct Known {
     registration.in_force.registration = summary;
     registration.entry_in_force = 0;
   }
-  [[nodiscard]] RegistrationWords words() const {
+  bool marker_is_out = false;
+  [[nodiscard]] RegistrationWords words() const { return words_of(whole()); }
+  [[nodiscard]] theatre::LiveState whole() const {
     operation::RegistrationState known = registration;
     known.history = std::make_shared<const std::vector<operation::RegistrationEntry>>(history);
     auto operation = std::make_shared<operation::OperationState>();
     operation->source = std::make_shared<const operation::SourceSetup>(source_of(sources::SourceKind::Live));
     operation->registration = std::make_shared<const operation::RegistrationState>(known);
     operation->time_out = time_out;
+    operation->marker_is_out = marker_is_out;
     theatre::LiveState whole = live;
     whole.operation = operation;
-    return words_of(whole);
+    return whole;
   }
 };
 
@@ -262,6 +265,53 @@ TEST(RegistrationWords, Hazard20NothingIsGoodBeforeTheTimeOut) {
   known.time_out = operation::TimeOut::Due;
   known.stand(Standing::Void);
   EXPECT_NE(known.words().state.name, "Waits for the time-out") << "that alone would not bring it back";
+}
+
+// The steps and these words read the same: what the step of verifying lacks is not called verified here.
+TEST(RegistrationWords, AreNotVerifiedBeforeTheWholeStepIs) {
+  Known known;
+  const auto words = [&](operation::ControlPointDue due, operation::GuideStanding guide,
+                         operation::DrilledState::Outcome drilled) {
+    theatre::LiveState whole = known.whole();
+    auto state = std::make_shared<operation::OperationState>(*whole.operation);
+    state->verification = operation::Verification::ByTouches;
+    state->control_point_due = due;
+    state->guide_check.standing = guide;
+    state->drilled.outcome = drilled;
+    whole.operation = state;
+    return words_of(whole).state;
+  };
+  using operation::ControlPointDue;
+  using operation::GuideStanding;
+  using Outcome = operation::DrilledState::Outcome;
+  EXPECT_EQ(words(ControlPointDue::None, GuideStanding::NotAsked, Outcome::NotSaid).name, "Verified");
+  const SeverityText no_point = words(ControlPointDue::Set, GuideStanding::NotAsked, Outcome::NotSaid);
+  EXPECT_EQ(no_point.name, "No control point");
+  EXPECT_EQ(no_point.severity, Severity::Caution);
+  EXPECT_EQ(words(ControlPointDue::None, GuideStanding::Due, Outcome::NotSaid).name, "Guide not checked");
+  EXPECT_EQ(words(ControlPointDue::Set, GuideStanding::NotAsked, Outcome::Recorded).name, "Verified")
+      << "of a tunnel that is recorded no control point is asked";
+  known.registration.touches.touch_control_point({0, 0, 0}, {});
+  EXPECT_EQ(words(ControlPointDue::CheckAfterLoss, GuideStanding::NotAsked, Outcome::NotSaid).name,
+            "Control point to be touched");
+}
+
+// Without pictures nothing is collected, and nobody is told to draw: no camera, or all is done.
+TEST(RegistrationWords, NothingIsCollectedWithoutPictures) {
+  Known known;
+  known.registration = operation::RegistrationState();
+  EXPECT_EQ(known.words().state.name, "Collecting");
+  for (const Phase phase : {Phase::NoSource, Phase::Ended}) {
+    known.live.phase = phase;
+    EXPECT_EQ(known.words().state.name, "Not registered");
+    EXPECT_EQ(known.words().state.text, "");
+  }
+  known.registration.point_count = 40;
+  EXPECT_NE(known.words().state.text, "");
+  known.marker_is_out = true;
+  EXPECT_EQ(known.words().state.name, "The marker is out");
+  known.live.phase = Phase::Running;
+  EXPECT_EQ(known.words().state.name, "The marker is out");
 }
 
 }  // namespace
