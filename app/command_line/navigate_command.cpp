@@ -166,6 +166,8 @@ theatre::NavigateOptions navigate_options(const Context& context, const Navigate
   options.source.kind = sources::kind_of_source(arguments.video);
   if (arguments.duration_s > 0) options.duration_s = arguments.duration_s;
   options.source.title = arguments.video;
+  options.source.camera_is_simulated =
+      warn_of_simulated_camera(camera_file_of(arguments), options.source.kind);
   options.source.pipeline = pipeline_options(arguments, knee);
   const bones::BoneKind bone = options.source.pipeline.bone;
   const auto found = knee.bones.find(bone);

@@ -129,8 +129,10 @@ std::string hindrance_of(const RailStep& step, bool is_looked_at) {
   if (is_looked_at) return navigate::words_of(step.missing);
   switch (step.missing) {
     case Missing::Camera:
+    case Missing::CameraOfScope:
     case Missing::ProbeTip:
     case Missing::GuideAxis:
+    case Missing::RealTools:
       return navigate::words_of(step.missing);
     default:
       return "";

@@ -127,7 +127,11 @@ std::string NavigateView::missing_now(const Rail& rail) {
   if (has_pictures && !is_in_wrong_medium())
     if (const std::string words = hindrance_of(*live_->operation, live_->trouble); !words.empty())
       return words;
-  return hindrance_of(rail[static_cast<std::size_t>(step_of_now(rail))], false);
+  const std::string words = hindrance_of(rail[static_cast<std::size_t>(step_of_now(rail))], false);
+  const auto& source = live_->operation->source;
+  return words.empty() && source != nullptr && operation::has_camera_of_simulator(*source)
+             ? navigate::words_of(Missing::CameraOfScope)
+             : words;
 }
 
 std::string NavigateView::words_of_start() const {
@@ -331,7 +335,9 @@ RailContext NavigateView::rail_context() const {
   if (model_ == nullptr) return context;
   context.is_planned = bones_.plan_of(choices_.bone).has_value();
   context.must_choose = bones_.must_choose(choices_.bone);
-  context.has_camera = simulates() || choices_.has_camera_file;
+  context.simulates = simulates();
+  context.has_camera = context.simulates || choices_.has_camera_file;
+  context.camera_is_simulated = choices_.has_camera_file && !choices_.has_real_scope;
   context.tools = choices_.tools ? &*choices_.tools : nullptr;
   const auto finished = finished_bones();
   context.is_drilled = finishes();

@@ -90,7 +90,9 @@ theatre::TheatreSource real_setup(const open_case::PlanModel& model, bones::Bone
     throw InvalidInput("no camera is calibrated for this case: do it in Set up (F4)");
   if (!std::filesystem::exists(cases::tools_file(case_folder)))
     throw InvalidInput("no tools are known in this case: make them known in Set up (F4)");
-  setup.pipeline.calibration = camera::read_camera_file(cases::camera_file(case_folder)).calibration;
+  const camera::CalibrationRecord camera = camera::read_camera_file(cases::camera_file(case_folder));
+  setup.pipeline.calibration = camera.calibration;
+  setup.camera_is_simulated = camera.provenance.origin == provenance::Origin::Simulated;
   setup.pipeline.tools = tools::read_tools_file(cases::tools_file(case_folder));
   setup.calibration = open_case::calibration_in_words(false, case_folder, files::utc_now());
   setup.pipeline.refractive_index = refractive_index;
@@ -147,13 +149,7 @@ theatre::TheatreSource camera_setup(const open_case::PlanModel& model, bones::Bo
 }
 
 bool has_real_scope(const std::filesystem::path& case_folder) {
-  const auto file = cases::camera_file(case_folder);
-  if (case_folder.empty() || !std::filesystem::exists(file)) return false;
-  try {
-    return camera::read_camera_file(file).scope_name != open_case::kSimulatedScope;
-  } catch (const std::runtime_error&) {  // one that cannot be read is nobody's; opening it says what is wrong
-    return true;
-  }
+  return !case_folder.empty() && open_case::has_real_camera(case_folder);
 }
 
 }  // namespace arthronaut::navigate

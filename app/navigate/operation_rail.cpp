@@ -57,7 +57,11 @@ Missing missing_of_plan(const Known& known) {
 }
 
 Missing missing_of_camera(const Known& known) {
-  if (known.state.source == nullptr) return known.context.has_camera ? Missing::Nothing : Missing::Camera;
+  if (known.state.source == nullptr) {
+    if (!known.context.has_camera) return Missing::Camera;
+    return known.context.camera_is_simulated && !known.context.simulates ? Missing::CameraOfScope
+                                                                         : Missing::Nothing;
+  }
   const bool changed = known.state.frame_count > 0 && known.state.frame.lens.zoom_or_slip;
   return changed ? Missing::LensUnchanged : Missing::Nothing;
 }
@@ -74,7 +78,15 @@ Missing missing_of_marker(const Known& known) {
 
 Missing missing_of_tools(const Known& known) {
   if (!known.probe_is_known()) return Missing::ProbeTip;
-  return known.guide_is_known() ? Missing::Nothing : Missing::GuideAxis;
+  if (!known.guide_is_known()) return Missing::GuideAxis;
+  const auto is_simulated = [](const tools::Tool& tool) {
+    return tool.provenance.origin == provenance::Origin::Simulated;
+  };
+  const bool are_real = known.state.source != nullptr
+                            ? known.state.source->kind != sources::SourceKind::Simulation
+                            : !known.context.simulates;
+  return are_real && std::ranges::any_of(known.tools()->tools, is_simulated) ? Missing::RealTools
+                                                                             : Missing::Nothing;
 }
 
 // What was registered before patient, knee and plan were confirmed counts from then on.
@@ -144,6 +156,9 @@ Missing rest_of(Step step, const Known& known) {
     case Step::Plan:
       return missing_of_plan(known);
     case Step::Calibrate:
+      // A recording by the simulator's camera goes on, and is never called calibrated.
+      if (state.source != nullptr && operation::has_camera_of_simulator(*state.source))
+        return Missing::CameraOfScope;
       return missing_of_camera(known);
     case Step::WorldMarker:
       // Taken out at the end it has done its work.
@@ -249,6 +264,10 @@ std::string words_of(Missing missing) {
       return "the plan was edited and not taken over";
     case Missing::Camera:
       return "no calibrated camera";
+    case Missing::CameraOfScope:
+      return "the camera was calibrated on the simulator, not on this scope";
+    case Missing::RealTools:
+      return "a tool was calibrated on the simulator";
     case Missing::LensUnchanged:
       return "zoom or coupler is not as it was calibrated";
     case Missing::Source:

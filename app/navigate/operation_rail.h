@@ -29,12 +29,14 @@ enum class Missing {
   TunnelChoice,   // of two tunnels in the bone
   PlanTakenOver,  // it was edited
   Camera,         // no calibration
+  CameraOfScope,  // it is of the simulated arthroscope, and the pictures are not
   LensUnchanged,  // the zoom was changed since, or the coupler slipped
   Source,
   MarkerInView,
   MarkerInPlace,  // it may have moved, or was taken out
   ProbeTip,
   GuideAxis,
+  RealTools,  // one was calibrated with the simulated arthroscope
   Strokes,
   Registration,  // none that stands
   TimeOut,
@@ -57,6 +59,8 @@ struct RailContext {
   bool is_planned = false;   // a tunnel of this bone, and nobody has to choose one
   bool must_choose = false;  // of two
   bool has_camera = false;   // for the pictures that come next; the one in use counts once a source ran
+  bool simulates = false;    // those pictures
+  bool camera_is_simulated = false;
   const tools::ToolSet* tools = nullptr;  // likewise; null: none that can be read
   bool is_drilled = false;                // said since the case was opened, of the plan in force
   bool was_measured = false;              // and the drill or the guide was seen at it, not only said

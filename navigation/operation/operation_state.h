@@ -28,8 +28,14 @@ struct SourceSetup {
   std::string title;        // "Simulated operation: probe"
   std::string calibration;  // camera and tools in words: "camera of 2026-11-21, 1 of 4 tools calibrated"
   pipeline::PipelineOptions pipeline;
+  bool camera_is_simulated = false;  // its calibration is of the simulated arthroscope
   bool draws = true;  // the probe draws from the first frame, unless something reliable guides already
 };
+
+// What a real scope shows is measured by a calibration of the simulated one: no number of it is right.
+[[nodiscard]] inline bool has_camera_of_simulator(const SourceSetup& source) {
+  return source.camera_is_simulated && source.kind != sources::SourceKind::Simulation;
+}
 
 // What is known of where the bone lies.
 struct RegistrationState {

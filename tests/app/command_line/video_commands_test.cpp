@@ -65,6 +65,30 @@ TEST_F(VideoCommands, WhatIsSeenByADoubtedCameraIsNotReliable) {
   EXPECT_EQ(strokes::read_poses_file(folder_ / "poses.csv").size(), 2U * test::kClipFrames);
 }
 
+// A recording may be of the simulator, and nobody can tell: what its camera means else is said, also to who
+// wants errors alone. Live pictures are of a real scope, and are refused before anything is opened.
+TEST_F(VideoCommands, Hazard26TheSimulatorsCameraIsSaidAndRefusedLive) {
+  std::string camera = test::clip_camera_json();
+  camera.insert(camera.find('{') + 1, R"("scope": "Simulated arthroscope",)");
+  test::write_file(folder_ / "camera.json", camera);
+  const auto tracked =
+      run_program({"track", "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json",
+                   "--fixed-lens", "--quiet", "-o", folder_ / "poses.csv", folder_ / "clip.mkv"});
+  EXPECT_EQ(tracked.exit_code, 0) << tracked.errors;
+  EXPECT_THAT(tracked.errors, HasSubstr("of the simulated arthroscope"));
+  const std::string knee = folder_ / "knee.arthro";
+  ASSERT_EQ(run_program({"phantom", "-o", knee}).exit_code, 0);
+  const auto navigate = [&](const std::string& video) {
+    return run_program({"navigate", knee, "--video", video, "--camera", folder_ / "camera.json", "--tools",
+                        folder_ / "tools.json", "--medium", "air", "--fixed-lens"});
+  };
+  EXPECT_THAT(navigate(folder_ / "clip.mkv").errors, HasSubstr("of the simulated arthroscope"));
+  const auto live = navigate("rtsp://127.0.0.1:1/scope");
+  EXPECT_EQ(live.exit_code, 3);
+  EXPECT_THAT(live.errors, HasSubstr("camera.json"));
+  EXPECT_THAT(live.errors, HasSubstr("is the simulated arthroscope"));
+}
+
 // A dump holds of every frame a picture and what was seen in it; in the first one, where both markers had to
 // be searched for, the squares that were looked at lie where the markers were drawn.
 TEST_F(VideoCommands, TrackDumpsWhatItSawInEveryFrame) {

@@ -71,6 +71,26 @@ TEST(NavigateSetup, ATrackerThatWasTypedSeesTheToolsOfALiveSource) {
   EXPECT_TRUE(typed.tracker) << "somebody listens to it";
 }
 
+// A source knows whether it is measured by the simulator's camera, whatever the file's scope is called.
+TEST(NavigateSetup, Hazard26AVideoKnowsThatItsCameraIsTheSimulators) {
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
+  const open_case::PlanModel model(
+      phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 2.5}), "test"));
+  tools::write_tools_file(cases::tools_file(folder), tools::standard_tools());
+  for (const auto origin : {provenance::Origin::Simulated, provenance::Origin::Measured}) {
+    camera::CalibrationRecord record;
+    record.calibration = simulator::standard_camera();
+    record.scope_name = "Scope 30";
+    record.provenance.origin = origin;
+    camera::write_camera_file(cases::camera_file(folder), record);
+    const bool is_simulated = origin == provenance::Origin::Simulated;
+    EXPECT_EQ(has_real_scope(folder), !is_simulated);
+    const auto setup = video_setup(model, bones::BoneKind::Femur, folder, folder / "clip.mkv", 1.33).setup;
+    EXPECT_EQ(operation::has_camera_of_simulator(setup), is_simulated);
+  }
+}
+
 // Before anything is calibrated: where that is done, and no names of files.
 TEST(NavigateSetup, ACaseWithoutCameraOrToolsSaysWhereTheyAreMade) {
   const test::TemporaryFolder temporary;

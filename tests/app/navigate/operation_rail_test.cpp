@@ -244,6 +244,35 @@ TEST(OperationRail, NamesWhatIsMissing) {
   EXPECT_EQ(missing_of(nominal.rail(), Step::Guide), Missing::GuideCheck);
 }
 
+// What was calibrated on the simulator is calibrated for its pictures alone: no tick for a real scope, before
+// a source and while its recording runs.
+TEST(OperationRail, Hazard26WhatIsOfTheSimulatorTicksNothingOfARealScope) {
+  Course course;
+  course.context.camera_is_simulated = true;
+  EXPECT_EQ(missing_of(course.rail(), Step::Calibrate), Missing::CameraOfScope);
+  EXPECT_EQ(step_of_now(course.rail()), Step::Calibrate);
+  course.context.simulates = true;
+  EXPECT_EQ(state_of(course.rail(), Step::Calibrate), StepState::Done);
+
+  course.context.camera_is_simulated = false;
+  for (tools::Tool& tool : course.tools.tools) tool.provenance.origin = provenance::Origin::Simulated;
+  EXPECT_EQ(state_of(course.rail(), Step::Tools), StepState::Done);
+  course.context.simulates = false;
+  EXPECT_EQ(missing_of(course.rail(), Step::Tools), Missing::RealTools);
+
+  Course running;
+  running.source.camera_is_simulated = true;
+  running.source.kind = sources::SourceKind::Simulation;
+  running.verify();
+  EXPECT_EQ(state_of(running.rail(), Step::Calibrate), StepState::Done);
+  running.source.kind = sources::SourceKind::Recording;
+  running.start();
+  const Rail rail = running.rail();
+  expect_whole(rail);
+  EXPECT_EQ(missing_of(rail, Step::Calibrate), Missing::CameraOfScope);
+  EXPECT_EQ(step_of_now(rail), Step::Guide) << "it goes on";
+}
+
 // Everything that is missing has its own words, and so has every way to do a step again.
 TEST(OperationRail, HasWordsForEverything) {
   std::set<std::string> missing, repeats;
