@@ -166,8 +166,7 @@ theatre::NavigateOptions navigate_options(const Context& context, const Navigate
   options.source.kind = sources::kind_of_source(arguments.video);
   if (arguments.duration_s > 0) options.duration_s = arguments.duration_s;
   options.source.title = arguments.video;
-  options.source.camera_is_simulated =
-      warn_of_simulated_camera(camera_file_of(arguments), options.source.kind);
+  options.source.camera_is_simulated = warn_of_simulated_camera(camera_file_of(arguments));
   options.source.pipeline = pipeline_options(arguments, knee);
   const bones::BoneKind bone = options.source.pipeline.bone;
   const auto found = knee.bones.find(bone);
@@ -235,6 +234,8 @@ void navigate(Context& context, const NavigateArguments& arguments,
   const AdoptedFile tools(arguments.tools, cases::tools_file(arguments.case_folder));
   theatre::NavigateOptions options = navigate_options(context, arguments, knee);
   std::vector<std::string> doubts = camera_doubts(camera_file_of(arguments));  // before it becomes the case's
+  if (options.source.camera_is_simulated && options.source.kind == sources::SourceKind::Live)
+    doubts.push_back("the camera was calibrated on the simulator, and live pictures are of another");
   const bones::BoneKind kind = options.operation.bone;
   options.bone = std::make_shared<const registration::SurfaceIndex>(
       knee.bones.at(kind).mesh, cases::surface_index_file(arguments.case_folder, kind));

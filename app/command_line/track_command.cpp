@@ -26,7 +26,7 @@ void track(Context& context, const TrackArguments& arguments) {
       {.read = {arguments.camera, arguments.tools, arguments.video}, .written = {arguments.output}});
   const camera::CalibrationRecord camera = camera::read_camera_file(arguments.camera);
   std::vector<std::string> reasons = camera_doubts(arguments.camera);
-  warn_of_simulated_camera(arguments.camera, sources::SourceKind::Recording);
+  warn_of_simulated_camera(arguments.camera);
   const tools::ToolSet tools = tools::read_tools_file(arguments.tools);
   if (tools.tracker)
     throw InvalidInput(arguments.tools, "tracker",

@@ -3,7 +3,6 @@
 #include <iostream>
 
 #include "navigation/camera/doubted_camera_file.h"
-#include "planning/geometry/error.h"
 #include "planning/log/log.h"
 
 namespace arthronaut::command_line {
@@ -24,13 +23,10 @@ std::vector<std::string> camera_doubts(const std::filesystem::path& camera_file)
   return doubts;
 }
 
-bool warn_of_simulated_camera(const std::filesystem::path& camera_file, sources::SourceKind kind) {
+bool warn_of_simulated_camera(const std::filesystem::path& camera_file) {
   const bool is_simulated =
       camera::read_camera_file(camera_file).provenance.origin == provenance::Origin::Simulated;
   if (!is_simulated) return false;
-  if (kind == sources::SourceKind::Live)
-    throw InvalidInput(camera_file, "origin",
-                       "is the simulated arthroscope: calibrate the one that gives these pictures first");
   const std::string warning =
       camera_file.string() +
       ": is of the simulated arthroscope: no number is right of a video that a real one has taken";

@@ -16,10 +16,9 @@ namespace arthronaut::command_line {
 // Why the camera of this file, which is tracked with, is not reliable, where the file says so: nor then is
 // what was seen by it.
 [[nodiscard]] std::vector<std::string> camera_doubts(const std::filesystem::path& camera_file);
-// Whether the camera of this file is of the simulated arthroscope. Nobody can tell whether a recording is of
-// it, too: what that means else is said on standard error, also to those who want no more than errors. Live
-// pictures are not: throws InvalidInput.
-bool warn_of_simulated_camera(const std::filesystem::path& camera_file, sources::SourceKind kind);
+// Whether the camera of this file is of the simulated arthroscope. Nobody can tell whether the pictures are of
+// it, too: what that means else is said on standard error, also to those who want no more than errors.
+bool warn_of_simulated_camera(const std::filesystem::path& camera_file);
 void say_statistics(const Context& context, const pipeline::ViewStatistics& statistics);
 
 // Why what was recorded is not all there was to record; empty where it is.
