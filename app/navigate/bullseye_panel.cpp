@@ -34,9 +34,10 @@ void draw_target(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, 
                  widgets::kQuietText, label.text.c_str());
 }
 
-// The words in full stand beside the numbers.
+// As surgeons shorten them, where they stand beside the target; the words in full stand beside the numbers.
 std::string in_short(std::string_view direction) {
-  return std::string(direction.substr(0, direction == "medial" || direction == "lateral" ? 3 : 4));
+  const bool has_three = direction == "medial" || direction == "lateral" || direction == "anterior";
+  return std::string(direction.substr(0, has_three ? 3 : 4));
 }
 
 // The target as large as it can be with its words around it; where large words would take most of it, or
@@ -69,7 +70,9 @@ void draw_directions(ImDrawList& draw, const widgets::Rect& area, const ImVec2& 
   const float radius = layout.radius;
   const auto put = [&](landmarks::AnatomicalDirection direction, bool is_positive, float x, float y,
                        float align) {
-    const std::string text = in_short(landmarks::to_text(direction, is_positive));
+    const std::string_view whole = landmarks::to_text(direction, is_positive);
+    // Above and below there is room for the whole word.
+    const std::string text = align == 0.5F ? std::string(whole) : in_short(whole);
     const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
     const float left = std::clamp(x - width * align, area.x + 4, area.x + area.width - width - 4);
     draw.AddText(font, font->FontSize, {left, y}, widgets::kQuietText, text.c_str());

@@ -63,8 +63,9 @@ void action_button(const Ui& ui, std::string_view action_id, float width, float 
   const ImVec2 label_size = text_size(ui.theme.body, action->label);
   const float key_width = key.empty() ? 0 : text_size(ui.theme.body, key).x + ui.theme.px(18);
   if (width <= 0) width = label_size.x + key_width + 2 * style.FramePadding.x;
-  // Where both do not fit beside each other the label is what has to be read.
-  if (label_size.x + key_width + 2 * style.FramePadding.x > width + 0.5F) key_in_tooltip.swap(key);
+  // Where both do not fit beside each other, however close, the label is what has to be read.
+  const float closest = key.empty() ? 0 : key_width - ui.theme.px(11);
+  if (label_size.x + closest + 2 * style.FramePadding.x > width + 0.5F) key_in_tooltip.swap(key);
   if (height <= 0) height = label_size.y + 2 * style.FramePadding.y;
 
   ImGui::PushID(action->id.c_str());

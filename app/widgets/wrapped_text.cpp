@@ -51,4 +51,25 @@ std::string wrapped(const ImFont* font, std::string_view text, float width_px) {
   return lines;
 }
 
+LinesWithin lines_within(const ImFont* font, std::string_view text, float width_px, float height_px) {
+  constexpr float kLeast = 0.7F, kSmaller = 0.97F;
+  const auto fits = [&](const std::string& lines, float share) {
+    const ImVec2 size = font->CalcTextSizeA(share * font->FontSize, 1e9F, 0, lines.c_str());
+    return size.x <= width_px + 0.5F && size.y <= height_px + 0.5F;
+  };
+  LinesWithin within;
+  float share = 1;
+  for (; share >= kLeast; share *= kSmaller) {
+    within = {wrapped(font, text, width_px / share), share * font->FontSize};
+    if (fits(within.lines, share)) return within;
+  }
+  share /= kSmaller;
+  for (std::size_t length = text.size(); length > 0 && !fits(within.lines, share);) {
+    do --length;
+    while (length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0U) == 0x80U);
+    within.lines = wrapped(font, std::string(text.substr(0, length)) + "\u2026", width_px / share);
+  }
+  return within;
+}
+
 }  // namespace arthronaut::widgets

@@ -13,4 +13,13 @@ namespace arthronaut::widgets {
 // it has stay.
 [[nodiscard]] std::string wrapped(const ImFont* font, std::string_view text, float width_px);
 
+// The text in as many lines as fit one below the other, in the largest letters that show all of it: the
+// font's own, or smaller ones. Where the smallest that can be read are too large its end is cut, "...".
+struct LinesWithin {
+  std::string lines;
+  float letters_px = 0;
+};
+[[nodiscard]] LinesWithin lines_within(const ImFont* font, std::string_view text, float width_px,
+                                       float height_px);
+
 }  // namespace arthronaut::widgets

@@ -1,40 +1,76 @@
 #include "app/window/key_list.h"
 
 #include <algorithm>
-#include <string>
 
-#include "app/widgets/list_rows.h"
+#include "app/widgets/wrapped_text.h"
 
 namespace arthronaut::window {
 
+namespace {
+
+std::size_t line_count(const std::string& words) {
+  return 1 + static_cast<std::size_t>(std::ranges::count(words, '\n'));
+}
+
+}  // namespace
+
+KeyListLayout key_list_layout(const ImFont* font, const std::vector<std::string>& explanations, float room_px,
+                              float height_px) {
+  constexpr float kLeast = 0.4F, kSmaller = 0.96F, kLine = 1.25F;
+  KeyListLayout layout;
+  for (float share = 1; share >= kLeast; share *= kSmaller) {
+    layout.letters_px = share * font->FontSize;
+    layout.words.clear();
+    std::size_t all = 0;
+    for (const std::string& one : explanations) {
+      layout.words.push_back(widgets::wrapped(font, one, room_px / share));
+      all += line_count(layout.words.back());
+    }
+    // The left column is the longer one, by no more than its last explanation.
+    std::size_t left = 0, i = 0;
+    while (i < layout.words.size() && 2 * left < all) left += line_count(layout.words[i++]);
+    layout.first_on_the_right = i;
+    const std::size_t rows = std::max<std::size_t>({left, all - left, 1});
+    layout.line_px = std::min(1.7F * layout.letters_px, height_px / static_cast<float>(rows));
+    if (layout.line_px >= kLine * layout.letters_px) return layout;
+  }
+  return layout;
+}
+
 void draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& prefixes) {
   std::vector<const widgets::Action*> shown;
+  std::vector<std::string> explanations;
   for (const widgets::Action& action : ui.actions.all()) {
     const bool here = std::any_of(prefixes.begin(), prefixes.end(),
                                   [&](std::string_view prefix) { return action.id.starts_with(prefix); });
-    if (here && action.key != 0) shown.push_back(&action);
+    if (!here || action.key == 0) continue;
+    shown.push_back(&action);
+    explanations.push_back(action.label + ": " + action.tooltip);
   }
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImDrawList& draw = *ImGui::GetForegroundDrawList();
   draw.AddRectFilled({0, 0}, size, IM_COL32(6, 8, 10, 244));
-  const std::size_t columns = 2, rows = (shown.size() + columns - 1) / columns;
-  // As many as there are stand on the screen, and none runs into its neighbour.
-  const float most = (size.y - ui.theme.px(20)) / static_cast<float>(rows + 2);
-  const float line = std::min(ui.theme.px(34), most);
-  const float letters = std::min(ui.theme.body->FontSize, 0.9F * line);
   const float key_width = ui.theme.px(150), column_width = std::min(ui.theme.px(900), size.x / 2);
-  const float left = (size.x - static_cast<float>(columns) * column_width) / 2;
-  const float top = std::max((size.y - line * static_cast<float>(rows + 2)) / 2, ui.theme.px(10));
-  draw.AddText(ui.theme.title, ui.theme.title->FontSize, {left, top}, widgets::kText, "Keys (F10 closes)");
+  const float left = size.x / 2 - column_width + ui.theme.px(16);
+  const float head = ui.theme.title->FontSize + ui.theme.px(16), margin = ui.theme.px(12);
+  const KeyListLayout layout = key_list_layout(
+      ui.theme.body, explanations, column_width - key_width - ui.theme.px(24), size.y - head - 2 * margin);
+  draw.AddText(ui.theme.title, ui.theme.title->FontSize, {left, margin}, widgets::kText, "Keys (F10 closes)");
+  float x = left, y = margin + head;
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    const float x = left + static_cast<float>(i / rows) * column_width;
-    const float y = top + line * static_cast<float>(i % rows + 2);
+    if (i == layout.first_on_the_right) {
+      x += column_width;
+      y = margin + head;
+    }
     const std::string key = widgets::key_name(shown[i]->key, shown[i]->mods);
-    draw.AddText(ui.theme.strong, letters, {x, y}, widgets::kAccent, key.c_str());
-    const float room = (column_width - key_width - ui.theme.px(16)) * ui.theme.body->FontSize / letters;
-    const std::string words =
-        widgets::fitting(ui.theme.body, shown[i]->label + ": " + shown[i]->tooltip, room);
-    draw.AddText(ui.theme.body, letters, {x + key_width, y}, widgets::kText, words.c_str());
+    draw.AddText(ui.theme.strong, layout.letters_px, {x, y}, widgets::kAccent, key.c_str());
+    float at = y;
+    for (std::size_t from = 0, to = 0; from <= layout.words[i].size(); from = to + 1, at += layout.line_px) {
+      to = std::min(layout.words[i].find('\n', from), layout.words[i].size());
+      const std::string line = layout.words[i].substr(from, to - from);
+      draw.AddText(ui.theme.body, layout.letters_px, {x + key_width, at}, widgets::kText, line.c_str());
+    }
+    y = at;
   }
 }
 

@@ -1,12 +1,23 @@
 // The list of every key that works in a mode, over the screen.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "app/widgets/controls.h"
 
 namespace arthronaut::window {
+
+// Explanations in two columns, each broken into lines and none of them cut. Pure.
+struct KeyListLayout {
+  float letters_px = 0, line_px = 0;  // no larger than the font; smaller where it takes that to show all
+  std::vector<std::string> words;     // as they stand, with their line ends
+  std::size_t first_on_the_right = 0;
+};
+// room_px: of a column, beside its keys; height_px: for the lines of a column.
+[[nodiscard]] KeyListLayout key_list_layout(const ImFont* font, const std::vector<std::string>& explanations,
+                                            float room_px, float height_px);
 
 // Of the actions whose id starts with one of the prefixes.
 void draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& prefixes);

@@ -1,8 +1,10 @@
 // The bars above and below every screen.
+#include <algorithm>
 #include <utility>
 
 #include "app/widgets/list_rows.h"
 #include "app/widgets/source_banner.h"
+#include "app/widgets/wrapped_text.h"
 #include "app/window/whose_knee.h"
 #include "app/window/workstation_window.h"
 
@@ -12,6 +14,11 @@ namespace {
 
 constexpr const char* kNotice = "Research software, not a medical device";
 constexpr const char *kNoticeBeginning = "Research software,", *kNoticeEnd = "not a medical device";
+
+std::string in_one_line(std::string words) {
+  std::ranges::replace(words, '\n', ' ');
+  return words;
+}
 
 }  // namespace
 
@@ -152,10 +159,13 @@ void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& 
   };
   line("app.side", ui.theme.title, rest.y, widgets::kText, "", side_words);
   line("app.whose", ui.theme.strong, rest.y + ui.theme.title->FontSize, widgets::kQuietText, name, born);
+  // In one line beside what always stands there; else whole, in two lines of smaller letters, of which the
+  // second stands in the gap below the header.
   const float left = foot.x + (has_room ? standing : 0);
-  const std::string words = warns ? widgets::fitting(font, text, foot.x + foot.width - left) : "";
-  ui.log.note_state("header_notice", words);
-  draw.AddText(font, font->FontSize, {left, foot.y}, widgets::kCaution, words.c_str());
+  const widgets::LinesWithin said = widgets::lines_within(font, warns ? text : "", foot.x + foot.width - left,
+                                                          foot.height + (has_room ? 0 : ui.theme.px(11)));
+  ui.log.note_state("header_notice", in_one_line(said.lines));
+  draw.AddText(font, said.letters_px, {left, foot.y}, widgets::kCaution, said.lines.c_str());
 }
 
 void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -165,9 +175,12 @@ void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Re
   const float y = area.y + (area.height - font->FontSize) / 2;
   draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), y}, widgets::kQuietText, kNotice);
   const auto [text, warns] = status_words();
-  const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
-  draw.AddText(font, font->FontSize, {area.x + area.width - wide - ui.theme.px(20), y},
-               warns ? widgets::kCaution : widgets::kQuietText, text.c_str());
+  const float room = area.width - font->CalcTextSizeA(font->FontSize, 1e9F, 0, kNotice).x - ui.theme.px(60);
+  const widgets::LinesWithin said = widgets::lines_within(font, text, room, area.height);
+  const ImVec2 size = font->CalcTextSizeA(said.letters_px, 1e9F, 0, said.lines.c_str());
+  draw.AddText(font, said.letters_px,
+               {area.x + area.width - size.x - ui.theme.px(20), area.y + (area.height - size.y) / 2},
+               warns ? widgets::kCaution : widgets::kQuietText, said.lines.c_str());
 }
 
 void WorkstationWindow::draw_fault(const widgets::Ui& ui) const {

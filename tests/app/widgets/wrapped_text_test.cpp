@@ -40,5 +40,24 @@ TEST_F(WrappedText, KeepsWhatFitsAndItsLineEnds) {
   EXPECT_EQ(in_letters("", 9), "");
 }
 
+// A message that is too long for its line is set smaller, and then in as many lines as there is room for;
+// only what even so has no room is cut, and its end says so.
+TEST_F(WrappedText, IsShownWholeInTheRoomThereIs) {
+  const float letter = font_->CalcTextSizeA(font_->FontSize, 1e9F, 0, "0").x, height = font_->FontSize;
+  const auto within = [&](std::string_view text, int letters, float lines) {
+    return lines_within(font_, text, (static_cast<float>(letters) + 0.1F) * letter, lines * height);
+  };
+  EXPECT_EQ(within("one two", 7, 1).lines, "one two");
+  EXPECT_EQ(within("one two", 7, 1).letters_px, height);
+  EXPECT_EQ(within("one two", 6, 2).lines, "one\ntwo");
+  const LinesWithin smaller = within("one two", 6, 1);
+  EXPECT_EQ(smaller.lines, "one two");
+  EXPECT_LT(smaller.letters_px, height);
+  const LinesWithin cut = within("one two three four five", 7, 1);
+  EXPECT_TRUE(cut.lines.starts_with("one two")) << cut.lines;
+  EXPECT_TRUE(cut.lines.ends_with("\u2026")) << cut.lines;
+  EXPECT_EQ(within("", 7, 1).lines, "");
+}
+
 }  // namespace
 }  // namespace arthronaut::widgets

@@ -1,0 +1,44 @@
+#include "app/window/key_list.h"
+
+#include <gtest/gtest.h>
+
+#include "app/widgets/theme.h"
+
+namespace arthronaut::window {
+namespace {
+
+// What a key does is read whole: on a screen full of keys the letters become smaller, and no sentence is cut.
+TEST(KeyList, ShowsEveryExplanationWhole) {
+  ImGui::CreateContext();
+  const widgets::Theme theme = widgets::build_theme(*ImGui::GetIO().Fonts, 1, 40);
+  constexpr float kRoom_px = 720, kHeight_px = 1000;
+  for (const std::size_t count : {1U, 2U, 50U, 75U}) {
+    std::vector<std::string> explanations;
+    for (std::size_t i = 0; i < count; ++i)
+      explanations.push_back(i % 3 != 0
+                                 ? "Step back: Goes back a step"
+                                 : "Tunnel AM: The tunnel of the anteromedial bundle is drilled; "
+                                   "while a source runs it is offered, and guides once it is taken over");
+    const KeyListLayout layout = key_list_layout(theme.body, explanations, kRoom_px, kHeight_px);
+    ASSERT_EQ(layout.words.size(), count);
+    std::array<std::size_t, 2> lines{};
+    for (std::size_t i = 0; i < count; ++i) {
+      std::string joined = layout.words[i];
+      std::ranges::replace(joined, '\n', ' ');
+      EXPECT_EQ(joined, explanations[i]);
+      const ImVec2 size = theme.body->CalcTextSizeA(layout.letters_px, 1e9F, 0, layout.words[i].c_str());
+      EXPECT_LE(size.x, kRoom_px + 1);
+      lines[i < layout.first_on_the_right ? 0 : 1] +=
+          1 + static_cast<std::size_t>(std::ranges::count(layout.words[i], '\n'));
+    }
+    for (const std::size_t column : lines)
+      EXPECT_LE(static_cast<float>(column) * layout.line_px, kHeight_px + 1) << count;
+    EXPECT_GE(layout.line_px, layout.letters_px) << "no line runs into the next";
+    EXPECT_LE(layout.letters_px, theme.body->FontSize);
+    EXPECT_GE(layout.letters_px, 0.6F * theme.body->FontSize) << count;
+  }
+  ImGui::DestroyContext();
+}
+
+}  // namespace
+}  // namespace arthronaut::window
