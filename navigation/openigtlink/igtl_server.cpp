@@ -142,6 +142,9 @@ class Outgoing {
       Held& held = held_[i];
       if (found == valid.end()) {
         if (held.is_valid == false) continue;
+        const bool is_declared =
+            name != kSecondDrill || (published.state != nullptr && has_second_drill(*published.state));
+        if (!held.is_valid && !is_declared) continue;
         held.is_valid = false;
         held.newest.name = name;
         const std::string why =

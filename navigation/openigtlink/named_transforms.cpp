@@ -1,5 +1,7 @@
 #include "navigation/openigtlink/named_transforms.h"
 
+#include <algorithm>
+
 #include "navigation/openigtlink/ras_from_lps.h"
 
 namespace arthronaut::openigtlink {
@@ -14,7 +16,13 @@ const pipeline::ToolPose* pose_of(const operation::OperationState& state, int ma
   return nullptr;
 }
 
+bool is_drill(const tools::Tool& tool) { return tool.kind == tools::ToolKind::Drill; }
+
 }  // namespace
+
+bool has_second_drill(const operation::OperationState& state) {
+  return state.source != nullptr && std::ranges::count_if(state.source->pipeline.tools.tools, is_drill) > 1;
+}
 
 std::vector<NamedTransform> named_transforms(const operation::OperationState& state) {
   std::vector<NamedTransform> named;
@@ -27,14 +35,17 @@ std::vector<NamedTransform> named_transforms(const operation::OperationState& st
     add(state.bone == bones::BoneKind::Femur ? "WorldFemur" : "WorldTibia",
         state.frame.camera_from_world.target_from_source);
   }
+  int drill = 0;  // two under one name would be one that jumps from hand to hand
   for (const tools::Tool& tool : setup.tools.tools) {
+    drill += is_drill(tool) ? 1 : 0;
     const pipeline::ToolPose* const seen = pose_of(state, tool.marker_id);
     if (seen == nullptr) continue;
     const RigidTransform& world_from_tool = seen->world_from_tool.target_from_source;
     if (tool.name == setup.probe_name && tool.tip_mm)
       add("ProbeTip_World", {world_from_tool.rotation, world_from_tool * *tool.tip_mm});
     if (tool.name == setup.guide_name) add("Guide_World", world_from_tool);
-    if (tool.kind == tools::ToolKind::Drill) add("Drill_World", world_from_tool);
+    if (is_drill(tool) && drill == 1) add("Drill_World", world_from_tool);
+    if (is_drill(tool) && drill == 2) add(std::string(kSecondDrill), world_from_tool);
   }
   const operation::RegistrationInForce& in_force = state.registration->in_force;
   if (in_force.standing == operation::Standing::Stands && in_force.registration != nullptr &&

@@ -3,7 +3,9 @@
 //   WorldFemur, WorldTibia   the world marker in the camera
 //   ProbeTip_World           the probe in the world, origin at its tip, axes of its marker
 //   Guide_World, Drill_World the guide's and the drill's marker frame in the world (tools.json says where
-//                            their axes and tips lie in it)
+//                            their axes and tips lie in it); of several drills the first one declared, of
+//                            which the depth is told
+//   Drill2_World             the second drill that is declared
 //   Bone_World               the registration: the bone's frame in the world, while it may guide
 //   Plan                     POINT: entry and end of the planned tunnel in the bone's frame
 //   Arthroscope              IMAGE, to who asks for it: columns along the camera's x, rows along its y,
@@ -31,8 +33,11 @@ struct NamedTransform {
 [[nodiscard]] std::vector<NamedTransform> named_transforms(const operation::OperationState& state);
 
 // Every name that a transform may go out under.
-inline constexpr std::array<std::string_view, 6> kTransformNames{
-    "WorldFemur", "WorldTibia", "ProbeTip_World", "Guide_World", "Drill_World", "Bone_World"};
+inline constexpr std::string_view kSecondDrill = "Drill2_World";
+inline constexpr std::array<std::string_view, 7> kTransformNames{
+    "WorldFemur", "WorldTibia", "ProbeTip_World", "Guide_World", "Drill_World", "Bone_World", kSecondDrill};
+// Nobody who works with one drill is told of another one.
+[[nodiscard]] bool has_second_drill(const operation::OperationState& state);
 // Why named_transforms() has none under one of those names: "not seen", "registration: void".
 [[nodiscard]] std::string why_without(const operation::OperationState& state, std::string_view name);
 

@@ -194,6 +194,29 @@ TEST(NamedTransforms, HoldWhatIsValidAndNothingElse) {
   EXPECT_TRUE(named_transforms(state).empty());
 }
 
+// The femur's drill and the tibia's: who reads one of them never gets the other one's pose.
+TEST(NamedTransforms, TwoDrillsHaveANameEach) {
+  operation::OperationState state = made_state();
+  EXPECT_FALSE(has_second_drill(state));
+  auto source = std::make_shared<operation::SourceSetup>(*state.source);
+  source->pipeline.tools.tools.push_back(source->pipeline.tools.tools.back());
+  source->pipeline.tools.tools.back().name = "tibial drill";
+  source->pipeline.tools.tools.back().marker_id = 10;
+  state.source = source;
+  EXPECT_TRUE(has_second_drill(state));
+  state.frame.tools.push_back({10, {made_pose(6), 0, true}});
+  const auto drills = [&] {
+    std::map<std::string, double> x_mm;
+    for (const NamedTransform& t : named_transforms(state))
+      if (t.name.starts_with("Drill")) x_mm[t.name] = -t.target_from_source.translation_mm.x();
+    return x_mm;
+  };
+  using Drills = std::map<std::string, double>;
+  EXPECT_EQ(drills(), (Drills{{"Drill2_World", 60}})) << "the first one is not seen";
+  state.frame.tools[2].world_from_tool.is_valid = true;
+  EXPECT_EQ(drills(), (Drills{{"Drill_World", 40}, {"Drill2_World", 60}}));
+}
+
 // Everything until "Arthronaut": "name" of a transform, "name: why" of a status.
 std::vector<std::string> next_state(Client& client) {
   std::vector<std::string> heard;
@@ -346,7 +369,8 @@ TEST(IgtlServer, TellsAStatusAlone) {
   Client client(server.port());
   wait_for_clients(server, 1);
   server.tell({false, "No picture comes: tower: broke off"}, 17);
-  EXPECT_EQ(next_state(client).size(), kTransformNames.size()) << "what it held of before is none";
+  EXPECT_EQ(next_state(client).size(), kTransformNames.size() - 1)
+      << "what it held of before is none; a second drill nobody has declared";
   EXPECT_EQ(client.code, igtl::StatusMessage::STATUS_NOT_READY);
   EXPECT_EQ(client.reason, "No picture comes: tower: broke off");
   EXPECT_EQ(client.time_s, 17);
