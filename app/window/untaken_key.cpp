@@ -19,7 +19,9 @@ void UntakenKey::note(const widgets::KeyPress& press, const widgets::Actions& ac
   noted_at_s_ = now_s;
   holds_ = true;
   action_.clear();
+  early_key_.clear();
   if (is_opening) {
+    early_key_ = name;
     words_ = name + " did nothing: the case is still being opened. Press it again then";
     return;
   }
@@ -34,10 +36,17 @@ void UntakenKey::note(const widgets::KeyPress& press, const widgets::Actions& ac
   action_ = its->id;
 }
 
-void UntakenKey::look_again(const widgets::Actions& actions, bool is_opening) {
+void UntakenKey::look_again(const widgets::Actions& actions, bool is_opening, double now_s) {
   if (words_.empty()) return;
+  if (!early_key_.empty()) {
+    noted_at_s_ = now_s;
+    if (is_opening) return;
+    words_ = early_key_ + " did nothing: the case was not open yet. Press it again";
+    early_key_.clear();
+    return;
+  }
   const widgets::Action* action = action_.empty() ? nullptr : actions.find(action_);
-  holds_ = holds_ && (action_.empty() ? is_opening : action == nullptr || !action->can_run());
+  holds_ = holds_ && (action_.empty() || action == nullptr || !action->can_run());
 }
 
 std::string UntakenKey::words(double now_s) const {

@@ -262,7 +262,7 @@ void WorkstationWindow::dispatch_keys() {
                                              : shown().awaits_text();
     if (awaits_text) window_.await_text_field();
   }
-  untaken_.look_again(actions_, opening_ != nullptr);
+  untaken_.look_again(actions_, opening_ != nullptr, GraphicsWindow::now_s());
   if (ImGui::GetIO().WantTextInput) actions_.let_go();
 }
 
