@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "planning/files/fixed_number.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/plan_review/proposed_landmarks.h"
@@ -14,6 +15,12 @@ namespace arthronaut::command_line {
 namespace {
 
 using tunnels::PlanCheck;
+
+// "12.300, -4.000, 0.000"; never "-0.000".
+std::string coordinates(const Eigen::Vector3d& v, int decimals) {
+  return files::fixed(v.x(), decimals) + ", " + files::fixed(v.y(), decimals) + ", " +
+         files::fixed(v.z(), decimals);
+}
 
 const char* sign_of(PlanCheck::Verdict verdict) {
   switch (verdict) {
@@ -59,17 +66,14 @@ PlanVerdict judged(const cases::Case& knee, const plan_review::CaseReview& revie
 void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,
                      const tunnels::TunnelKey& key, const PlanVerdict& verdict) {
   const auto& [tunnel, measured] = review.tunnels().at(key);
-  const auto& e = tunnel.entry_mm;
-  const auto& d = tunnel.direction;
   context.say(files::format("%s tunnel, %.1f mm", tunnels::name_of(key).c_str(), tunnel.diameter_mm));
-  context.say(files::format("  entry      %.3f, %.3f, %.3f mm", e.x(), e.y(), e.z()));
-  context.say(files::format("  direction  %.5f, %.5f, %.5f", d.x(), d.y(), d.z()));
+  context.say("  entry      " + coordinates(tunnel.entry_mm, 3) + " mm");
+  context.say("  direction  " + coordinates(tunnel.direction, 5));
   if (!verdict.source.empty()) context.say("  default    " + verdict.place + " [" + verdict.source + "]");
   if (measured.enters_bone) {
-    const auto& x = measured.exit_mm;
     context.say(files::format("  length     %.2f mm inside bone", measured.length_mm));
-    context.say(files::format("  exit       %.3f, %.3f, %.3f mm", x.x(), x.y(), x.z()));
-    context.say(files::format("  wall       %.2f mm at the thinnest", measured.wall_mm));
+    context.say("  exit       " + coordinates(measured.exit_mm, 3) + " mm");
+    context.say("  wall       " + files::fixed(measured.wall_mm, 2) + " mm at the thinnest");
   }
   if (const auto fit = cases::plan_fit(knee, key); !fit.is_valid())
     context.say("  ! not valid: " + fit.reason);

@@ -2,7 +2,8 @@
 
 #include <utility>
 
-#include "planning/files/format.h"
+#include "planning/files/fixed_number.h"
+#include "planning/files/unit_signs.h"
 
 namespace arthronaut::plan {
 
@@ -24,15 +25,16 @@ std::vector<std::string> against_the_plan(const open_case::PlanModel& model, con
     if (difference.kind != Kind::Same && there != kept.measured.end()) {
       const tunnels::TunnelGeometry &then = there->second.geometry, &now = model.measured(difference.key);
       const auto beside = [&](double value_now) {
-        return now.enters_bone ? files::format(" (now %.1f)", value_now) : std::string();
+        return now.enters_bone ? " (now " + files::fixed(value_now, 1) + ")" : std::string();
       };
-      line += !then.enters_bone ? "; it misses the bone"
-                                : files::format("; %.1f mm long", then.length_mm) + beside(now.length_mm) +
-                                      files::format(", wall %.1f mm", then.wall_mm) + beside(now.wall_mm);
+      line += !then.enters_bone
+                  ? "; it misses the bone"
+                  : "; " + files::fixed(then.length_mm, 1) + " mm long" + beside(now.length_mm) + ", wall " +
+                        files::fixed(then.wall_mm, 1) + " mm" + beside(now.wall_mm);
     }
     if (kept.version.plan.tunnels.contains(difference.key) && there == kept.measured.end())
       line += "; planned on another surface of the bone";
-    lines.push_back(std::move(line));
+    lines.push_back(files::with_signs(std::move(line)));
   }
   return lines;
 }

@@ -1,5 +1,6 @@
 #include "planning/tunnels/place_checks.h"
 
+#include "planning/files/fixed_number.h"
 #include "planning/files/format.h"
 #include "planning/tunnels/footprint_share.h"
 
@@ -114,7 +115,7 @@ PlanCheck not_checked(const char* name, const std::string& missing) {
   return {.verdict = Verdict::NotChecked, .name = name, .text = "not checked: " + missing + " is missing"};
 }
 
-std::string number_text(double value, const char* unit) { return files::format("%.1f %s", value, unit); }
+std::string number_text(double value, const char* unit) { return files::fixed(value, 1) + " " + unit; }
 
 // Without a needless ".0": limits are round numbers mostly.
 std::string limit_text(double value, const char* unit) { return files::format("%g %s", value, unit); }

@@ -97,12 +97,10 @@ std::string breach_text(const Tunnel& tunnel, const TunnelGeometry& geometry,
 // The limits of the back wall are the femur's; of the tibia nobody has published one.
 PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const geometry::Surface* surface,
                      const PlanNorms& norms) {
-  // A wall of nothing is 0.0 mm on either side of it, not -0.0.
-  const double shown_mm = std::round(10 * geometry.wall_mm) / 10 + 0.0;
   PlanCheck check{
       .verdict = Verdict::Fine,
       .name = "Wall",
-      .text = number_text(shown_mm, "mm") + " " + depth_text(geometry),
+      .text = number_text(geometry.wall_mm, "mm") + " " + depth_text(geometry),
       .value = geometry.wall_mm,
       .unit = "mm",
       .least = tunnel.bone == bones::BoneKind::Femur ? norms.thin_wall_mm : norms.breaking_wall_mm,

@@ -53,6 +53,18 @@ TEST_F(PlanCommand, ChecksAllThatTheWindowChecks) {
   EXPECT_THAT(result.output, Not(HasSubstr("not checked")));
 }
 
+// A wall of nothing, and a direction without a part along an axis, have no minus sign.
+TEST_F(PlanCommand, SaysNoMinusNought) {
+  tunnels::Tunnel& femoral = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  femoral.direction = Eigen::Vector3d(femoral.direction.x(), -1e-8, femoral.direction.z()).normalized();
+  femoral.entry_mm.y() = -1e-5;
+  save(knee_);
+  const auto result = run({"plan", "--bone", "femur"});
+  EXPECT_THAT(result.output, HasSubstr(", 0.00000, ")) << "of the direction";
+  EXPECT_THAT(result.output, HasSubstr(", 0.000, ")) << "of the entry";
+  EXPECT_THAT(result.output, Not(testing::ContainsRegex("-0\\.0+[^0-9]")));
+}
+
 // An entry on the outer side of the medial condyle, straight across the femur.
 TEST_F(PlanCommand, SaysThatAnAbsurdPlanIsWrong) {
   const geometry::Surface femur(made_.femur.mesh);

@@ -34,6 +34,14 @@ TEST_F(VersionWords, SayHowLongAndHowThinTheOtherOneIs) {
                           "tibia: the same"));
 }
 
+// Degrees as the rest of the panel writes them.
+TEST_F(VersionWords, SayAnAngleWithItsSign) {
+  cases::Plan turned = model_.knee().plan;
+  Eigen::Vector3d& direction = turned.tunnels.at(BoneKind::Femur).direction;
+  direction = Eigen::AngleAxisd(0.05, direction.unitOrthogonal()) * direction;  // 2.9 degrees
+  EXPECT_THAT(against(turned)[0], testing::StartsWith("femur: turned by 2.9\u00B0; "));
+}
+
 // What is in one of the two alone, and what is beside the bone, has no numbers to compare.
 TEST_F(VersionWords, NameNoNumbersThatThereAreNot) {
   cases::Plan other = model_.knee().plan;
