@@ -250,7 +250,7 @@ std::vector<std::string> ImportWork::doubts() const {
   std::vector<std::string> doubts;
   for (const importing::ImportedBone& bone : result_.bones)
     for (const std::string& doubt :
-         said_side_ ? importing::doubts_with(result_, bone, *said_side_) : bone.doubts)
+         said_side_ ? importing::doubts_with(result_, bone, *said_side_, true) : bone.doubts)
       doubts.push_back("The " + std::string(bones::to_text(bone.bone.kind)) + ": " + doubt);
   return doubts;
 }

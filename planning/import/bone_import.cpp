@@ -187,7 +187,7 @@ void take_side_of_segments(const Volume& volume, const std::map<BoneKind, int>& 
   }
   if (names.empty()) return;
   result.side = only_one(words, Side::Left, Side::Right, says_side);
-  result.side_was_guessed = result.side.has_value();
+  result.side_was_guessed = result.side_is_by_segment = result.side.has_value();
   result.lines.push_back(result.side ? "segment \"" + names.front() + "\" says that it is a " +
                                            std::string(bones::to_text(*result.side)) + " knee"
                                      : "segment \"" + names.front() +

@@ -70,7 +70,8 @@ struct ImportedImage {
 struct BoneImport {
   std::vector<ImportedBone> bones;
   std::optional<bones::Side> side;    // nullopt: neither given nor in the name
-  bool side_was_guessed = false;      // by the name, of the file or of a label map's segments
+  bool side_was_guessed = false;      // by a name: of the file,
+  bool side_is_by_segment = false;    // or of a label map's segments
   bool side_was_seen = false;         // by the anatomy: the fibula,
   bool side_is_by_shape = false;      // or the shape of the bones alone, which is a doubt
   bool side_is_contradicted = false;  // the one that was said or named, by either: a doubt of the bones

@@ -169,6 +169,7 @@ void describe(Archive& archive, BoneImport& import) {
   describe(archive, import.bones);
   describe(archive, import.side);
   describe(archive, import.side_was_guessed);
+  describe(archive, import.side_is_by_segment);
   describe(archive, import.side_was_seen);
   describe(archive, import.side_is_by_shape);
   describe(archive, import.side_is_contradicted);

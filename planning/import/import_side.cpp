@@ -42,8 +42,10 @@ std::string side_by_shape_alone(bones::Side shape) {
   return "that it is a " + word_of(shape) + " knee is told by the shape of its bones alone: check the side";
 }
 
-std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBone& bone, bones::Side side) {
+std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBone& bone, bones::Side side,
+                                     bool is_said_by_person) {
   std::vector<std::string> doubts = bone.doubts;
+  if (is_said_by_person) std::erase(doubts, side_by_shape_alone(side));
   if (import.side == side) return doubts;
   if (import.side) {
     // What spoke against the other side speaks for this one; what it was told by is no matter any more.
@@ -62,14 +64,18 @@ std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBon
 }
 
 void say_side(BoneImport& import, bones::Side side) {
-  if (import.side == side) return;  // known as it was known
   std::vector<std::vector<std::string>> doubts;
-  for (const ImportedBone& bone : import.bones) doubts.push_back(doubts_with(import, bone, side));
+  for (const ImportedBone& bone : import.bones) doubts.push_back(doubts_with(import, bone, side, true));
   for (std::size_t i = 0; i < doubts.size(); ++i) import.bones[i].doubts = std::move(doubts[i]);
+  if (import.side == side) {  // known as it was known
+    if (import.side_is_by_shape) import.side_was_seen = import.side_is_by_shape = false;
+    return;
+  }
   const auto shape = side_by_shapes(import);
   import.side_is_contradicted = fibula_told(import) || (shape && *shape != side);
   import.side = side;
-  import.side_was_guessed = import.side_was_seen = import.side_is_by_shape = false;
+  import.side_was_guessed = import.side_is_by_segment = import.side_was_seen = import.side_is_by_shape =
+      false;
 }
 
 bool add_bones(BoneImport& import, BoneImport more) {
@@ -78,6 +84,7 @@ bool add_bones(BoneImport& import, BoneImport more) {
     if (!who_knows.side || other.side) return;
     say_side(other, *who_knows.side);
     other.side_was_guessed = who_knows.side_was_guessed;
+    other.side_is_by_segment = who_knows.side_is_by_segment;
     other.side_was_seen = who_knows.side_was_seen;
     other.side_is_by_shape = who_knows.side_is_by_shape;
   };

@@ -21,8 +21,9 @@ namespace arthronaut::importing {
 // The doubts of one of its bones in a knee of that side: as a person says it, or as the case has it that the
 // bone is added to. Those of shapes stay with the first bone.
 [[nodiscard]] std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBone& bone,
-                                                   bones::Side side);
-// A person says the side. Where fibula or shapes say another one that is a doubt of the bones from then on.
+                                                   bones::Side side, bool is_said_by_person = false);
+// A person says the side. Where fibula or shapes say another one that is a doubt of the bones from then on;
+// where the shapes alone told the same one, that is none any more.
 void say_side(BoneImport& import, bones::Side side);
 
 // Another bone of the same knee, from a file of its own. Who knows the side tells it to the other; false

@@ -69,6 +69,9 @@ TEST(SideLineTest, ASideThatTheBonesSpeakAgainstIsNotGood) {
   const SideLine named = side_line(import, Side::Left, false);
   EXPECT_EQ(named.severity, Severity::Bad);
   EXPECT_TRUE(named.text.starts_with("left, by the name of the source, but")) << named.text;
+  import.side_is_by_segment = true;
+  const SideLine of_segment = side_line(import, Side::Left, false);
+  EXPECT_TRUE(of_segment.text.starts_with("left, by the name of a segment, but")) << of_segment.text;
 }
 
 }  // namespace

@@ -140,6 +140,7 @@ TEST(BoneImport, ASegmentsNameTellsTheSide) {
   const BoneImport right = import_as("knee.seg.nrrd", "Right femur", "tibia");
   EXPECT_EQ(right.side, Side::Right);
   EXPECT_TRUE(right.side_was_guessed);
+  EXPECT_TRUE(right.side_is_by_segment);
   EXPECT_THAT(right.lines, Contains("segment \"Right femur\" says that it is a right knee"));
 
   const BoneImport both = import_as("knee.seg.nrrd", "Right femur", "Left tibia");

@@ -100,6 +100,22 @@ TEST(ShapeCheck, WhatABoneAloneTellsIsHeldAgainstTheSideThatIsSaidLater) {
   EXPECT_THAT(doubts_of(import), IsEmpty());
 }
 
+// Where the shapes alone told the side, a person who says the same one has checked it: nothing is left to be
+// checked.
+TEST(ShapeCheck, APersonWhoConfirmsWhatTheShapesToldLeavesNoDoubt) {
+  BoneImport import = knee(Side::Left, std::nullopt);
+  check_shapes(import, false);
+  ASSERT_EQ(import.side, Side::Left);
+  ASSERT_THAT(doubts_of(import), ElementsAre(HasSubstr("told by the shape of its bones alone")));
+  EXPECT_THAT(doubts_with(import, import.bones.front(), Side::Left), ElementsAre(testing::_))
+      << "a case's side alone confirms nothing";
+  EXPECT_THAT(doubts_with(import, import.bones.front(), Side::Left, true), IsEmpty());
+  say_side(import, Side::Left);
+  EXPECT_THAT(doubts_of(import), IsEmpty());
+  EXPECT_FALSE(import.side_is_by_shape);
+  EXPECT_FALSE(import.side_was_seen);
+}
+
 // Two bones from files of their own, of which one alone says the side.
 TEST(ShapeCheck, ASecondFileHearsOfTheFirstOnesSide) {
   BoneImport femur = knee(Side::Left, std::nullopt), tibia = femur;
