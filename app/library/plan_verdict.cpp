@@ -6,6 +6,7 @@
 #include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/plan_review/plan_review.h"
+#include "planning/plan_review/proposed_landmarks.h"
 
 namespace arthronaut::workstation_library {
 
@@ -13,7 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kFirstLine = "arthronaut.plan_verdict 1";
+// 2: by proposed landmarks where the case has none, and whether the plan is of this bone.
+constexpr const char* kFirstLine = "arthronaut.plan_verdict 2";
 
 }  // namespace
 
@@ -33,10 +35,15 @@ bool is_of_now(const fs::path& made, const fs::path& case_folder) {
 PlanVerdict judge_plan(const cases::Case& knee) {
   PlanVerdict verdict;
   if (knee.plan.tunnels.empty()) return verdict;
-  const plan_review::CaseReview review(knee);
-  for (const auto& [key, tunnel] : review.tunnels())
+  cases::Case judged = knee;
+  plan_review::propose_landmarks(judged, plan_review::Proposing::WithoutGrid);
+  const plan_review::CaseReview review(judged);
+  for (const auto& [key, tunnel] : review.tunnels()) {
+    if (const cases::PlanFit fit = cases::plan_fit(judged, key); !fit.is_valid())
+      verdict.wrong.push_back(tunnels::name_of(key) + ": Bone: " + fit.reason);
     for (const std::string& words : tunnels::wrong_in_words(review.checks(key)))
       verdict.wrong.push_back(tunnels::name_of(key) + ": " + words);
+  }
   return verdict;
 }
 

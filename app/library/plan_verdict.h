@@ -18,7 +18,8 @@ struct PlanVerdict {
 };
 
 [[nodiscard]] std::filesystem::path plan_verdict_file(const std::filesystem::path& case_folder);
-// By the landmarks as the case has them. Half a second a bone; none without a plan.
+// As Plan judges it: by what is proposed where the case's landmarks give no grid, which takes two seconds,
+// else half a second a bone; none without a plan.
 [[nodiscard]] PlanVerdict judge_plan(const cases::Case& knee);
 // Throws IoError.
 void keep_plan_verdict(const std::filesystem::path& case_folder, const PlanVerdict& verdict);

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/case/plan_model.h"
+#include "planning/geometry/rigid_transform.h"
 #include "planning/phantom/phantom_case.h"
 #include "tests/temporary_folder.h"
 
@@ -35,6 +37,50 @@ TEST(PlanVerdict, SaysWhatIsWrongInThePlan) {
   std::filesystem::last_write_time(
       folder / "plan.json", std::filesystem::last_write_time(folder / "plan.json") + std::chrono::seconds(2));
   EXPECT_FALSE(plan_verdict(folder.path()));
+}
+
+// The knee as it may lie in a scanner: turned about the leg's axis, without a landmark.
+cases::Case turned_without_landmarks() {
+  cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3}), "Knee");
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(geometry::rad_from_deg(-50), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  for (auto& [kind, bone] : knee.bones)
+    for (Eigen::Vector3d& vertex : bone.mesh.vertices_mm) vertex = turn * vertex;
+  for (auto& [key, tunnel] : knee.plan.tunnels) {
+    tunnel.entry_mm = turn * tunnel.entry_mm;
+    tunnel.direction = turn * tunnel.direction;
+  }
+  knee.plan.mesh_sha256.clear();
+  knee.landmarks.clear();
+  knee.landmark_states.clear();
+  return knee;
+}
+
+// The list of cases and Plan go by the same landmarks: by those that are proposed where the case has none.
+TEST(PlanVerdict, IsThatOfPlanWhereTheCaseHasNoLandmarks) {
+  const cases::Case good = turned_without_landmarks();
+  EXPECT_THAT(judge_plan(good).wrong, testing::IsEmpty());
+  cases::Case flipped = good;  // out of the medial side and the tibia's back
+  for (auto& [key, tunnel] : flipped.plan.tunnels) {
+    tunnel.direction.x() = -tunnel.direction.x();
+    tunnel.direction.y() = -tunnel.direction.y();
+  }
+  for (const cases::Case& knee : {good, flipped}) {
+    const open_case::PlanModel plan(knee);
+    std::vector<std::string> wrong;
+    for (const auto& [key, tunnel] : knee.plan.tunnels)
+      for (const std::string& words : tunnels::wrong_in_words(plan.checks(key)))
+        wrong.push_back(tunnels::name_of(key) + ": " + words);
+    EXPECT_EQ(judge_plan(knee).wrong, wrong);
+  }
+  EXPECT_THAT(judge_plan(flipped).wrong, testing::Not(testing::IsEmpty()));
+}
+
+// What was planned on another surface of the bone is wrong in Plan, whatever else the checks say.
+TEST(PlanVerdict, SaysThatAPlanIsOfAnotherSurface) {
+  cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3}), "Knee");
+  knee.plan.mesh_sha256[{bones::BoneKind::Tibia}] = std::string(64, 'a');
+  EXPECT_THAT(judge_plan(knee).wrong, testing::ElementsAre(testing::StartsWith("tibia: Bone: ")));
 }
 
 }  // namespace
