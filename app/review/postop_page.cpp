@@ -277,7 +277,9 @@ void PostopPage::draw_table(const widgets::Ui& ui, const widgets::Rect& area) {
     widgets::text_in(ui.theme.strong, widgets::kText, "How far it may be off");
     const Eigen::Vector3d voxel_mm =
         shown_.answer != nullptr ? shown_.answer->images.spacing_mm() : Eigen::Vector3d::Zero().eval();
-    for (const std::string& line : error_budget(*comparison, voxel_mm))
+    const auto place = places().find(chosen_);
+    for (const std::string& line :
+         error_budget(*comparison, place != places().end() ? &place->second : nullptr, voxel_mm))
       widgets::text_in(ui.theme.body, widgets::kQuietText, line);
   }
   widgets::end_panel();

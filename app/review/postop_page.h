@@ -36,8 +36,10 @@ struct AchievedRow {
 [[nodiscard]] std::vector<AchievedRow> achieved_rows(
     const Comparisons& comparisons, const std::map<tunnels::TunnelKey, tunnels::Tunnel>& planned,
     const std::map<tunnels::TunnelKey, double>& planned_length_mm, const Places& places);
-// What the differences may be off by, and what nobody knows: sentences for the panel.
+// What the differences may be off by, and what nobody knows: sentences for the panel. `place`: null where
+// there is none.
 [[nodiscard]] std::vector<std::string> error_budget(const postop::Comparison& comparison,
+                                                    const postop::AchievedPlace* place,
                                                     const Eigen::Vector3d& voxel_mm);
 // The plane through the tunnel's axis with the tunnel running down, `quarter_turns` times 90 degrees about
 // the axis, its middle in the middle; in the frame of the tunnel.

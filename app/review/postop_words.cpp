@@ -67,7 +67,8 @@ std::vector<AchievedRow> achieved_rows(const Comparisons& comparisons,
   return rows;
 }
 
-std::vector<std::string> error_budget(const postop::Comparison& comparison, const Eigen::Vector3d& voxel_mm) {
+std::vector<std::string> error_budget(const postop::Comparison& comparison,
+                                      const postop::AchievedPlace* place, const Eigen::Vector3d& voxel_mm) {
   std::vector<std::string> lines;
   if (comparison.bone.is_found)
     lines.push_back(format(
@@ -83,6 +84,8 @@ std::vector<std::string> error_budget(const postop::Comparison& comparison, cons
       line += format(", diameter %.2f mm", comparison.tunnel.diameter_sigma_mm);
     if (std::isfinite(comparison.tunnel.length_sigma_mm))
       line += format(", length %.2f mm", comparison.tunnel.length_sigma_mm);
+    if (place != nullptr && place->wall_mm && std::isfinite(place->wall_sigma_mm))
+      line += format(", least wall %.2f mm", place->wall_sigma_mm);
     lines.push_back(line + ".");
   }
   if (comparison.tunnel.is_found && comparison.tunnel.metal_share > 0)

@@ -137,6 +137,8 @@ void put_place(ordered_json& node, const AchievedPlace& place) {
       !place.grid.empty() || place.axes_from == landmarks::AnatomicalAxes::Origin::FromLandmarks;
   node["landmarks"] = by_landmarks ? ordered_json(landmarks::to_text(place.landmarks_are)) : ordered_json();
   node["wall_mm"] = number(place.wall_mm.has_value(), place.wall_mm.value_or(0));
+  const bool is_known = place.wall_mm && std::isfinite(place.wall_sigma_mm);
+  node["wall_sigma_mm"] = number(is_known, place.wall_sigma_mm);
   node["planned_wall_mm"] = number(place.planned_wall_mm.has_value(), place.planned_wall_mm.value_or(0));
 }
 

@@ -35,6 +35,49 @@ std::vector<AchievedPlace::Share> shares(const Vector3d& planned, const Vector3d
 // apart where the marrow is grainy; widened by 2 mm they lie 27 apart.
 constexpr double kBeyondErrors = 8;
 
+// Less well known than this, a range says of a wall what there is to say: half of the 1 mm below which a wall
+// may break.
+constexpr double kMostWallSigma_mm = 0.5;
+
+struct LeastWall {
+  double thickness_mm, station_mm;
+};
+
+std::optional<LeastWall> wall_of(const tunnels::Tunnel& drilled, double depth_mm,
+                                 const geometry::Surface& bone) {
+  const auto measured = tunnels::measure(drilled, bone);
+  if (!measured.enters_bone || measured.thinnest_station_mm > depth_mm) return std::nullopt;
+  return LeastWall{measured.wall_mm, measured.thinnest_station_mm};
+}
+
+// One so much wider holds every tunnel whose axis is off by that, and one so much narrower lies within: where
+// either leaves another wall than that much less or more, it leaps in between.
+void try_walls(const AchievedTunnel& achieved, double depth_mm, const geometry::Surface& bone,
+               AchievedPlace& place) {
+  const auto wall = wall_of(achieved.tunnel, depth_mm, bone);
+  if (!wall || !std::isfinite(achieved.diameter_sigma_mm)) return;
+  // Across the axis in one of two directions, and of the radius.
+  const auto side_sigma_mm = [&](double station_mm) {
+    return std::sqrt(0.5 * (std::pow(achieved.entry_sigma_mm, 2) +
+                            std::pow(achieved.direction_sigma_rad * station_mm, 2)) +
+                     std::pow(0.5 * achieved.diameter_sigma_mm, 2));
+  };
+  constexpr double kSigmas = 2;
+  const double by_mm = kSigmas * side_sigma_mm(achieved.length_mm);
+  double leap_mm = 0;
+  place.least_wall_mm = place.most_wall_mm = wall->thickness_mm;
+  for (const double wider_mm : {by_mm, -by_mm}) {
+    tunnels::Tunnel other = achieved.tunnel;
+    other.diameter_mm += 2 * wider_mm;
+    const auto moved = wall_of(other, depth_mm, bone);
+    if (!moved) return;
+    leap_mm = std::max(leap_mm, std::abs(moved->thickness_mm - (wall->thickness_mm - wider_mm)));
+    place.least_wall_mm = std::min(place.least_wall_mm, moved->thickness_mm);
+    place.most_wall_mm = std::max(place.most_wall_mm, moved->thickness_mm);
+  }
+  place.wall_sigma_mm = std::hypot(side_sigma_mm(wall->station_mm), leap_mm / kSigmas);
+}
+
 constexpr const char* kByProposed = " (by proposed landmarks)";
 bool is_by_proposed(const AchievedPlace& place) {
   return place.landmarks_are == landmarks::LandmarkState::Proposed;
@@ -55,10 +98,9 @@ AchievedPlace place_of(const tunnels::Tunnel& drilled, double depth_mm, const tu
   }
   place.grid = shares(plan.entry_mm, drilled.entry_mm, surroundings);
   if (!surroundings.surface) return place;
-  const auto planned = tunnels::measure(plan, *surroundings.surface),
-             measured = tunnels::measure(drilled, *surroundings.surface);
+  const auto planned = tunnels::measure(plan, *surroundings.surface);
   if (planned.enters_bone) place.planned_wall_mm = planned.wall_mm;
-  if (measured.enters_bone && measured.thinnest_station_mm <= depth_mm) place.wall_mm = measured.wall_mm;
+  if (const auto wall = wall_of(drilled, depth_mm, *surroundings.surface)) place.wall_mm = wall->thickness_mm;
   return place;
 }
 
@@ -66,8 +108,10 @@ AchievedPlace place_of(const AchievedTunnel& achieved, const tunnels::Tunnel& pl
                        const tunnels::PlanSurroundings& surroundings,
                        landmarks::LandmarkState landmarks_are) {
   constexpr double kOut = std::numeric_limits<double>::infinity();
-  return place_of(achieved.tunnel, achieved.comes_out ? kOut : achieved.length_mm, plan, surroundings,
-                  landmarks_are);
+  const double depth_mm = achieved.comes_out ? kOut : achieved.length_mm;
+  AchievedPlace place = place_of(achieved.tunnel, depth_mm, plan, surroundings, landmarks_are);
+  if (surroundings.surface) try_walls(achieved, depth_mm, *surroundings.surface, place);
+  return place;
 }
 
 std::string off_in_words(const AchievedPlace& place) {
@@ -106,7 +150,10 @@ std::string grid_in_words(const AchievedPlace& place) {
 
 std::string wall_in_words(const AchievedPlace& place) {
   if (!place.wall_mm) return {};
-  return files::format("%.1f mm", *place.wall_mm) +
+  const bool grazes = std::isfinite(place.wall_sigma_mm) && place.wall_sigma_mm > kMostWallSigma_mm;
+  return (grazes ? files::format("%.1f to %.1f mm, it grazes the bone's surface", place.least_wall_mm,
+                                 place.most_wall_mm)
+                 : files::format("%.1f mm", *place.wall_mm)) +
          (place.planned_wall_mm ? files::format("; planned %.1f mm", *place.planned_wall_mm) : "");
 }
 

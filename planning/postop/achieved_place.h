@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +28,12 @@ struct AchievedPlace {
   // The least bone beside either. Empty: it misses the bone; of a socket also where it is thinnest only
   // beyond the socket's end.
   std::optional<double> planned_wall_mm = {}, wall_mm = {};
+  // One sigma of `wall_mm`, and what it may be: by trial, its side two sigma further out and in. Where the
+  // tunnel grazes the bone's surface, what counts as a lip of its mouth and what as a breach changes with a
+  // tenth of a millimetre, and the wall leaps. Infinite: nobody knows how well the tunnel is known, or one so
+  // little off has no wall.
+  double wall_sigma_mm = std::numeric_limits<double>::infinity();
+  double least_wall_mm = 0, most_wall_mm = 0;  // meaningless where the sigma is infinite
 };
 
 // depth_mm: how far it was drilled, from its entry; infinite: out of the bone, or nobody knows. surroundings:
@@ -46,7 +53,8 @@ struct AchievedPlace {
 // "deep to shallow 31.2 %, planned 28.4 %; high to low ...", and that the landmarks are proposed ones where
 // they are; empty without a grid.
 [[nodiscard]] std::string grid_in_words(const AchievedPlace& place);
-// "1.8 mm; planned 2.6 mm"; empty where the drilled one's is not known.
+// "1.8 mm; planned 2.6 mm"; "0.0 to 4.2 mm, it grazes the bone's surface; planned 2.6 mm" where it is known
+// to no better than half a millimetre; empty where the drilled one's is not known.
 [[nodiscard]] std::string wall_in_words(const AchievedPlace& place);
 // "27.3 mm"; "22.0 mm, a socket; beyond it a bore of 4.5 mm"; "30.5 mm, its end not seen". Precondition: the
 // tunnel was found.

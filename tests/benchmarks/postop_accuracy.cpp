@@ -8,6 +8,7 @@
 #include <ctime>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <random>
 #include <string>
@@ -17,6 +18,7 @@
 #include "planning/bones/unit_unknown.h"
 #include "planning/default_plan/default_plan.h"
 #include "planning/phantom/phantom_knee.h"
+#include "planning/postop/achieved_place.h"
 #include "planning/postop/comparison.h"
 #include "tests/benchmarks/postop_kinds.h"
 
@@ -49,11 +51,13 @@ double middle(std::vector<double> v) {
 
 // What one comparison is off by.
 struct Off {
-  double entry_mm = 0, angle_deg = 0, diameter_mm = 0, length_mm = 0, wall_mm = 0, true_wall_mm = 0,
-         width_mm = 0, widths_times = 0;
+  double entry_mm = 0, angle_deg = 0, diameter_mm = 0, length_mm = 0, wall_mm = 0, wall_sigma_mm = 0,
+         true_wall_mm = 0, width_mm = 0, widths_times = 0;
 };
 
-Off off_by(const postop::AchievedTunnel& found, const test::Drilled& how, const geometry::Surface& bone) {
+Off off_by(const postop::AchievedTunnel& found, const test::Drilled& how, const tunnels::Tunnel& plan,
+           const std::shared_ptr<const geometry::Surface>& surface) {
+  const geometry::Surface& bone = *surface;
   Off off;
   off.entry_mm = (found.tunnel.entry_mm - how.tunnel.entry_mm).norm();
   off.angle_deg =
@@ -63,6 +67,10 @@ Off off_by(const postop::AchievedTunnel& found, const test::Drilled& how, const 
   off.length_mm = found.length_mm - std::min({how.to_mm, how.narrow_from_mm, truth.length_mm});
   off.true_wall_mm = truth.wall_mm;
   off.wall_mm = tunnels::measure(found.tunnel, bone).wall_mm - truth.wall_mm;
+  tunnels::PlanSurroundings surroundings;
+  surroundings.surface = surface;
+  off.wall_sigma_mm =
+      postop::place_of(found, plan, surroundings, landmarks::LandmarkState::Confirmed).wall_sigma_mm;
   for (const postop::Width& width : found.widths) {
     const double wide_mm = how.tunnel.diameter_mm +
                            how.widened_mm * std::clamp(1 - width.from_entry_mm / how.widened_to_mm, 0.0, 1.0),
@@ -78,13 +86,14 @@ void print_trial(const Subject& subject, const test::DrilledKind& kind, const po
   std::fprintf(
       stderr,
       "%s, %s: %s, off by %.2f mm (%.2f), %.2f deg (%.2f), diameter %+.2f of %.1f mm (%.2f), length %+.2f of "
-      "%.1f mm (%.2f), wall %+.2f of %.1f mm, widths %.2f mm, %.1f times; %s; %.2f x %.2f x %.2f mm, blur "
+      "%.1f mm (%.2f), wall %+.2f of %.1f mm (%.2f), widths %.2f mm, %.1f times; %s; %.2f x %.2f x %.2f mm, "
+      "blur "
       "%.2f, noise "
       "%.0f, marrow %.0f, graft %.0f HU\n",
       kind.name, subject.name.c_str(), found.reliable ? "reliable" : "refused", off.entry_mm,
       found.entry_sigma_mm, off.angle_deg, geometry::deg_from_rad(found.direction_sigma_rad), off.diameter_mm,
       how.tunnel.diameter_mm, found.diameter_sigma_mm, off.length_mm, found.length_mm, found.length_sigma_mm,
-      off.wall_mm, off.true_wall_mm, off.width_mm, off.widths_times,
+      off.wall_mm, off.true_wall_mm, off.wall_sigma_mm, off.width_mm, off.widths_times,
       !found.end_is_seen ? "no end"
       : found.comes_out  ? "comes out"
                          : "socket",
@@ -97,7 +106,8 @@ void try_one(const Subject& subject, const test::DrilledKind& kind, bool prints,
              std::mt19937_64& random, Figures& figures) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> even(-1, 1);
-  const geometry::Surface bone(subject.mesh);
+  const auto surface = std::make_shared<const geometry::Surface>(subject.mesh);
+  const geometry::Surface& bone = *surface;
   test::Drilled how;
   test::KnownCtOptions ct;
   ct.seed = random();
@@ -122,7 +132,7 @@ void try_one(const Subject& subject, const test::DrilledKind& kind, bool prints,
     std::fprintf(stderr, "%s, %s: %s\n", kind.name, subject.name.c_str(), reason.c_str());
   if (!found.is_found) return;
   ++figures.found;
-  const Off off = off_by(found, how, bone);
+  const Off off = off_by(found, how, subject.plan, surface);
   if (prints) print_trial(subject, kind, found, off, how, ct);
   if (!found.reliable) return;
   ++figures.reliable;

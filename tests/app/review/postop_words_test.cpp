@@ -85,13 +85,15 @@ TEST(PostopWords, SayWhatWasFoundAndHowSure) {
 // What is in the numbers, and what is in none of them.
 TEST(PostopWords, SayWhatIsNotKnown) {
   const Comparisons comparisons = some();
-  const auto lines = error_budget(comparisons.at(bones::BoneKind::Femur), {0.4, 0.4, 0.6});
+  const postop::AchievedPlace place{.wall_mm = 1.6, .wall_sigma_mm = 0.08};
+  const auto lines = error_budget(comparisons.at(bones::BoneKind::Femur), &place, {0.4, 0.4, 0.6});
   std::string all;
   for (const std::string& line : lines) all += line + "\n";
-  for (const char* part : {"0.12 mm (rms)", "entry 0.21 mm", "0.30\u00B0, diameter 0.04 mm, length 0.17 mm.",
-                           "25 %", "0.40 x 0.40 x 0.60", "Not known, and in none of these numbers"})
+  for (const char* part :
+       {"0.12 mm (rms)", "entry 0.21 mm", "0.30\u00B0, diameter 0.04 mm, length 0.17 mm, least wall 0.08 mm.",
+        "25 %", "0.40 x 0.40 x 0.60", "Not known, and in none of these numbers"})
     EXPECT_THAT(all, HasSubstr(part));
-  EXPECT_EQ(error_budget(comparisons.at(bones::BoneKind::Tibia), {0, 0, 0}).size(), 1U);
+  EXPECT_EQ(error_budget(comparisons.at(bones::BoneKind::Tibia), nullptr, {0, 0, 0}).size(), 1U);
 }
 
 // The tunnel runs down the middle of both slices, which stand at right angles.

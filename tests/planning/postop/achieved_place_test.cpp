@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
+
 #include "planning/phantom/phantom_knee.h"
 
 namespace arthronaut::postop {
@@ -26,7 +29,8 @@ class AchievedPlaceTest : public ::testing::Test {
   }
   struct Known {
     phantom::PhantomKnee knee = phantom::make_phantom_knee({.edge_length_mm = 3});
-    tunnels::PlanSurroundings femur = around(knee.femur, knee.femur_landmarks);
+    tunnels::PlanSurroundings femur = around(knee.femur, knee.femur_landmarks),
+                              tibia = around(knee.tibia, knee.tibia_landmarks);
   };
   static const Known& known() {
     static const Known made;
@@ -34,6 +38,7 @@ class AchievedPlaceTest : public ::testing::Test {
   }
   const phantom::PhantomKnee& knee_ = known().knee;
   const tunnels::PlanSurroundings& femur_ = known().femur;
+  const tunnels::PlanSurroundings& tibia_ = known().tibia;
 };
 
 TEST_F(AchievedPlaceTest, SaysWhichWayTheEntryIsOff) {
@@ -104,6 +109,47 @@ TEST_F(AchievedPlaceTest, SaysHowMuchBoneIsLeftBesideIt) {
   EXPECT_FALSE(socket.wall_mm);
   EXPECT_EQ(wall_in_words(socket), "");
   EXPECT_EQ(wall_in_words({.planned_wall_mm = 2.61, .wall_mm = 1.84}), "1.8 mm; planned 2.6 mm");
+}
+
+// By how far the axis and the diameter may be off; nothing where nobody knows that.
+TEST_F(AchievedPlaceTest, SaysHowWellTheBoneBesideItIsKnown) {
+  AchievedTunnel achieved = drilled(knee_.femoral_tunnel);
+  EXPECT_FALSE(std::isfinite(place_of(achieved, knee_.femoral_tunnel, femur_, kConfirmed).wall_sigma_mm));
+  achieved.diameter_sigma_mm = 0.2;
+  AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, femur_, kConfirmed);
+  EXPECT_NEAR(place.wall_sigma_mm, 0.1, 0.02);
+  achieved.entry_sigma_mm = 0.2;
+  place = place_of(achieved, knee_.femoral_tunnel, femur_, kConfirmed);
+  EXPECT_GT(place.wall_sigma_mm, 0.12);
+  EXPECT_LT(place.wall_sigma_mm, 0.25);
+  EXPECT_LT(place.least_wall_mm, *place.wall_mm - 0.15);
+  EXPECT_GT(place.most_wall_mm, *place.wall_mm + 0.15);
+}
+
+// Moved aside bit by bit until its wall leaps from one such bit to the next.
+TEST_F(AchievedPlaceTest, SaysARangeOfBoneWhereItGrazesTheSurface) {
+  AchievedTunnel achieved = drilled(knee_.tibial_tunnel);
+  const Eigen::Vector3d aside = achieved.tunnel.direction.unitOrthogonal();
+  std::optional<double> before_mm;
+  double leap_mm = 0;
+  for (double off_mm = 0; off_mm < 30 && leap_mm < 1; off_mm += 0.05) {
+    achieved.tunnel.entry_mm = knee_.tibial_tunnel.entry_mm + off_mm * aside;
+    const auto measured = tunnels::measure(achieved.tunnel, *tibia_.surface);
+    leap_mm = measured.enters_bone && before_mm ? std::abs(measured.wall_mm - *before_mm) : 0;
+    before_mm = measured.enters_bone ? std::optional(measured.wall_mm) : std::nullopt;
+  }
+  ASSERT_GE(leap_mm, 1);
+  achieved.entry_sigma_mm = 0.08;
+  achieved.diameter_sigma_mm = 0.02;
+  const AchievedPlace place = place_of(achieved, knee_.tibial_tunnel, tibia_, kConfirmed);
+  EXPECT_GT(place.wall_sigma_mm, 0.4 * leap_mm);
+  EXPECT_GT(place.most_wall_mm - place.least_wall_mm, leap_mm - 0.1);
+  EXPECT_EQ(wall_in_words({.planned_wall_mm = 2.61,
+                           .wall_mm = 1.84,
+                           .wall_sigma_mm = 0.9,
+                           .least_wall_mm = -0.2,
+                           .most_wall_mm = 1.84}),
+            "-0.2 to 1.8 mm, it grazes the bone's surface; planned 2.6 mm");
 }
 
 TEST(AchievedLength, SaysWhatGoesOnBeyondASocket) {
