@@ -60,6 +60,11 @@ SeverityText against(const operation::RegistrationState& state, std::size_t i,
 std::string words_of_touches(const operation::Touches& touches) {
   const int missing = touches.places_to_verify();
   if (missing == 0) return "The touches lie too far off the bone to verify: draw more, register anew.";
+  // Whoever presses again where it counted already is told why the count stands still.
+  const operation::Touches::Last last = touches.last();
+  if (last.kind == operation::Touches::Last::Kind::Touch && last.distance_mm && !last.is_new_place)
+    return "This place was touched already. Touch " + std::to_string(missing) +
+           (missing == 1 ? " other that you know." : " others that you know.");
   return "Touch " + std::to_string(missing) + (missing < touches.limits().touches_to_verify ? " more" : "") +
          (missing == 1 ? " place" : " places") + " that you know, to verify.";
 }

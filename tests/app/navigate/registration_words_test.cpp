@@ -314,5 +314,26 @@ TEST(RegistrationWords, NothingIsCollectedWithoutPictures) {
   EXPECT_EQ(known.words().state.name, "The marker is out");
 }
 
+// A pedal that is pressed again where it was pressed before verifies nothing more: that is said, in large.
+TEST(RegistrationWords, APlaceThatWasTouchedAlreadyIsTold) {
+  Known known;
+  auto online = std::make_shared<registration::OnlineResult>(*known.registration.online);
+  online->state = registration::OnlineState::Confirmed;
+  known.registration.online = online;
+  known.registration.in_force.is_verified = false;
+  const Eigen::Vector3d corner(0, 0, 0);
+  const geometry::TriangleMesh mesh{{corner, {50, 0, 0}, {0, 50, 0}}, {{0, 1, 2}}};
+  const geometry::Surface surface(mesh);
+  operation::Touches& touches = known.registration.touches;
+  const auto touch = [&](const Eigen::Vector3d& at_mm) {
+    touches.add_touch(at_mm, {});
+    touches.judge(known.registration.in_force.registration.get(), &surface, std::nullopt, {});
+    return known.words().state.text;
+  };
+  EXPECT_EQ(touch({10, 10, 0}), "Touch 2 more places that you know, to verify.");
+  EXPECT_EQ(touch({10.2, 10, 0}), "This place was touched already. Touch 2 others that you know.");
+  EXPECT_EQ(touch({20, 20, 0}), "Touch 1 more place that you know, to verify.");
+}
+
 }  // namespace
 }  // namespace arthronaut::navigate
