@@ -90,10 +90,7 @@ void draw_words(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
     draw.AddRectFilled(badge.min(), badge.max(), IM_COL32(28, 74, 104, 255), ui.theme.px(6));
     draw.AddText(small, small->FontSize, {badge.x + ui.theme.px(10), badge.y}, widgets::kText, key);
   }
-  const auto sentence = [](std::string words) {
-    if (!words.empty()) words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
-    return words;
-  };
+  using widgets::sentence;
   // What is missing stands below what is to be done, and takes its room first: it may be why nothing goes on.
   if (!screen.missing.empty()) {
     const std::string missing = sentence(screen.missing);

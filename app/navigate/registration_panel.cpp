@@ -112,7 +112,7 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
   // In the order of what matters: what does not fit any more is left out whole.
   const auto put = [&](widgets::Severity severity, ImU32 color, std::string text) {
     if (text.empty()) return true;
-    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    text = widgets::sentence(std::move(text));
     const float indent = severity == widgets::Severity::Quiet ? 0 : line;
     const float height = widgets::afar_height(ui, rest.width - indent, text);
     if (height > rest.height + 1) return false;

@@ -1,6 +1,7 @@
 #include "app/widgets/afar_text.h"
 
 #include <array>
+#include <cctype>
 
 #include "app/widgets/wrapped_text.h"
 
@@ -14,6 +15,13 @@ ImVec2 size_of(ImFont* font, float width, std::string_view text) {
 }
 
 }  // namespace
+
+std::string sentence(std::string words) {
+  const bool is_address = words.substr(0, words.find(' ')).find("://") != std::string::npos;
+  if (!words.empty() && !is_address)
+    words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words;
+}
 
 ImFont* font_that_fits(const Theme& theme, float width, float height, std::string_view text) {
   for (ImFont* const font : std::array{theme.afar, theme.title}) {

@@ -11,6 +11,8 @@ namespace arthronaut::widgets {
 [[nodiscard]] ImFont* font_that_fits(const Theme& theme, float width, float height, std::string_view text);
 // Height of the text at this width, in the letters for afar.
 [[nodiscard]] float afar_height(const Ui& ui, float width, std::string_view text);
+// The words with a capital at their beginning, but for an address, which has its own letters.
+[[nodiscard]] std::string sentence(std::string words);
 // From the upper left corner. Returns the height drawn.
 float draw_afar(const Ui& ui, const Rect& area, ImU32 color, std::string_view text);
 

@@ -74,9 +74,9 @@ void ViewTracker::observe(const camera::Frame& frame, PictureObservation& view) 
   State& s = *state_;
   const Eigen::Vector2i& size = s.options.calibration.image_size_px;
   if (frame.width != size.x() || frame.height != size.y()) {
-    throw InvalidInput("frame " + std::to_string(frame.index) + " is " +
+    throw InvalidInput("picture " + std::to_string(frame.index) + " is " +
                        size_text(frame.width, frame.height) + " pixels, but the camera was calibrated at " +
-                       size_text(size.x(), size.y()));
+                       size_text(size.x(), size.y()) + ": set the source to that size, or calibrate anew");
   }
   const camera::GrayView picture = camera::luma_of(frame, s.gray);
 

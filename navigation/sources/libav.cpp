@@ -50,6 +50,21 @@ LumaPlane luma_plane(const AVFrame& picture) {
 std::string libav_message(int error) {
   if (error == AVERROR_PROTOCOL_NOT_FOUND)
     return "no kind of address that is known: rtsp://, rtsps://, udp://, srt://, tcp:// and gst: are";
+  // The library's own words for these are of its insides.
+  switch (error) {
+    case AVERROR_INVALIDDATA:
+      return "no video that can be read";
+    case AVERROR_HTTP_NOT_FOUND:
+      return "the server has no stream of that name";
+    case AVERROR_HTTP_UNAUTHORIZED:
+      return "the server asks for a name and a password: rtsp://NAME:PASSWORD@HOST/PATH";
+    case AVERROR_HTTP_FORBIDDEN:
+      return "the server does not allow it";
+    case AVERROR_HTTP_SERVER_ERROR:
+      return "the server is there, but cannot give this stream";
+    default:
+      break;
+  }
   char text[AV_ERROR_MAX_STRING_SIZE] = {};
   av_strerror(error, text, sizeof text);
   return text;

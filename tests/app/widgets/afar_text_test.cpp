@@ -19,5 +19,13 @@ TEST(AfarText, BreaksNoNumber) {
   EXPECT_EQ(font_that_fits(theme, 9.5F * letter, 2 * line, words), theme.strong);
 }
 
+// What somebody typed is shown as it was typed.
+TEST(AfarText, BeginsWithACapitalUnlessItIsAnAddress) {
+  EXPECT_EQ(sentence("open rtsp://tower/scope"), "Open rtsp://tower/scope");
+  EXPECT_EQ(sentence("rtsp://tower/scope: Connection refused"), "rtsp://tower/scope: Connection refused");
+  EXPECT_EQ(sentence("/dev/video0: no picture"), "/dev/video0: no picture");
+  EXPECT_EQ(sentence(""), "");
+}
+
 }  // namespace
 }  // namespace arthronaut::widgets

@@ -270,6 +270,9 @@ TEST(Stream, IsReadFromAnRtspServer) {
   const RtspServer server(port(3));
   const auto source = open_source("rtsp://127.0.0.1:" + port(3) + "/scope");
   expect_live(*source, camera::CaptureClock::Network);
+  // A name that it has not, in words that tell what to look after.
+  EXPECT_THAT(message_of<DeviceError>([] { (void)open_source("rtsp://127.0.0.1:" + port(3) + "/other"); }),
+              HasSubstr("/other: the server has no stream of that name"));
 }
 
 TEST(GStreamerPipeline, GivesItsPicturesAndStamps) {
