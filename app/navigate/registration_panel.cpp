@@ -159,9 +159,20 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
     draw_bar(ui, words.progress, state.severity);
     ImGui::EndChild();
   }
-  if (words.touch) put_row(words.touch->number);
-  if (!is_bad && can_be_done)
-    put(widgets::Severity::Quiet, widgets::kText, words.missing.empty() ? state.text : words.missing);
+  if (words.touch) {  // "Touch 1 2.4 mm" is read as one number
+    SeverityText touch = words.touch->number;
+    touch.name += ':';
+    put_row(touch);
+  }
+  const std::string& advice = words.missing.empty() ? state.text : words.missing;
+  bool is_said = is_bad || !can_be_done || put(widgets::Severity::Quiet, widgets::kText, advice);
+  // What to do is never left out: rather in smaller letters.
+  if (!is_said && rest.height >= ui.theme.strong->FontSize) {
+    widgets::draw_afar(ui, rest, widgets::kText, widgets::sentence(advice));
+    rest.height = 0;
+    is_said = true;
+  }
+  ui.log.note_state("advice", is_said && !is_bad && can_be_done ? advice : "");
   for (const SeverityText& row : words.numbers) put_row(row);
   if (!screen.has_source()) return;
   for (const SeverityText& row : contour_rows(*screen.live->operation)) put_row(row);

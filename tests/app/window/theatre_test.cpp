@@ -192,5 +192,23 @@ TEST_F(Theatre, Hazard7TheDepthStopIsTypedAndTheMarkerPlacedAnewIsAKey) {
   EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
 }
 
+// What is missing is said in every picture while strokes are collected, however many words it takes: in large
+// letters, or else in smaller ones.
+TEST_F(Theatre, WhatTheStrokesLackIsNeverLeftOut) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  start_simulation(app);
+  ASSERT_TRUE(app.wait_for_state("standing", "stands", 400));
+  int said = 0;
+  for (const DrawnFrame& frame : app.frames()) {
+    const auto advice = frame.states.find("advice");
+    if (advice == frame.states.end()) continue;
+    EXPECT_TRUE(said == 0 || !advice->second.empty()) << "after " << said;
+    said += advice->second.empty() ? 0 : 1;
+  }
+  EXPECT_GT(said, 1);
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
 }  // namespace
 }  // namespace arthronaut::test
