@@ -203,6 +203,10 @@ bool breaks_out(const NavigateDisplay& display) {
          (display.drill->breakout == Breakout::Imminent || display.drill->breakout == Breakout::Through);
 }
 
+bool gets_screen(const NavigateDisplay& display, const operation::OperationState& state) {
+  return display.guidance_is_valid || display.drill || state.guided_lately;
+}
+
 bool is_under_way(const theatre::LiveState& live) {
   return live.phase == Phase::Starting || live.phase == Phase::Running;
 }

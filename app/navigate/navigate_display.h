@@ -31,6 +31,9 @@ struct NavigateDisplay {
 
 // A drill that is seen at the plan is about to leave the bone on the far side, or has.
 [[nodiscard]] bool breaks_out(const NavigateDisplay& display);
+// Bullseye and numbers are looked at: something guides, did so a moment ago, or a drill with a marker of its
+// own is seen, with which no guide need be.
+[[nodiscard]] bool gets_screen(const NavigateDisplay& display, const operation::OperationState& state);
 // A source runs or is being opened: it has to be stopped before the other bone is taken.
 [[nodiscard]] bool is_under_way(const theatre::LiveState& live);
 // One is being opened, or is open and has given no picture yet: nothing can be asked of anybody.

@@ -358,7 +358,7 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (!live_->operation->plan && model_ != nullptr && bones_.must_choose(choices_.bone))
     display.detail = "Two tunnels are planned in this bone: choose AM (1) or PL (2)";
   // A guide that comes into view gets the screen; where its numbers may not be shown, why not does.
-  if (display.guidance_is_valid || live_->operation->guided_lately) {
+  if (gets_screen(display, *live_->operation)) {
     if (now - choices_.guidance_seen_s > kGuideAway_s) choices_.layout.reset();
     choices_.guidance_seen_s = now;
   }

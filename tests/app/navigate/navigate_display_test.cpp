@@ -192,6 +192,9 @@ TEST(NavigateDisplay, Hazard7TheDrillIsToldOfWithoutAGuide) {
   for (const GuidanceState state : {GuidanceState::GuideNotChecked, GuidanceState::WorldMarkerLost,
                                     GuidanceState::LensStale, GuidanceState::NotConfirmed})
     EXPECT_FALSE(drilled(state, nothing).drill) << to_text(state);
+  // Its depth stands beside the bullseye: that is brought up by it, as by a guide.
+  EXPECT_TRUE(gets_screen(drilled(GuidanceState::GuideLost, nothing), {}));
+  EXPECT_FALSE(gets_screen(drilled(GuidanceState::WorldMarkerLost, nothing), {}));
   EXPECT_FALSE(drilled(GuidanceState::GuideLost, [](Shown& s) { s.stand(Standing::InDoubt, {"x"}); }).drill);
   EXPECT_FALSE(drilled(GuidanceState::GuideLost, [](Shown& s) {
                  s.operation.time_out = operation::TimeOut::Due;
