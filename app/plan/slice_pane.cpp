@@ -63,6 +63,16 @@ double SlicePane::step_mm(const images::Volume& volume) const {
   return axes.col(nearest).norm();
 }
 
+bool lies_in(const SliceLine& line, const scene::SlicePlane& plane) {
+  return std::ranges::all_of(line.points_mm, [&](const Eigen::Vector3d& point) {
+    return std::abs(plane.normal().dot(point - plane.center_mm)) < kNearSlice_mm;
+  });
+}
+
+std::string window_in_words(const scene::GreyWindow& window) {
+  return "W " + widgets::fixed(window.width, 0) + " L " + widgets::fixed(window.level, 0);
+}
+
 scene::SlicePlane SlicePane::plane_through(const Eigen::Vector3d& cross_mm) const {
   const Eigen::Vector3d n = normal();
   return {center_mm_ + n.dot(cross_mm - center_mm_) * n, right_, down_, mm_per_px_};
@@ -201,23 +211,21 @@ void SlicePane::draw_overlay(const widgets::Ui& ui, const widgets::Rect& rect, c
         std::pair{ImVec2(cross.x, rect.y), ImVec2(cross.x, cross.y - gap)},
         std::pair{ImVec2(cross.x, cross.y + gap), ImVec2(cross.x, rect.y + rect.height)}})
     draw.AddLine(from, to, kCross, ui.theme.px(1.5F));
-  constexpr double kNear_mm = 2;
   for (const SliceMark& mark : content.marks) {
-    if (off_plane_mm(mark.point_mm) > kNear_mm) continue;
+    if (off_plane_mm(mark.point_mm) > kNearSlice_mm) continue;
     const ImVec2 p = at(mark.point_mm);
     draw.AddCircle(p, ui.theme.px(6), mark.color, 16, ui.theme.px(2));
     shadowed(draw, ui.theme.body, {p.x + ui.theme.px(9), p.y - ui.theme.body->FontSize / 2}, mark.color,
              mark.word);
   }
   for (const SliceLine& line : content.lines) {
-    // Measured in space: drawn where one of its points lies in this slice.
-    if (std::none_of(line.points_mm.begin(), line.points_mm.end(),
-                     [&](const Eigen::Vector3d& p) { return off_plane_mm(p) < kNear_mm; }))
-      continue;
+    const bool is_whole = line.is_being_made || lies_in(line, plane);
+    for (const Eigen::Vector3d& point : line.points_mm)
+      if (is_whole || off_plane_mm(point) < kNearSlice_mm)
+        draw.AddCircleFilled(at(point), ui.theme.px(4), kMeasured);
+    if (!is_whole) continue;
     for (std::size_t i = 0; i + 1 < line.points_mm.size(); ++i)
       draw.AddLine(at(line.points_mm[i]), at(line.points_mm[i + 1]), kMeasured, ui.theme.px(2));
-    for (const Eigen::Vector3d& point : line.points_mm)
-      draw.AddCircleFilled(at(point), ui.theme.px(4), kMeasured);
     if (line.word.empty()) continue;
     std::vector<ImVec2> points;
     for (const Eigen::Vector3d& point : line.points_mm) points.push_back(at(point));
@@ -268,8 +276,10 @@ void SlicePane::draw_frame(const widgets::Ui& ui, const widgets::Rect& rect,
             from.y - ui.theme.body->FontSize - ui.theme.px(4)},
            widgets::kText, text);
   const std::string place = widgets::fixed(normal().dot(content.cross_mm), 1) + " mm";
-  shadowed(draw, ui.theme.body, {rect.x + edge, rect.y + rect.height - edge - ui.theme.body->FontSize},
-           widgets::kQuietText, place);
+  const float row = ui.theme.body->FontSize, lowest = rect.y + rect.height - edge - row;
+  shadowed(draw, ui.theme.body, {rect.x + edge, lowest}, widgets::kQuietText, place);
+  shadowed(draw, ui.theme.body, {rect.x + edge, lowest - row}, widgets::kQuietText,
+           window_in_words(content.window));
   draw.AddRect(rect.min(), rect.max(), widgets::kPanelEdge);
 }
 

@@ -38,7 +38,16 @@ struct SliceMark {
 struct SliceLine {
   std::vector<Eigen::Vector3d> points_mm;  // two or three
   std::string word;
+  bool is_being_made = false;  // follows the mouse, whichever slice it is in
 };
+
+// What is drawn of a line in a slice: all of it where all of its points lie there. Of one that only crosses
+// it those points that do: a shadow of it would be of another length than the number beside it.
+inline constexpr double kNearSlice_mm = 2;
+[[nodiscard]] bool lies_in(const SliceLine& line, const scene::SlicePlane& plane);
+
+// "W 2500 L 480".
+[[nodiscard]] std::string window_in_words(const scene::GreyWindow& window);
 
 // What is painted, over the grey picture.
 struct SliceLabels {

@@ -119,7 +119,7 @@ void SlicePanes::draw(const widgets::Ui& ui, const std::array<widgets::Rect, 3>&
   // What it would be if the mouse let go here. An angle has a number with its third point.
   const std::string reached =
       !line.empty() && line.size() == points_asked() ? cases::Measurement{line}.in_words() : "";
-  if (!line.empty()) content.lines.push_back({line, reached});
+  if (!line.empty()) content.lines.push_back({line, reached, true});
   ui.log.note_state("measuring", reached);
   reaching_mm_.clear();
   constexpr std::array<const char*, 3> kNames{"plan.axial_slice", "plan.coronal_slice",
