@@ -103,7 +103,8 @@ std::optional<fs::path> FolderBrowser::draw(const widgets::Ui& ui, widgets::Rect
   if (listing_.other_files > 0)
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      std::to_string(listing_.other_files) +
-                         " other files. Images without an ending are found by " + take_folder + ".");
+                         (listing_.other_files == 1 ? " other file" : " other files") +
+                         ". Images without an ending are found by " + take_folder + ".");
   if (listing_.failure.empty() && listing_.entries.empty() && listing_.other_files == 0)
     widgets::text_in(
         ui.theme.body, widgets::kQuietText,

@@ -212,10 +212,13 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
   draw_picture(draw, record.is_there && record.problem.empty() ? pictures_.of(record.folder) : nullptr,
                place);
   const float right = ui.theme.px(170), wide = at.x + width - x - right;
-  widgets::draw_text(
-      draw, ui.theme.strong, x, at.y + ui.theme.px(6), record.is_there ? widgets::kText : widgets::kQuietText,
-      widgets::fitting(ui.theme.strong, record.name + (record.side.empty() ? "" : "  \u2013  " + record.side),
-                       wide));
+  // A long name is cut, never the side: a wrong side is a wrong operation.
+  ImFont* const font = ui.theme.strong;
+  const std::string side = record.side.empty() ? "" : "  \u2013  " + record.side;
+  const float side_wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, side.c_str()).x;
+  widgets::draw_text(draw, font, x, at.y + ui.theme.px(6),
+                     record.is_there ? widgets::kText : widgets::kQuietText,
+                     widgets::fitting(font, record.name, wide - ui.theme.px(12) - side_wide) + side);
   widgets::draw_text(draw, ui.theme.body, at.x + width - right, at.y + ui.theme.px(6), widgets::kQuietText,
                      when_in_words(used_utc(record), files::utc_now()));
   const PlanVerdict* const verdict = pictures_.verdict_of(record.folder);

@@ -151,7 +151,10 @@ void status_row(const Ui& ui, Severity severity, std::string_view name, std::str
   const float gap = ui.theme.px(10);
   const ImVec2 one_line = text_size(ui.theme.body, text);
   float height = line;
-  if (name_size.x + gap + one_line.x <= wrap) {
+  if (name.empty()) {  // nothing stands on the first line
+    draw_text(draw, ui.theme.body, {at.x + indent, at.y}, color, text, wrap);
+    height = std::max(height, text_size(ui.theme.body, text, wrap).y);
+  } else if (name_size.x + gap + one_line.x <= wrap) {
     draw_text(draw, ui.theme.body, {at.x + indent + name_size.x + gap, at.y}, color, text);
   } else {
     draw_text(draw, ui.theme.body, {at.x + indent, at.y + line}, color, text, wrap);

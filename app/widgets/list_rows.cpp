@@ -1,6 +1,7 @@
 #include "app/widgets/list_rows.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "app/widgets/wrapped_text.h"
 
@@ -24,6 +25,27 @@ std::string fitting(ImFont* font, const std::string& words, float width) {
     if (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xC0U) == 0xC0U) cut.pop_back();
   }
   return cut + "\u2026";
+}
+
+std::string fitting_end(ImFont* font, const std::string& words, float width) {
+  const auto wide = [&](const std::string& t) {
+    return font->CalcTextSizeA(font->FontSize, 1e9F, 0, t.c_str()).x;
+  };
+  if (wide(words) <= width) return words;
+  std::string cut = words;
+  while (!cut.empty() && wide("\u2026" + cut) > width) {
+    do cut.erase(0, 1);
+    while (!cut.empty() && (static_cast<unsigned char>(cut.front()) & 0xC0U) == 0x80U);
+  }
+  return "\u2026" + cut;
+}
+
+void bring_into_sight(std::size_t row, float top_px, float height_px) {
+  int& shown = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("row in sight"), -1);
+  if (std::exchange(shown, static_cast<int>(row)) == static_cast<int>(row)) return;
+  const float list_px = ImGui::GetWindowPos().y;
+  if (top_px < list_px || top_px + height_px > list_px + ImGui::GetWindowHeight())
+    ImGui::SetScrollHereY(0.5F);
 }
 
 void draw_buttons(const Ui& ui, const Rect& bar, std::initializer_list<const char*> ids) {

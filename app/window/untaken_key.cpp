@@ -26,13 +26,19 @@ void UntakenKey::note(const widgets::KeyPress& press, const widgets::Actions& ac
     return;
   }
   if (press.key == GLFW_KEY_ESCAPE) return;
-  const auto its = std::ranges::find_if(actions.all(), [&](const widgets::Action& action) {
+  const auto is_its = [&](const widgets::Action& action) {
     return action.key == press.key && action.mods == press.mods &&
            std::ranges::any_of(prefixes,
                                [&](std::string_view prefix) { return action.id.starts_with(prefix); });
-  });
+  };
+  const auto its = std::ranges::find_if(actions.all(), is_its);
   if (its == actions.all().end()) return;
-  words_ = name + " did nothing: " + its->label + " is not possible now";
+  // Of a key that does one thing here and another there nobody knows which was meant.
+  const bool is_one = std::ranges::none_of(actions.all(), [&](const widgets::Action& other) {
+    return is_its(other) && other.label != its->label;
+  });
+  words_ = name +
+           " did nothing: " + (is_one ? its->label + " is not possible now" : "there is nothing for it now");
   action_ = its->id;
 }
 

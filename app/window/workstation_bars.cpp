@@ -59,8 +59,11 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
     float y = middle - row * static_cast<float>(lines.size()) / 2;
     std::string whole;
     for (const WhoseLine& line : lines) {
+      // Where even what is never cut has no room beside the modes, the side at its end is what stays.
       const std::string words =
-          widgets::fitting(font, line.may_be_cut, room - width_of(line.rest)) + line.rest;
+          width_of(line.rest) > room
+              ? widgets::fitting_end(font, line.rest, room)
+              : widgets::fitting(font, line.may_be_cut, room - width_of(line.rest)) + line.rest;
       const ImVec2 at{right - width_of(words), y};
       const bool is_quiet = !line.is_of_patient && lines.front().is_of_patient;
       draw.AddText(font, row, at, is_quiet ? widgets::kQuietText : widgets::kText, words.c_str());
@@ -171,16 +174,25 @@ void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& 
 void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(area.min(), area.max(), widgets::kPanel);
-  const ImFont* font = ui.theme.body;
+  ImFont* const font = ui.theme.body;
   const float y = area.y + (area.height - font->FontSize) / 2;
-  draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), y}, widgets::kQuietText, kNotice);
+  const auto width_of = [&](const std::string& words) {
+    return font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str()).x;
+  };
+  const float edge = ui.theme.px(20), standing = edge + width_of(kNotice);
+  draw.AddText(font, font->FontSize, {area.x + edge, y}, widgets::kQuietText, kNotice);
+  ui.log.note("app.notice", {area.x + edge, y}, {area.x + standing, y + font->FontSize});
   const auto [text, warns] = status_words();
-  const float room = area.width - font->CalcTextSizeA(font->FontSize, 1e9F, 0, kNotice).x - ui.theme.px(60);
-  const widgets::LinesWithin said = widgets::lines_within(font, text, room, area.height);
+  // Beside what always stands there. Of a folder its end tells which it is; a warning stands whole, in smaller
+  // letters where it is long.
+  const float room = area.width - standing - 2 * edge;
+  const widgets::LinesWithin said =
+      warns ? widgets::lines_within(font, text, room, area.height)
+            : widgets::LinesWithin{widgets::fitting_end(font, text, room), font->FontSize};
   const ImVec2 size = font->CalcTextSizeA(said.letters_px, 1e9F, 0, said.lines.c_str());
-  draw.AddText(font, said.letters_px,
-               {area.x + area.width - size.x - ui.theme.px(20), area.y + (area.height - size.y) / 2},
-               warns ? widgets::kCaution : widgets::kQuietText, said.lines.c_str());
+  const ImVec2 at{area.x + area.width - edge - size.x, area.y + (area.height - size.y) / 2};
+  draw.AddText(font, said.letters_px, at, warns ? widgets::kCaution : widgets::kQuietText, said.lines.c_str());
+  if (!said.lines.empty()) ui.log.note("app.status", at, {at.x + size.x, at.y + size.y});
 }
 
 void WorkstationWindow::draw_fault(const widgets::Ui& ui) const {

@@ -26,6 +26,15 @@ TEST_F(UntakenKeys, AreSaidWithTheirReason) {
   EXPECT_EQ(after(GLFW_KEY_N, true), "N did nothing: the case is still being opened. Press it again then");
 }
 
+// Enter opens, makes the bones, makes the case: "Open is not possible" of a series that cannot be imported
+// was about a button that was not there.
+TEST_F(UntakenKeys, OfSeveralThingsNoneIsNamed) {
+  for (const auto& [id, label] :
+       {std::pair("plan.accept", "Open"), std::pair("plan.import", "Make the bones")})
+    actions_.add({id, label, "", GLFW_KEY_ENTER, 0, false, [] { return false; }, {}, {}});
+  EXPECT_EQ(after(GLFW_KEY_ENTER), "Enter did nothing: there is nothing for it now");
+}
+
 TEST_F(UntakenKeys, NeedNoWordsWhereTheyAreForNothing) {
   EXPECT_EQ(after(GLFW_KEY_K), "");
   EXPECT_EQ(after(GLFW_KEY_ESCAPE), "");
