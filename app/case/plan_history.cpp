@@ -14,7 +14,7 @@ namespace arthronaut::open_case {
 
 namespace {
 
-constexpr double kRest_s = 0.5, kLookEvery_s = 1.0;
+constexpr double kRest_s = 0.5, kLookEvery_s = 1.0, kTryAgainEvery_s = 3.0;
 
 bool is_same(const std::optional<tunnels::Tunnel>& a, const std::optional<tunnels::Tunnel>& b) {
   if (!a || !b) return !a && !b;
@@ -176,10 +176,13 @@ void PlanHistory::go_to(std::size_t position) {
 }
 
 void PlanHistory::look_at_disk(double now_s) {
-  if (model_ == nullptr || is_read_only_ || now_s - looked_at_s_ < kLookEvery_s) return;
+  const bool has_failed = status_.save == PlanStatus::Save::Failed;
+  if (model_ == nullptr || is_read_only_ ||
+      now_s - looked_at_s_ < (has_failed ? kTryAgainEvery_s : kLookEvery_s))
+    return;
   looked_at_s_ = now_s;
-  if (is_in_conflict()) return read_theirs();            // it may be saved again
-  if (status_.save == PlanStatus::Save::Failed) return;  // its reason stands
+  if (is_in_conflict()) return read_theirs();  // it may be saved again
+  if (has_failed) return save();               // there may be room again, or the share is back
   std::error_code error;
   if (!std::filesystem::is_directory(case_folder_, error))
     return;  // one that is gone is told by the next save

@@ -51,7 +51,8 @@ class PlanHistory {
   void settle_now();
   [[nodiscard]] bool is_moving() const { return is_moving_; }
 
-  // Whether another program has saved a plan: looks at plan.json, at most once a second. For every frame.
+  // Whether another program has saved a plan: looks at plan.json, at most once a second. What could not be
+  // saved is tried again every three. For every frame.
   void look_at_disk(double now_s);
   [[nodiscard]] bool is_in_conflict() const { return status_.save == PlanStatus::Save::Conflict; }
   // How the other program's plan differs from the model's, a tunnel each: "femur: entry 2.1 mm off, 0.5 mm

@@ -147,7 +147,8 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
                        state_.page == PanelPage::Landmarks,
                        status.save == open_case::PlanStatus::Save::ReadOnly,
                        history_.is_in_conflict(),
-                       defaults_.is_running()};
+                       defaults_.is_running(),
+                       status.save == open_case::PlanStatus::Save::Failed};
   const NextStep next = next_step(*model_, step);
   const PanelClick clicked = draw_plan_panel(
       ui, panel,

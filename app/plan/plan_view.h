@@ -53,8 +53,11 @@ class PlanView : public mode::Mode {
   // The tunnels of 3D Slicer's markups, as one step; why not, where they are not of this case. Precondition:
   // a case is open.
   void take_markups(const std::filesystem::path& file);
-  // An export, which the end of the program or another case would cut off.
-  [[nodiscard]] bool has_running_work() const override { return export_.is_running(); }
+  // An export, which the end of the program or another case would cut off; a plan that could not be saved,
+  // which they would lose.
+  [[nodiscard]] bool has_running_work() const override {
+    return export_.is_running() || history_.status().save == open_case::PlanStatus::Save::Failed;
+  }
   [[nodiscard]] bool is_busy() const override {
     return history_.is_moving() || defaults_.is_running() || slices_.is_loading() || volume_.is_preparing();
   }
