@@ -2,6 +2,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/plan/plan_view.h"
 #include "app/plan/roof_line.h"
@@ -123,24 +124,12 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
     const auto count = static_cast<int>(landmark_rows(*model_, state_.key.bone).size());
     select_landmark(static_cast<std::size_t>((static_cast<int>(state_.landmark) + by + count) % count));
   };
-  actions.add({"plan.landmark_next",
-               "Next landmark",
-               "Looks at the next one",
-               GLFW_KEY_PAGE_DOWN,
-               0,
-               true,
-               here,
-               {},
-               [go] { go(1); }});
-  actions.add({"plan.landmark_previous",
-               "Landmark before",
-               "Looks at the one before",
-               GLFW_KEY_PAGE_UP,
-               0,
-               true,
-               here,
-               {},
-               [go] { go(-1); }});
+  for (const auto& [id, key] :
+       {std::pair("plan.landmark_next", GLFW_KEY_PAGE_DOWN), std::pair("plan.landmark_below", GLFW_KEY_DOWN)})
+    actions.add({id, "Next landmark", "Looks at the next one", key, 0, true, here, {}, [go] { go(1); }});
+  for (const auto& [id, key] :
+       {std::pair("plan.landmark_previous", GLFW_KEY_PAGE_UP), std::pair("plan.landmark_above", GLFW_KEY_UP)})
+    actions.add({id, "Landmark before", "Looks at the one before", key, 0, true, here, {}, [go] { go(-1); }});
   actions.add({"plan.landmark_confirm",
                "Confirm",
                "The landmark is where it should be; goes on to the next proposed one",

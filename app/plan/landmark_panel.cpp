@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/widgets/list_rows.h"
 #include "app/widgets/tooltip.h"
 
 namespace arthronaut::plan {
@@ -30,6 +31,23 @@ std::string confirmed_in_words(const std::vector<LandmarkRow>& rows) {
   const auto missing = std::ranges::count(rows, LandmarkRow::State::Missing, &LandmarkRow::state);
   return std::to_string(confirmed) + " of " + std::to_string(std::ssize(rows) - missing) + " confirmed" +
          (missing > 0 ? ", " + std::to_string(missing) + " not there" : "");
+}
+
+std::optional<double> off_proposal_mm(const open_case::PlanModel& model, bones::BoneKind bone,
+                                      const std::string& name) {
+  const auto& proposal = model.proposal(bone);
+  if (!proposal) return std::nullopt;
+  const auto here = model.landmarks(bone).find(name), proposed = proposal->landmarks.find(name);
+  if (here == model.landmarks(bone).end() || proposed == proposal->landmarks.end()) return std::nullopt;
+  return (here->second - proposed->second).norm();
+}
+
+std::string state_in_words(LandmarkRow::State state, std::optional<double> off_proposal_mm) {
+  if (state == LandmarkRow::State::Missing) return "not there: P, then click where it is";
+  if (state == LandmarkRow::State::Proposed) return "proposed by the shape, looked at by nobody";
+  return "confirmed" + (off_proposal_mm ? ", " + widgets::fixed(*off_proposal_mm, 1) +
+                                              " mm from where the bone's shape puts it"
+                                        : std::string());
 }
 
 std::optional<std::size_t> next_proposed(const std::vector<LandmarkRow>& rows, std::size_t from) {
@@ -61,6 +79,7 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
     const float width = ImGui::GetContentRegionAvail().x;
     ImGui::PushID(static_cast<int>(i));
     if (ImGui::InvisibleButton("landmark", {width, height})) clicked = i;
+    if (i == selected) widgets::bring_into_sight(i, at.y, height);
     const bool is_hovered = ImGui::IsItemHovered();
     ImGui::PopID();
     ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -80,13 +99,11 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
       ui.log.note_button("plan.landmark." + rows[i].name, at, {at.x + width, at.y + height});
   }
   ImGui::EndChild();
-  const char* word = row.state == LandmarkRow::State::Confirmed ? "confirmed"
-                     : row.state == LandmarkRow::State::Proposed
-                         ? "proposed by the shape, looked at by nobody"
-                         : "not there: P, then click where it is";
   widgets::text_in(ui.theme.body, widgets::kText, about);
+  const std::string word = state_in_words(row.state, off_proposal_mm(model, bone, row.name));
   widgets::text_in(ui.theme.body,
                    row.state == LandmarkRow::State::Proposed ? widgets::kCaution : widgets::kQuietText, word);
+  ui.log.note_state("landmark_state", word);
   return clicked;
 }
 

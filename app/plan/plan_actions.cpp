@@ -60,8 +60,10 @@ void PlanView::widen(double by_mm) {
 
 // Each key makes a new tunnel of the one that is there.
 void PlanView::add_tunnel_actions(widgets::Actions& actions) {
+  // Not where the landmarks are gone through: there nothing shows the numbers, nor the handles, of a tunnel.
   const auto can_change = [this] {
-    return model_ != nullptr && model_->tunnel(state_.key).has_value() &&
+    return model_ != nullptr && state_.page != PanelPage::Landmarks &&
+           model_->tunnel(state_.key).has_value() &&
            history_.status().save != open_case::PlanStatus::Save::ReadOnly;
   };
   const auto add = [&](const std::string& id, const std::string& label, const char* tooltip, int key,

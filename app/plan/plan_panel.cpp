@@ -5,6 +5,7 @@
 #include "app/plan/anatomical_text.h"
 #include "app/plan/plan_view.h"
 #include "app/plan/roof_line.h"
+#include "app/widgets/list_rows.h"
 #include "app/widgets/tooltip.h"
 #include "app/widgets/wrapped_text.h"
 #include "planning/files/local_time.h"
@@ -74,12 +75,13 @@ void draw_saved(const widgets::Ui& ui, const open_case::PlanStatus& status) {
 
 // What draw_saved() needs beyond its one line: a conflict and a failure have more words.
 float more_of_saved(const widgets::Ui& ui, const open_case::PlanStatus& status) {
-  const ImFont* font = ui.theme.body;
-  const float width = ImGui::GetContentRegionAvail().x - ui.theme.px(90);
+  ImFont* font = ui.theme.body;
+  const float width = ImGui::GetContentRegionAvail().x - ui.theme.px(90), room = width + ui.theme.px(60);
   const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, status.text.c_str()).x;
-  return wide <= width
-             ? 0
-             : font->CalcTextSizeA(font->FontSize, 1e9F, width + ui.theme.px(60), status.text.c_str()).y;
+  return wide <= width ? 0
+                       : font->CalcTextSizeA(font->FontSize, 1e9F, room,
+                                             widgets::wrapped(font, status.text, room).c_str())
+                             .y;
 }
 
 // What to do next, and the button that begins it.
@@ -195,17 +197,19 @@ bool draw_row(const widgets::Ui& ui, const ListRow& row) {
 }
 
 // Every step, the newest last; a click goes back, or forward, to it.
-std::optional<std::size_t> draw_steps(const widgets::Ui& ui, const open_case::PlanHistory& history) {
+std::optional<std::size_t> draw_steps(const widgets::Ui& ui, const open_case::PlanHistory& history,
+                                      float room_below_px) {
   std::optional<std::size_t> clicked;
   widgets::text_in(ui.theme.body, widgets::kQuietText, "Click on a step to go back or forward to it.");
-  ImGui::BeginChild("steps", {0, 0.55F * (ImGui::GetContentRegionAvail().y - ui.theme.px(110))});
+  ImGui::BeginChild("steps", {0, 0.55F * (ImGui::GetContentRegionAvail().y - room_below_px)});
   for (std::size_t i = 0; i <= history.step_count(); ++i) {
     const bool is_here = i == history.position(), is_undone = i > history.position();
+    const float top = ImGui::GetCursorScreenPos().y;
     const std::string text = i == 0 ? "As it was opened" : history.step_name(i - 1);
     if (draw_row(ui,
                  {"step." + std::to_string(i), text + (is_undone ? "  (undone)" : ""), is_here, is_undone}))
       clicked = i;
-    if (is_here) ImGui::SetScrollHereY(1);
+    if (is_here) widgets::bring_into_sight(i, top, ImGui::GetCursorScreenPos().y - top);
   }
   ImGui::EndChild();
   return clicked;
@@ -213,11 +217,11 @@ std::optional<std::size_t> draw_steps(const widgets::Ui& ui, const open_case::Pl
 
 // What was kept, the newest first, each with how it differs from the plan that is worked on; a click takes
 // it.
-std::optional<std::size_t> draw_versions(const widgets::Ui& ui, const PlanPanel& panel) {
+std::optional<std::size_t> draw_versions(const widgets::Ui& ui, const PlanPanel& panel, float room_below_px) {
   std::optional<std::size_t> clicked;
   ImGui::Separator();
   button_pair(ui, "plan.keep", "plan.export");
-  ImGui::BeginChild("versions", {0, ImGui::GetContentRegionAvail().y - ui.theme.px(110)});
+  ImGui::BeginChild("versions", {0, ImGui::GetContentRegionAvail().y - room_below_px});
   if (panel.versions.empty())
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      "No version is kept. One that is can be compared with, and taken again.");
@@ -281,8 +285,8 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
       break;
     }
     case PanelPage::Steps:
-      clicked.step = draw_steps(ui, panel.history);
-      clicked.version = draw_versions(ui, panel);
+      clicked.step = draw_steps(ui, panel.history, ui.theme.px(110) + more);
+      clicked.version = draw_versions(ui, panel, ui.theme.px(110) + more);
       break;
   }
   draw_saved(ui, panel.history.status());

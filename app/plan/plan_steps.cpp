@@ -48,8 +48,10 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
   const BoneKind here = state.key.bone;
   const std::string bone(bones::to_text(here));
   const BoneKind other = here == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
-  if (state.is_read_only) return {"Look only: another program has this case open", ""};
+  if (state.is_read_only) return {"Look only: why the plan cannot be changed is said below", ""};
   if (state.is_in_conflict) return {"Take the other program's plan, or keep this one", "plan.take_theirs"};
+  if (state.is_unsaved)
+    return {"The plan is not saved: mend what is said below. It is tried again by itself", ""};
   if (state.makes_default) return {"Wait for the default plan, then move it; Esc leaves it", ""};
   if (state.places_entry) return {"Click on the " + bone + " where the tunnel begins", ""};
   if (!model.has_bone(here)) return {"This case has no " + bone + ": plan the other bone", "plan.bone"};
@@ -77,6 +79,9 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
     if (is_wrong(model, *beside))
       return {"Mend the " + adjective(*beside) + " tunnel: press B", "plan.other_bundle"};
   }
+  if (has_unconfirmed_grid(model, here) && state.shows_landmarks)
+    return {"Look at each landmark of the " + bone + ": Enter confirms it, or drag it",
+            "plan.landmark_confirm"};
   if (has_unconfirmed_grid(model, here))
     return {"Look at the " + bone + "'s landmarks, which nobody has confirmed: press L",
             "plan.landmarks_page"};

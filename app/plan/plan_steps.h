@@ -21,9 +21,10 @@ struct NextStep {
 struct StepState {
   tunnels::TunnelKey key = bones::BoneKind::Femur;  // that is worked on
   bool places_entry = false;
-  bool shows_landmarks = false;  // whose keys P and Enter are then
+  bool shows_landmarks = false;  // whose keys P, Enter and the arrows are then
   bool is_read_only = false, is_in_conflict = false;
   bool makes_default = false;  // the default plan is on its way
+  bool is_unsaved = false;     // it could not be saved
 };
 
 // The first of what is missing: an answer to a conflict, an entry, a tunnel that can be drilled, the other

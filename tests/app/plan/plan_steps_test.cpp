@@ -67,11 +67,28 @@ TEST(NextStep, ADefaultPlanOnItsWayIsWaitedFor) {
   EXPECT_EQ(next.action, "");
 }
 
+// Where the landmarks are looked at already, the key that opened them is not asked for again.
+TEST(NextStep, OnTheLandmarksPageTheyAreConfirmed) {
+  cases::Case proposed = knee();
+  for (const auto& [kind, marks] : proposed.landmarks)
+    for (const auto& [name, position] : marks)
+      proposed.landmark_states[kind][name] = landmarks::LandmarkState::Proposed;
+  const open_case::PlanModel model(proposed);
+  EXPECT_EQ(next_step(model, {}).action, "plan.landmarks_page");
+  const NextStep there = next_step(model, {.shows_landmarks = true});
+  EXPECT_EQ(there.action, "plan.landmark_confirm");
+  EXPECT_EQ(there.text, "Look at each landmark of the femur: Enter confirms it, or drag it");
+}
+
 // What stands against every edit is named first.
 TEST(NextStep, ReadOnlyAndConflictAreNamedFirst) {
   const open_case::PlanModel model(knee());
-  EXPECT_NE(next_step(model, {.is_read_only = true}).text.find("Look only"), std::string::npos);
+  // Another program has it open, or its folder cannot be written: which, the plan's own line says.
+  EXPECT_EQ(next_step(model, {.is_read_only = true}).text,
+            "Look only: why the plan cannot be changed is said below");
   EXPECT_EQ(next_step(model, {.is_in_conflict = true}).action, "plan.take_theirs");
+  EXPECT_TRUE(next_step(model, {.is_unsaved = true}).text.starts_with("The plan is not saved"))
+      << "not to theatre";
 }
 
 // One bundle alone is half a plan; a pair that runs into each other is to be mended.

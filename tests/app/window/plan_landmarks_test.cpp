@@ -46,6 +46,27 @@ TEST_F(PlanLandmarks, AClickForAnEntryMovesNoLandmark) {
   EXPECT_EQ(app.state("landmark"), "plateau_anterior") << "the first of this bone's";
 }
 
+// On this page the arrows go through the list, which follows; they aimed the tunnel, which nothing there
+// shows.
+TEST_F(PlanLandmarks, TheArrowsGoThroughTheListAndMoveNoTunnel) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  app.press("l");
+  ASSERT_TRUE(app.wait_for_state("landmark", "blumensaat_anterior"));
+  app.press("Down");
+  ASSERT_TRUE(app.wait_for_state("landmark", "blumensaat_posterior"));
+  app.press("Up");
+  ASSERT_TRUE(app.wait_for_state("landmark", "blumensaat_anterior"));
+  app.press("Up");  // round: the last of the list
+  ASSERT_TRUE(app.wait_for_state("landmark", "native_footprint"));
+  EXPECT_TRUE(app.wait_for_widget("plan.landmark.native_footprint", 5)) << "scrolled to";
+  for (const char* key : {"Left", "Right", "shift+Up", "equal", "Delete"}) app.press(key);
+  app.press("c");
+  ASSERT_TRUE(app.wait_for_state("landmark", ""));
+  EXPECT_EQ(app.state("undo"), "") << "no tunnel was moved";
+}
+
 // A click places, also where a landmark lies that could be taken hold of.
 TEST_F(PlanLandmarks, ALandmarkIsPlacedWhereOneLies) {
   const VirtualDisplay display(1280, 720);

@@ -304,6 +304,28 @@ TEST_F(PlanWindow, AVersionIsKeptAndTakenAgain) {
   EXPECT_TRUE(app.wait_for_state("diameter_mm", fixed(before_mm + 0.5)));
 }
 
+// Steps that were taken back stand in the list below the one that the plan is at, and a click does them
+// again; the list is scrolled by the wheel.
+TEST_F(PlanWindow, AStepThatWasTakenBackIsDoneAgainByAClick) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  app.press("h");
+  constexpr int kSteps = 14;  // more than there is room for
+  for (int i = 0; i < kSteps; ++i) {
+    app.press(i % 2 == 0 ? "equal" : "Up");
+    ASSERT_TRUE(app.wait_for_state(
+        "undo", i % 2 == 0 ? "Change the diameter of the femoral tunnel" : "Aim the femoral tunnel"));
+  }
+  ASSERT_TRUE(app.wait_for_widget("plan.step." + std::to_string(kSteps), 5));
+  app.press("ctrl+z");
+  ASSERT_TRUE(app.wait_for_state("redo", "Aim the femoral tunnel"));
+  const std::string undone = "plan.step." + std::to_string(kSteps);
+  ASSERT_TRUE(app.wait_for_widget(undone, 5)) << "in sight, though it was undone";
+  app.click(undone);
+  EXPECT_TRUE(app.wait_for_state("redo", ""));
+}
+
 // Hazard 46: what spoke against the femur is said on its page, not on the tibia's; and in the radiograph,
 // where no entry can be placed, P goes back to the bones.
 TEST_F(PlanWindow, Hazard46WhatSpokeAgainstTheBoneStandsByItsChecks) {
