@@ -20,6 +20,7 @@ constexpr double kSpacing_mm = 0.5, kFirst_mm = 2.5, kLeast_mm = 6;
 constexpr std::ptrdiff_t kBeside = 10;
 // Of the rings at which a station is looked at, each as wide in area.
 constexpr int kRings = 3;
+constexpr double kLeastBlur_mm = 0.1;
 
 double station_mm(std::ptrdiff_t station) { return kFirst_mm + kSpacing_mm * static_cast<double>(station); }
 
@@ -133,21 +134,26 @@ double AlongBore::end_sigma_mm(const TellingRing& ring, double end_mm) const {
   constexpr std::size_t kLeastRuns = 6;
   constexpr double kNotFound_mm = 5;
   const std::vector<double> seen = greys(passage_.entry_mm, ring);
-  // The last station before what the blur brings across the end.
+  // The last station before the end, and the first that the blur brings anything across it to.
   const auto end = static_cast<std::ptrdiff_t>(std::ceil((end_mm - kFirst_mm) / kSpacing_mm)) - 1;
-  if (end < 1 || end + kBeside > std::ssize(seen)) return std::numeric_limits<double>::infinity();
+  const std::ptrdiff_t from = end - static_cast<std::ptrdiff_t>(std::ceil(2 * blur_mm_ / kSpacing_mm));
+  if (from < 1 || end + kBeside > std::ssize(seen)) return std::numeric_limits<double>::infinity();
+  const double graft_hu = median_of(seen, end - 2 * kBeside, from);
   // No brighter than the wall tells: of marrow that varies the step that is found is one of the greater ones.
-  const double beyond_hu = std::min(median_of(seen, end + 2, end + 2 + kBeside),
-                                    median_of(seen, end - 2 * kBeside, end) + contrast_hu_);
+  const double beyond_hu = std::min(median_of(seen, end + 2, end + 2 + kBeside), graft_hu + contrast_hu_);
   const auto runs = marrow_beside(ring, end_mm);
   if (runs.size() < kLeastRuns) return std::numeric_limits<double>::infinity();
   double sum = 0;
   for (const std::vector<double>& run : runs) {
-    std::vector<double> tried(seen.begin(), seen.begin() + end);
-    for (const double hu : run)
-      if (tried.size() < seen.size()) tried.push_back(beyond_hu + hu);
+    // Within the blur marrow that is a little darker or brighter moves the place half-way up.
+    std::vector<double> tried(seen.begin(), seen.begin() + from);
+    for (const double hu : run) {
+      if (tried.size() == seen.size()) break;
+      const double past = (station_mm(std::ssize(tried)) - end_mm) / std::max(kLeastBlur_mm, blur_mm_);
+      tried.push_back(graft_hu + 0.5 * std::erfc(-past * M_SQRT1_2) * (beyond_hu + hu - graft_hu));
+    }
     const auto found = step_in(std::move(tried));
-    const double off_mm = found ? *found - (station_mm(end) - 0.5 * kSpacing_mm) : kNotFound_mm;
+    const double off_mm = found ? *found - end_mm : kNotFound_mm;
     sum += off_mm * off_mm;
   }
   return std::sqrt(sum / static_cast<double>(runs.size()));

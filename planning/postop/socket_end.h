@@ -16,15 +16,18 @@ struct TellingRing {
 
 class AlongBore {
  public:
-  // `contrast_hu`: what the bore's wall stands out by. All must outlive it.
+  // `contrast_hu`: what the bore's wall stands out by; `blur_mm`: sigma that it is seen through. All must
+  // outlive it.
   AlongBore(const images::VolumeSampler& postop, const geometry::RigidTransform& postop_from_plan,
-            const geometry::Surface& bone, const Passage& passage, double radius_mm, double contrast_hu)
+            const geometry::Surface& bone, const Passage& passage, double radius_mm, double contrast_hu,
+            double blur_mm)
       : postop_(postop),
         postop_from_plan_(postop_from_plan),
         bone_(bone),
         passage_(passage),
         radius_mm_(radius_mm),
-        contrast_hu_(contrast_hu) {}
+        contrast_hu_(contrast_hu),
+        blur_mm_(blur_mm) {}
 
   // How far from the entry a bore ends that does not come out: where the grey of the ring first steps up by
   // half of the contrast. nullopt when no step is seen that stands out of the noise.
@@ -40,7 +43,7 @@ class AlongBore {
   const geometry::RigidTransform& postop_from_plan_;
   const geometry::Surface& bone_;
   Passage passage_;
-  double radius_mm_, contrast_hu_;
+  double radius_mm_, contrast_hu_, blur_mm_;
 
   [[nodiscard]] std::vector<double> greys(const Eigen::Vector3d& from, const TellingRing& ring) const;
   [[nodiscard]] std::optional<double> step_in(std::vector<double> grey) const;

@@ -93,8 +93,13 @@ AlongBore TunnelEnds::along(const TunnelFit& fit, const Passage& passage) const 
   std::vector<double> contrasts;
   for (const Stretch& stretch : fit.stretches)
     if (stretch.seen_share > kLeastSeen) contrasts.push_back(stretch.outside_hu - stretch.inside_hu);
-  return {sampler_, postop_from_plan_, bone_,
-          passage,  fit.radius_mm,     geometry::median(std::move(contrasts), 0)};
+  return {sampler_,
+          postop_from_plan_,
+          bone_,
+          passage,
+          fit.radius_mm,
+          geometry::median(std::move(contrasts), 0),
+          fit.profile.blur_mm};
 }
 
 // Of a bore that comes out: by how far its ends on the bone's surface move with the axis.
