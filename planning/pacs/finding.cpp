@@ -1,9 +1,11 @@
 #include "planning/pacs/finding.h"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 
 #include "planning/geometry/error.h"
+#include "planning/images/dicom_file.h"
 
 namespace arthronaut::pacs {
 
@@ -67,6 +69,13 @@ void put_key(DcmDataset& query, const DcmTagKey& key, const std::string& value) 
   if (outcome.bad())
     throw InvalidInput(std::string("the search for ") + DcmTag(key).getTagName() + " \"" + value +
                        "\" cannot be asked: " + outcome.text());
+}
+
+int count_of(DcmItem& answer, const DcmTagKey& key) {
+  const std::string text = images::text_of(answer, key);
+  int value = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() && value >= 0 ? value : -1;
 }
 
 FindOutcome send_find(Association& association, DcmDataset& query, int most,

@@ -29,5 +29,7 @@ struct FindOutcome {
 
 // Sets the value, in UTF-8 where it is not ASCII.
 void put_key(DcmDataset& query, const DcmTagKey& key, const std::string& value);
+// -1 where the answer does not say it.
+[[nodiscard]] int count_of(DcmItem& answer, const DcmTagKey& key);
 
 }  // namespace arthronaut::pacs

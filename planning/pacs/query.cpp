@@ -1,7 +1,6 @@
 #include "planning/pacs/query.h"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <map>
 
@@ -19,13 +18,6 @@ using images::text_of;
 using images::utf8_text_of;
 
 constexpr int kMostSeriesOfAStudy = 10000, kMostSeries = 100000;
-
-int count_of(DcmItem& item, const DcmTagKey& key) {
-  const std::string text = text_of(item, key);
-  int value = -1;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && value >= 0 ? value : -1;
-}
 
 std::vector<std::string> values_of(const std::string& text) {
   std::vector<std::string> values;

@@ -110,6 +110,7 @@ class Retrieval {
       series_.finish();
       summary.message =
           files::format("%d images of the series are in ", summary.image_count) + request_.folder.string();
+      if (const std::string refusal = series_.refusal(); !refusal.empty()) summary.message += "; " + refusal;
     } else {
       series_.leave();
     }
@@ -128,6 +129,10 @@ class Retrieval {
           to_text(peer_) + ": has no series " + request_.series_uid +
           (request_.study_uid.empty() ? "; if it should, name its study too" : " in that study");
       return Outcome::UnknownSeries;
+    }
+    if (images_.is_cut_off()) {
+      summary.message = to_text(peer_) + ": " + images_.cut_off_words();
+      return Outcome::Incomplete;
     }
     series_.expect({.study_uid = images_.study_uid,
                     .patient_id = images_.patient_id,
@@ -180,7 +185,9 @@ class Retrieval {
                          total());
   }
 
-  [[nodiscard]] int total() const { return static_cast<int>(images_.class_by_uid.size()); }
+  [[nodiscard]] int total() const {
+    return std::max(static_cast<int>(images_.class_by_uid.size()), images_.said_count);
+  }
 
   [[nodiscard]] std::vector<std::string> missing() const {
     std::vector<std::string> uids;
@@ -189,9 +196,10 @@ class Retrieval {
     return uids;
   }
 
-  // A peer that lists no images is believed when it says that it has sent all.
+  // A peer that lists no images is believed when it says that it has sent all, unless it counts more.
   [[nodiscard]] bool is_whole() const {
-    return images_.class_by_uid.empty() ? has_sent_all_ && series_.count() > 0 : missing().empty();
+    if (!images_.class_by_uid.empty()) return missing().empty();
+    return has_sent_all_ && series_.count() > 0 && series_.count() >= images_.said_count;
   }
 
   void report_progress() const {

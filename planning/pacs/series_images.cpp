@@ -1,5 +1,8 @@
 #include "planning/pacs/series_images.h"
 
+#include <algorithm>
+
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/images/dicom_file.h"
 #include "planning/pacs/finding.h"
@@ -35,6 +38,7 @@ bool ask_both(Association& association, const Peer& peer, const std::string& ser
   put_key(series, DCM_PatientID, "");
   put_key(series, DCM_StudyInstanceUID, study_uid);
   put_key(series, DCM_SeriesInstanceUID, series_uid);
+  put_key(series, DCM_NumberOfSeriesRelatedInstances, "");
   const auto take_series = [&](DcmDataset& answer) {
     if (text_of(answer, DCM_SeriesInstanceUID) != series_uid) return;
     const std::string study = text_of(answer, DCM_StudyInstanceUID);
@@ -42,6 +46,7 @@ bool ask_both(Association& association, const Peer& peer, const std::string& ser
     found.is_known = true;
     found.study_uid = study;
     found.patient_id = utf8_text_of(answer, DCM_PatientID);
+    found.said_count = std::max(found.said_count, count_of(answer, DCM_NumberOfSeriesRelatedInstances));
   };
   if (!ask(association, peer, series, take_series)) return false;
   if (!found.is_known) return true;
@@ -65,6 +70,13 @@ bool ask_both(Association& association, const Peer& peer, const std::string& ser
 }
 
 }  // namespace
+
+std::string SeriesImages::cut_off_words() const {
+  return files::format(
+      "says that the series has %d images, and lists %d: nothing was fetched, as the others cannot be asked "
+      "for. Whoever keeps it may let it list more at once, or count the series anew",
+      said_count, static_cast<int>(class_by_uid.size()));
+}
 
 SeriesImages ask_series_images(const Peer& peer, const ConnectionOptions& connection,
                                const std::string& series_uid, const std::string& study_uid,

@@ -93,27 +93,15 @@ bool add_series(HttpClient& client, const FindKeys& keys, int most, bool& is_cut
   return !was_stopped;
 }
 
-}  // namespace
-
-std::string web_text(const json& object, const char* tag) {
-  if (!object.contains(tag) || !object[tag].is_object() || !object[tag].contains("Value")) return "";
-  const json& values = object[tag]["Value"];
-  if (!values.is_array() || values.empty()) return "";
-  const json& value = values.front();
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_integer()) return std::to_string(value.get<std::int64_t>());
-  if (value.is_object() && value.contains("Alphabetic") && value["Alphabetic"].is_string())
-    return value["Alphabetic"].get<std::string>();
-  return "";
+HttpAnswer answer_to_search(HttpClient& client, const std::string& path) {
+  return client.perform({.path = path,
+                         .accept = "application/dicom+json",
+                         .most_bytes = kLargestList_bytes,
+                         .complaint = "answers a search with more than 64 MB"});
 }
 
-json web_objects(HttpClient& client, const std::string& path, bool& was_stopped) {
-  const HttpAnswer answer = client.perform({.path = path,
-                                            .accept = "application/dicom+json",
-                                            .most_bytes = kLargestList_bytes,
-                                            .complaint = "answers a search with more than 64 MB"});
-  was_stopped = answer.was_stopped;
-  if (was_stopped || answer.status == 204) return json::array();
+json objects_in(HttpClient& client, const HttpAnswer& answer) {
+  if (answer.was_stopped || answer.status == 204) return json::array();
   if (answer.status == 404) client.fail("has no DICOMweb search there (HTTP 404)");
   if (answer.status != 200) client.fail("answers a search with HTTP " + std::to_string(answer.status));
   json objects;
@@ -130,6 +118,51 @@ json web_objects(HttpClient& client, const std::string& path, bool& was_stopped)
   for (const json& object : objects)
     if (!object.is_object()) client.fail("lists what is no object");
   return objects;
+}
+
+// Servers end a list at a maximum of theirs, whatever limit is asked for: the rest is asked for page by page,
+// until all that the server counts is listed, or a page brings nothing new. One that refuses pages has none.
+void list_images(HttpClient& client, const std::string& path, SeriesImages& found) {
+  std::size_t offset = 0;
+  for (bool is_new = true; is_new;) {
+    const std::string page = offset > 0 ? "&offset=" + std::to_string(offset) : "";
+    const HttpAnswer answer = answer_to_search(client, path + page);
+    found.was_stopped = answer.was_stopped;
+    const bool is_no_page = offset > 0 && answer.status >= 400 && answer.status < 500;
+    if (found.was_stopped || is_no_page) return;
+    is_new = offset == 0;
+    const json objects = objects_in(client, answer);
+    for (const json& object : objects) {
+      const std::string uid = web_text(object, "00080018");
+      if (is_uid(uid))
+        is_new |= found.class_by_uid.insert_or_assign(uid, web_text(object, "00080016")).second;
+      else if (offset == 0)
+        ++found.nameless_count;
+    }
+    if (found.class_by_uid.size() > kMostImages) client.fail("lists more than 100000 images for one series");
+    if (static_cast<int>(found.class_by_uid.size()) == found.said_count) return;
+    offset += objects.size();
+  }
+}
+
+}  // namespace
+
+std::string web_text(const json& object, const char* tag) {
+  if (!object.contains(tag) || !object[tag].is_object() || !object[tag].contains("Value")) return "";
+  const json& values = object[tag]["Value"];
+  if (!values.is_array() || values.empty()) return "";
+  const json& value = values.front();
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_integer()) return std::to_string(value.get<std::int64_t>());
+  if (value.is_object() && value.contains("Alphabetic") && value["Alphabetic"].is_string())
+    return value["Alphabetic"].get<std::string>();
+  return "";
+}
+
+json web_objects(HttpClient& client, const std::string& path, bool& was_stopped) {
+  const HttpAnswer answer = answer_to_search(client, path);
+  was_stopped = answer.was_stopped;
+  return objects_in(client, answer);
 }
 
 double echo(const WebServer& server, const ConnectionOptions& connection, const std::stop_token& stop) {
@@ -197,27 +230,21 @@ SeriesImages ask_web_series_images(HttpClient& client, const std::string& series
   SeriesImages found;
   std::string query;
   append(query, "SeriesInstanceUID", series_uid);
-  append(query, "includefield", "00100020");
+  for (const char* tag : {"00100020", "00201209"}) append(query, "includefield", tag);
   const std::string series = study_uid.empty() ? "/series" : "/studies/" + study_uid + "/series";
   for (const json& object : web_objects(client, series + query, found.was_stopped)) {
     if (web_text(object, "0020000E") != series_uid) continue;
     found.is_known = true;
     found.study_uid = web_text(object, "0020000D");
     found.patient_id = web_text(object, "00100020");
+    found.said_count = std::max(found.said_count, count_of(object, "00201209"));
   }
   if (found.study_uid.empty()) found.study_uid = study_uid;
   if (!found.is_known || found.was_stopped) return found;
   if (!is_uid(found.study_uid)) client.fail("does not say which study the series is of; name it");
   const std::string path = "/studies/" + found.study_uid + "/series/" + series_uid +
                            "/instances?limit=" + std::to_string(kMostImages + 1);
-  for (const json& object : web_objects(client, path, found.was_stopped)) {
-    const std::string uid = web_text(object, "00080018");
-    if (is_uid(uid))
-      found.class_by_uid[uid] = web_text(object, "00080016");
-    else
-      ++found.nameless_count;
-  }
-  if (found.class_by_uid.size() > kMostImages) client.fail("lists more than 100000 images for one series");
+  list_images(client, path, found);
   if (found.nameless_count > 0)
     client.fail("lists " + std::to_string(found.nameless_count) +
                 " images of the series without a valid UID");

@@ -168,6 +168,12 @@ RetrieveSummary retrieve_series(const WebServer& server, const ConnectionOptions
                         (request.study_uid.empty() ? "; if it should, name its study too" : " in that study");
       return summary;
     }
+    if (!images.was_stopped && images.is_cut_off()) {
+      series.leave();
+      summary.outcome = RetrieveSummary::Outcome::Incomplete;
+      summary.message = server.url + ": " + images.cut_off_words();
+      return summary;
+    }
     series.expect({.study_uid = images.study_uid,
                    .patient_id = images.patient_id,
                    .class_by_uid = images.class_by_uid});

@@ -102,9 +102,10 @@ TEST(PacsHostile, APeerThatTricklesIsGivenUp) {
 // Lists one image, and sends what the test made of it.
 class Liar {
  public:
-  explicit Liar(std::function<void(DcmDataset&)> change, int copies = 1)
+  explicit Liar(std::function<void(DcmDataset&)> change, int copies = 1, bool changes_each = false)
       : change_(std::move(change)),
         copies_(copies),
+        changes_each_(changes_each),
         peer_([this](Request& request) { return serve(request); }) {
     test::DicomSeriesForm form;
     form.patient.id = kPatient;
@@ -116,6 +117,7 @@ class Liar {
     return retrieve_series(peer_.peer(), quick_connection(), {.series_uid = kSeries, .folder = folder});
   }
   std::atomic<int> accepted = 0;
+  std::atomic<int> said_count = 0;
 
  private:
   bool serve(Request& request) {
@@ -126,6 +128,8 @@ class Liar {
       answer.putAndInsertString(DCM_SeriesInstanceUID, kSeries);
       answer.putAndInsertString(DCM_SOPInstanceUID, "1.2.3.0");
       answer.putAndInsertString(DCM_SOPClassUID, UID_CTImageStorage);
+      if (said_count > 0)
+        answer.putAndInsertString(DCM_NumberOfSeriesRelatedInstances, std::to_string(said_count).c_str());
       return answer_find(request, &answer, kPending) && answer_find(request, nullptr, STATUS_Success);
     }
     if (request.message.CommandField != DIMSE_C_GET_RQ) return true;
@@ -135,6 +139,7 @@ class Liar {
     file.getDataset()->putAndInsertString(DCM_SOPInstanceUID, "1.2.3.0");
     change_(*file.getDataset());
     for (int i = 0; i < copies_; ++i) {
+      if (i > 0 && changes_each_) change_(*file.getDataset());
       const unsigned status = test::store(request, *file.getDataset());
       if (status == 0xFFFF) return false;
       if (status == 0) ++accepted;
@@ -146,6 +151,7 @@ class Liar {
   const test::TemporaryFolder made_;
   const std::function<void(DcmDataset&)> change_;
   const int copies_;
+  const bool changes_each_;
   const HostilePeer peer_;
 };
 
@@ -171,6 +177,35 @@ TEST(PacsHostile, WhatWasNotAskedForIsRefused) {
   const test::TemporaryFolder got;
   const Liar honest([](DcmDataset&) {});
   EXPECT_TRUE(honest.got(got / "scan").is_usable());
+}
+
+TEST(PacsHostile, ASeriesOfMoreImagesThanItListsIsNotWhole) {
+  const test::TemporaryFolder got;
+  Liar short_list([](DcmDataset&) {});
+  short_list.said_count = 4;
+  const auto summary = short_list.got(got / "scan");
+  EXPECT_EQ(summary.outcome, RetrieveSummary::Outcome::Incomplete);
+  EXPECT_THAT(summary.message,
+              HasSubstr("says that the series has 4 images, and lists 1: nothing was fetched"));
+  EXPECT_EQ(short_list.accepted, 0);
+  EXPECT_THAT(got.names(), ElementsAre());
+  short_list.said_count = 1;
+  EXPECT_TRUE(short_list.got(got / "scan").is_usable());
+}
+
+// Where it counts no images, what it sends beyond its list is told.
+TEST(PacsHostile, WhatIsSentBeyondTheListIsToldOfAWholeSeries) {
+  const test::TemporaryFolder got;
+  int sent = 0;
+  const Liar liar(
+      [&](DcmDataset& image) {
+        if (sent++ > 0) image.putAndInsertString(DCM_SOPInstanceUID, "1.2.3.99");
+      },
+      2, true);
+  const auto summary = liar.got(got / "scan");
+  EXPECT_EQ(summary.outcome, RetrieveSummary::Outcome::Whole);
+  EXPECT_THAT(summary.message,
+              HasSubstr("1 images that it sent were refused: image 1.2.3.99 was not asked for"));
 }
 
 TEST(PacsHostile, APeerThatGoesOnSendingItIsGivenUp) {

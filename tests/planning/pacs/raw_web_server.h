@@ -1,4 +1,4 @@
-// Answers every connection with the same bytes, on loopback.
+// Answers every connection with the bytes that the test says, on loopback.
 #pragma once
 
 #include <arpa/inet.h>
@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -19,6 +20,9 @@ class RawWebServer {
  public:
   // `filler`: so many blanks follow the answer.
   explicit RawWebServer(std::string answer, std::size_t filler = 0)
+      : RawWebServer([answer = std::move(answer)](const std::string&) { return answer; }, filler) {}
+  // `answer`: to the request, of which the first line is enough for most.
+  explicit RawWebServer(std::function<std::string(const std::string& request)> answer, std::size_t filler = 0)
       : answer_(std::move(answer)),
         filler_(filler),
         port_(free_port()),
@@ -47,8 +51,10 @@ class RawWebServer {
     for (int caller = ::accept(door_, nullptr, nullptr); caller >= 0;
          caller = ::accept(door_, nullptr, nullptr)) {
       char request[4096];
-      bool goes_on = ::recv(caller, request, sizeof(request), 0) > 0 &&
-                     ::send(caller, answer_.data(), answer_.size(), MSG_NOSIGNAL) > 0;
+      const ssize_t length = ::recv(caller, request, sizeof(request), 0);
+      const std::string answer =
+          length > 0 ? answer_(std::string(request, static_cast<std::size_t>(length))) : "";
+      bool goes_on = length > 0 && ::send(caller, answer.data(), answer.size(), MSG_NOSIGNAL) > 0;
       for (std::size_t sent = 0; goes_on && sent < filler_; sent += blanks.size())
         goes_on = ::send(caller, blanks.data(), blanks.size(), MSG_NOSIGNAL) > 0;
       // What is closed before all that it was sent is read breaks off for the other one, answered or not.
@@ -59,7 +65,7 @@ class RawWebServer {
     }
   }
 
-  const std::string answer_;
+  const std::function<std::string(const std::string&)> answer_;
   const std::size_t filler_;
   const int port_, door_;
   std::jthread thread_;

@@ -256,6 +256,80 @@ TEST_F(PacsWeb, BoundsWhatAServerCanDo) {
   EXPECT_THAT(failure("HTTP/1.1 503 Busy\r\nContent-Length: 0\r\n\r\n"), HasSubstr("HTTP 503"));
 }
 
+std::string web_answer(const std::string& type, const std::string& body,
+                       const std::string& status = "200 OK") {
+  return "HTTP/1.1 " + status + "\r\nConnection: close\r\nContent-Type: " + type +
+         "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+}
+
+// Lists two images at a time, whatever is asked for.
+class ListsTwo {
+ public:
+  ListsTwo(const fs::path& made, bool has_pages, std::size_t said) : has_pages_(has_pages), said_(said) {
+    for (const SentFile& file : files_to_send({made})) {
+      std::ifstream stream(file.file, std::ios::binary);
+      images_.emplace_back(file.sop_instance_uid, std::string((std::istreambuf_iterator<char>(stream)), {}));
+    }
+  }
+  [[nodiscard]] std::string answer(const std::string& request) const {
+    const std::string line = request.substr(0, request.find("\r\n"));
+    const test::DicomSeriesForm form;
+    if (const auto at = line.find("/instances/"); at != std::string::npos) {
+      for (const auto& [uid, bytes] : images_)
+        if (line.find(uid + " ", at) != std::string::npos)
+          return web_answer("multipart/related; type=\"application/dicom\"; boundary=cut",
+                            "--cut\r\nContent-Type: application/dicom\r\n\r\n" + bytes + "\r\n--cut--");
+      return web_answer("text/plain", "", "404 Not Found");
+    }
+    if (line.find("/instances") == std::string::npos)
+      return list("{" + value("0020000E", form.origin.series_uid) + "," +
+                  value("0020000D", form.origin.study_uid) + ",\"00201209\":{\"vr\":\"IS\",\"Value\":[" +
+                  std::to_string(said_) + "]}}");
+    const auto at = line.find("offset=");
+    if (at != std::string::npos && !has_pages_) return web_answer("text/plain", "", "400 Bad Request");
+    std::string objects;
+    const std::size_t from = at == std::string::npos ? 0 : std::stoul(line.substr(at + 7));
+    for (std::size_t i = from; i < std::min(from + 2, images_.size()); ++i)
+      objects += (objects.empty() ? "{" : ",{") + value("00080018", images_[i].first) + "}";
+    return list(objects);
+  }
+  [[nodiscard]] std::size_t count() const { return images_.size(); }
+
+ private:
+  static std::string value(const std::string& tag, const std::string& text) {
+    return "\"" + tag + "\":{\"vr\":\"UI\",\"Value\":[\"" + text + "\"]}";
+  }
+  static std::string list(const std::string& objects) {
+    return web_answer("application/dicom+json", "[" + objects + "]");
+  }
+  const bool has_pages_;
+  const std::size_t said_;
+  std::vector<std::pair<std::string, std::string>> images_;  // UID and file
+};
+
+// A list that the server has cut off is no whole series.
+TEST_F(PacsWeb, AListThatIsCutOffIsPagedOrRefused) {
+  test::write_dicom_series(made_ / "ct", test::ellipsoid_ct());
+  ASSERT_GT(kImageCount, 4);
+  const auto got = [&](bool has_pages, std::size_t said) {
+    const ListsTwo lists(made_ / "ct", has_pages, said);
+    const test::RawWebServer raw([&](const std::string& asked) { return lists.answer(asked); });
+    return retrieve_series(WebServer{raw.url(), {}, {}, {}}, quick_connection(), request());
+  };
+  const RetrieveSummary cut = got(false, kImageCount);
+  EXPECT_EQ(cut.outcome, Outcome::Incomplete);
+  EXPECT_THAT(cut.message, HasSubstr("says that the series has " + std::to_string(kImageCount) +
+                                     " images, and lists 2: nothing was fetched"));
+  EXPECT_EQ(cut.way, "");
+  EXPECT_THAT(got_.names(), ElementsAre());
+  // It counts more than it has.
+  EXPECT_EQ(got(true, kImageCount + 1).outcome, Outcome::Incomplete);
+  EXPECT_THAT(got_.names(), ElementsAre());
+  const RetrieveSummary whole = got(true, kImageCount);
+  EXPECT_EQ(whole.outcome, Outcome::Whole) << whole.message;
+  EXPECT_EQ(whole.image_count, kImageCount);
+}
+
 // What it says of what it was sent may be of any shape: nothing of it is stored, and nothing is thrown.
 TEST_F(PacsWeb, AnAnswerToWhatWasSentMayBeOfAnyShape) {
   test::TemporaryFolder folder;
