@@ -92,14 +92,14 @@ nlohmann::ordered_json json_of(const library::AccuracyChecks& read, const std::s
                               {"spread_mm", check.spread_mm},
                               {"frames", check.frame_count},
                               {"reasons", check.reasons}});
-  json["problems"] = read.problems;
+  json["problems"] = library::problems_of(read, now_utc);
   return json;
 }
 
 void list(Context& context, const ListArguments& arguments) {
   const library::AccuracyChecks read = library::read_accuracy_checks(workstation_library::data_folder());
   const std::string now_utc = files::utc_now();
-  std::vector<std::string> reasons = read.problems;
+  std::vector<std::string> reasons = library::problems_of(read, now_utc);
   if (read.checks.empty()) reasons.emplace_back("accuracy was never checked");
   for (const library::AccuracyDevice& device : library::devices_of(read)) {
     const AccuracyStanding standing = library::accuracy_standing(read.checks, device, now_utc);

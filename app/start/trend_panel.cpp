@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "app/start/case_list.h"
 #include "app/widgets/list_rows.h"
@@ -26,6 +27,7 @@ struct Charted {
   ControlLimits limits;
   std::optional<double> least, greatest;  // limits that hold whatever is usual
   bool begins_at_nought = true;
+  int left_out = 0;  // checks in another medium, or with another ruler
 
   [[nodiscard]] std::string number(double value) const {
     return files::format("%.*f", decimals, value) + unit_text();
@@ -145,13 +147,13 @@ Charted charted_accuracy(std::span<const library::AccuracyCheck> checks,
   Charted charted;
   charted.unit = "mm";
   charted.decimals = 3;
-  charted.points = library::accuracy_trend(checks, device);
-  charted.limits = library::accuracy_standing(checks, device, now_utc).limits;
-  for (const library::AccuracyCheck& check : checks) {
-    if (library::device_of(check) != device) continue;
-    charted.least = check.true_mm - library::kMostDistanceError_mm;
-    charted.greatest = check.true_mm + library::kMostDistanceError_mm;
-  }
+  library::AccuracyTrend trend = library::accuracy_trend(checks, device, now_utc);
+  charted.points = std::move(trend.points);
+  charted.left_out = trend.left_out;
+  const library::AccuracyStanding standing = library::accuracy_standing(checks, device, now_utc);
+  charted.limits = standing.limits;
+  charted.least = standing.true_mm - library::kMostDistanceError_mm;
+  charted.greatest = standing.true_mm + library::kMostDistanceError_mm;
   charted.begins_at_nought = false;
   return charted;
 }
@@ -231,7 +233,10 @@ void CaseList::draw_trends(const widgets::Ui& ui, const widgets::Rect& area) {
     charted = charted_accuracy(accuracy_.checks, device, now_utc);
     words = library::accuracy_standing(accuracy_.checks, device, now_utc).text +
             limits_in_words(charted, std::to_string(library::kLeastForLimits) + " days");
-    if (!accuracy_.problems.empty()) words += ".  " + accuracy_.problems.front();
+    if (charted.left_out > 0)
+      words += files::format("; %d in another medium or with another ruler left out", charted.left_out);
+    if (const auto problems = library::problems_of(accuracy_, now_utc); !problems.empty())
+      words += ".  " + problems.front();
   } else {
     const auto trend = static_cast<Trend>(view_.chart);
     charted =

@@ -69,13 +69,24 @@ AccuracyCheck read_check(const fs::path& file) {
 
 bool is_before(const AccuracyCheck& a, const AccuracyCheck& b) { return a.checked_utc < b.checked_utc; }
 
-// In the order of time, those of a known date alone.
-std::vector<AccuracyCheck> of_device(std::span<const AccuracyCheck> checks, const AccuracyDevice& device) {
+bool is_of_future(const AccuracyCheck& check, const std::string& now_utc) {
+  return check.is_dated && moment_of(check.checked_utc) > moment_of(now_utc);
+}
+
+// In the order of time, those of a known date alone. One of the future, as of a clock that was set wrong
+// once, would stand after every one to come.
+std::vector<AccuracyCheck> of_device(std::span<const AccuracyCheck> checks, const AccuracyDevice& device,
+                                     const std::string& now_utc) {
   std::vector<AccuracyCheck> own;
   for (const AccuracyCheck& check : checks)
-    if (check.is_dated && device_of(check) == device) own.push_back(check);
+    if (check.is_dated && device_of(check) == device && !is_of_future(check, now_utc)) own.push_back(check);
   std::stable_sort(own.begin(), own.end(), is_before);
   return own;
+}
+
+// Air and saline bend the light in other ways, and a ruler of another length is another measure.
+bool is_comparable(const AccuracyCheck& one, const AccuracyCheck& other) {
+  return one.true_mm == other.true_mm && one.medium == other.medium;
 }
 
 }  // namespace
@@ -170,20 +181,26 @@ AccuracyStanding accuracy_standing(std::span<const AccuracyCheck> checks, const 
   using Outcome = AccuracyStanding::Outcome;
   AccuracyStanding standing;
   const std::string name = shown_name(checks, device);
-  const std::vector<AccuracyCheck> own = of_device(checks, device);
+  const std::vector<AccuracyCheck> own = of_device(checks, device, now_utc);
   if (own.empty()) {
-    const bool is_there = std::any_of(checks.begin(), checks.end(),
-                                      [&](const AccuracyCheck& check) { return device_of(check) == device; });
-    if (!is_there) return standing;
+    const auto has = [&](const auto& is_such) {
+      return std::any_of(checks.begin(), checks.end(), [&](const AccuracyCheck& check) {
+        return device_of(check) == device && is_such(check);
+      });
+    };
+    const bool has_undated = has([](const AccuracyCheck& check) { return !check.is_dated; });
+    if (!has_undated && !has([](const AccuracyCheck&) { return true; })) return standing;
     standing.outcome = Outcome::MissingToday;
-    standing.text =
-        name + ": accuracy not checked today; last that of a recorded clip, when recorded unknown";
+    standing.text = name + ": accuracy not checked today; " +
+                    (has_undated ? "last that of a recorded clip, when recorded unknown"
+                                 : "what there is, is dated in the future");
     return standing;
   }
   const AccuracyCheck& last = own.back();
+  standing.true_mm = last.true_mm;
   std::vector<double> before;
   for (std::size_t i = 0; i + 1 < own.size(); ++i)
-    if (own[i].reasons.empty() && own[i].true_mm == last.true_mm) before.push_back(own[i].distance_mm);
+    if (own[i].reasons.empty() && is_comparable(own[i], last)) before.push_back(own[i].distance_mm);
   standing.limits = control_limits(before);
   const std::string figures = mm(last.distance_mm) + " of " + mm(last.true_mm);
   if (!is_same_day(last.checked_utc, now_utc)) {
@@ -241,11 +258,36 @@ AccuracyStanding worst_standing(const AccuracyChecks& checks, const std::string&
   return *worst;
 }
 
-std::vector<TrendPoint> accuracy_trend(std::span<const AccuracyCheck> checks, const AccuracyDevice& device) {
-  std::vector<TrendPoint> points;
-  for (const AccuracyCheck& check : of_device(checks, device))
-    points.push_back({check.checked_utc, check.distance_mm, check.device, "", {}});
-  return points;
+std::vector<std::string> problems_of(const AccuracyChecks& checks, const std::string& now_utc) {
+  std::vector<std::string> problems = checks.problems;
+  for (const AccuracyDevice& device : devices_of(checks)) {
+    int count = 0;
+    std::string day;
+    for (const AccuracyCheck& check : checks.checks) {
+      if (device_of(check) != device || !is_of_future(check, now_utc)) continue;
+      ++count;
+      day = files::local_day(check.checked_utc);
+    }
+    if (count == 0) continue;
+    problems.push_back(
+        shown_name(checks.checks, device) +
+        files::format(": %d %s dated in the future, up to ", count, count == 1 ? "check is" : "checks are") +
+        day + ": not counted; this machine's clock is wrong, or was");
+  }
+  return problems;
+}
+
+AccuracyTrend accuracy_trend(std::span<const AccuracyCheck> checks, const AccuracyDevice& device,
+                             const std::string& now_utc) {
+  AccuracyTrend trend;
+  const std::vector<AccuracyCheck> own = of_device(checks, device, now_utc);
+  for (const AccuracyCheck& check : own) {
+    if (is_comparable(check, own.back()))
+      trend.points.push_back({check.checked_utc, check.distance_mm, check.device, "", {}});
+    else
+      ++trend.left_out;
+  }
+  return trend;
 }
 
 }  // namespace arthronaut::library

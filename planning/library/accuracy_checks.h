@@ -68,7 +68,11 @@ struct AccuracyChecks {
 // "scope A", or "scope A (camera 1f3a9c0e)" where another camera.json has the same name.
 [[nodiscard]] std::string shown_name(std::span<const AccuracyCheck> checks, const AccuracyDevice& device);
 
-// How one device stands today: its last check against its own earlier ones.
+// The files that cannot be read, and which devices have checks that are dated in the future.
+[[nodiscard]] std::vector<std::string> problems_of(const AccuracyChecks& checks, const std::string& now_utc);
+
+// How one device stands today: its last check against its own earlier ones. One that is dated in the future
+// counts for nothing.
 struct AccuracyStanding {
   enum class Outcome {
     NeverChecked,
@@ -78,8 +82,10 @@ struct AccuracyStanding {
     Fine,
   } outcome = Outcome::NeverChecked;
   std::string text = "accuracy was never checked";  // with device, date and figures
-  // Of the reliable checks of a known date before the last one, in mm of the measured distance.
+  // Of the reliable checks of a known date before the last one, with a ruler of the same length in the same
+  // medium, in mm of the measured distance.
   ControlLimits limits;
+  double true_mm = 0;  // of the last check's ruler; 0: none
   [[nodiscard]] bool is_fine() const { return outcome == Outcome::Fine; }
 };
 // Of those checks that are the device's.
@@ -93,9 +99,14 @@ inline constexpr int kKnownDays = 30;
 // 8601.
 [[nodiscard]] bool is_same_day(const std::string& one_utc, const std::string& other_utc);
 
-// The checks of a device as points of a chart: the measured distance. Those that are not reliable are in it:
-// they were measured. Those of an unknown date have no place in it.
-[[nodiscard]] std::vector<TrendPoint> accuracy_trend(std::span<const AccuracyCheck> checks,
-                                                     const AccuracyDevice& device);
+// The checks of a device as points of a chart: the measured distance, with the ruler's length and in the
+// medium of the last one. Those that are not reliable are in it: they were measured. Those of an unknown
+// date, or one in the future, have no place in it.
+struct AccuracyTrend {
+  std::vector<TrendPoint> points;
+  int left_out = 0;  // of another medium or another ruler
+};
+[[nodiscard]] AccuracyTrend accuracy_trend(std::span<const AccuracyCheck> checks,
+                                           const AccuracyDevice& device, const std::string& now_utc);
 
 }  // namespace arthronaut::library

@@ -8,6 +8,7 @@
 #include <ctime>
 #include <fstream>
 
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "tests/temporary_folder.h"
 
@@ -60,7 +61,7 @@ TEST_F(AccuracyChecksTest, AreKeptAndReadInTheOrderOfTime) {
   EXPECT_EQ(read.checks[1].medium, "saline");
   EXPECT_EQ(read.checks[2].frame_count, 120u);
   EXPECT_THAT(devices_of(read), ElementsAre(scope("scope A"), scope("scope B")));
-  EXPECT_EQ(accuracy_trend(read.checks, scope("scope A")).size(), 2u);
+  EXPECT_EQ(accuracy_trend(read.checks, scope("scope A"), "2026-11-23T09:00:00Z").points.size(), 2u);
   struct stat status {};
   ASSERT_EQ(::stat(file.c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777U, 0600U);
@@ -143,6 +144,39 @@ TEST_F(AccuracyChecksTest, AreOutsideByTheirOwnLimitsOrByTheFixedOne) {
   EXPECT_TRUE(accuracy_standing(first, scope("scope A"), "2026-11-23T09:00:00Z").is_fine());
 }
 
+// Light goes another way through air: what is usual there is not usual in saline.
+TEST_F(AccuracyChecksTest, AreComparedWithThoseInTheSameMediumAlone) {
+  std::vector<AccuracyCheck> checks;
+  for (int day = 10; day <= 19; ++day) {
+    checks.push_back(check_of(files::format("2026-11-%dT06:00:00Z", day), day % 2 == 0 ? 10.02 : 10.0));
+    checks.push_back(check_of(files::format("2026-11-%dT07:00:00Z", day), day % 2 == 0 ? 9.96 : 9.94));
+    checks.back().medium = "air";
+  }
+  checks.push_back(check_of("2026-11-23T06:00:00Z", 9.94));
+  const std::string now = "2026-11-23T09:00:00Z";
+  const AccuracyStanding standing = accuracy_standing(checks, scope("scope A"), now);
+  EXPECT_EQ(standing.outcome, Outcome::OutsideLimits) << standing.text;
+  EXPECT_NEAR(standing.limits.center, 10.01, 1e-6);
+  const AccuracyTrend trend = accuracy_trend(checks, scope("scope A"), now);
+  EXPECT_EQ(trend.points.size(), 11U);
+  EXPECT_EQ(trend.left_out, 10);
+}
+
+// A clock that once ran ahead: what it dated hides nothing that was checked since.
+TEST_F(AccuracyChecksTest, OneOfTheFutureIsToldAndHidesNoOther) {
+  const std::string now = "2026-11-23T09:00:00Z";
+  AccuracyChecks read{{check_of("2026-11-23T06:00:00Z", 10.01), check_of("2027-01-23T06:00:00Z", 10.3)}, {}};
+  EXPECT_TRUE(worst_standing(read, now).is_fine()) << worst_standing(read, now).text;
+  EXPECT_EQ(accuracy_trend(read.checks, scope("scope A"), now).points.size(), 1U);
+  EXPECT_THAT(problems_of(read, now),
+              ElementsAre("scope A: 1 check is dated in the future, up to 2027-01-23: not counted; this "
+                          "machine's clock is wrong, or was"));
+  read.checks.erase(read.checks.begin());
+  EXPECT_EQ(worst_standing(read, now).outcome, Outcome::MissingToday);
+  EXPECT_THAT(worst_standing(read, now).text, HasSubstr("what there is, is dated in the future"));
+  EXPECT_THAT(problems_of(read, "2027-01-23T06:00:00Z"), ElementsAre());
+}
+
 // The same pictures once more say nothing new, whatever they are called now.
 TEST_F(AccuracyChecksTest, ARecordedClipCountsOnce) {
   AccuracyCheck recorded = check_of("2026-10-23T06:00:00Z", 10.01);
@@ -172,7 +206,7 @@ TEST_F(AccuracyChecksTest, AClipOfAnUnknownDateIsNotTodays) {
   AccuracyStanding standing = accuracy_standing(checks, scope("scope A"), "2026-11-23T09:00:00Z");
   EXPECT_EQ(standing.outcome, Outcome::MissingToday);
   EXPECT_THAT(standing.text, HasSubstr("of a recorded clip, when recorded unknown"));
-  EXPECT_TRUE(accuracy_trend(checks, scope("scope A")).empty());
+  EXPECT_TRUE(accuracy_trend(checks, scope("scope A"), "2026-11-23T09:00:00Z").points.empty());
   // A live check of today stands beside it.
   checks.push_back(check_of("2026-11-23T05:00:00Z", 10.02));
   standing = accuracy_standing(checks, scope("scope A"), "2026-11-23T09:00:00Z");
