@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <mutex>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "navigation/worker/worker.h"
@@ -94,8 +97,9 @@ struct Player::Thread {
             inbox.publish(told);
           };
           tell(Device(device));
-          while (const auto sound = inbox.next()) {
-            if (is_muted) continue;
+          while (inbox.next()) {
+            const std::optional<Sound> sound = take();
+            if (!sound || is_muted) continue;
             Device opened(device);
             opened.play(samples_of(*sound), [&] { return inbox.stops() || is_muted; });
             tell(opened);
@@ -103,15 +107,30 @@ struct Player::Thread {
           snd_lib_error_set_handler(nullptr);
           snd_config_update_free_global();
         }) {}
+  void ask(Sound sound) {
+    {
+      const std::scoped_lock lock(mutex);
+      if (!waiting || urgency_of(sound) >= urgency_of(*waiting)) waiting = sound;
+    }
+    worker.post({});
+  }
+  std::optional<Sound> take() {
+    const std::scoped_lock lock(mutex);
+    return std::exchange(waiting, std::nullopt);
+  }
+  struct Call {};
+
   std::atomic<bool> is_muted = false;
-  worker::Worker<Sound, std::string> worker;  // last: its thread uses what is above
+  std::mutex mutex;
+  std::optional<Sound> waiting;
+  worker::Worker<Call, std::string> worker;  // last: its thread uses what is above
 };
 
 Player::Player(const std::string& device) : thread_(std::make_unique<Thread>(device)) {}
 Player::~Player() = default;
 
 void Player::play(Sound sound) {
-  if (!thread_->is_muted) thread_->worker.post(sound);
+  if (!thread_->is_muted) thread_->ask(sound);
 }
 void Player::mute(bool on) { thread_->is_muted = on; }
 bool Player::is_muted() const { return thread_->is_muted; }

@@ -18,7 +18,8 @@ class Player {
   Player(const Player&) = delete;
   Player& operator=(const Player&) = delete;
 
-  // From any thread. Nothing while muted; of several that wait the newest is played.
+  // From any thread. Nothing while muted; of several that wait the most urgent is played, of those the
+  // newest.
   void play(Sound sound);
   void mute(bool on);
   [[nodiscard]] bool is_muted() const;

@@ -5,6 +5,22 @@
 
 namespace arthronaut::sounds {
 
+int urgency_of(Sound sound) {
+  switch (sound) {
+    case Sound::Breakout:
+      return 4;
+    case Sound::Doubtful:
+      return 3;
+    case Sound::Lost:
+      return 2;
+    case Sound::Reached:
+      return 1;
+    case Sound::Refused:
+      return 0;
+  }
+  return 0;
+}
+
 std::string_view to_text(Sound sound) {
   switch (sound) {
     case Sound::Lost:

@@ -17,6 +17,8 @@ namespace arthronaut::sounds {
 enum class Sound { Lost, Doubtful, Reached, Breakout, Refused };
 inline constexpr int kSoundCount = 5;
 [[nodiscard]] std::string_view to_text(Sound sound);  // "lost", ...
+// Greater: it is said before the other, as in sound_watch.h.
+[[nodiscard]] int urgency_of(Sound sound);
 
 inline constexpr int kSampleRate = 48'000;
 

@@ -1,9 +1,15 @@
 #include "app/sounds/player.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <fstream>
 #include <iterator>
+#include <thread>
+#include <vector>
 
 #include "tests/temporary_folder.h"
 
@@ -32,6 +38,39 @@ TEST(Player, PlaysTheSamples) {
   ASSERT_GE(played.size(), 2 * samples.size());
   const auto* const as_bytes = reinterpret_cast<const char*>(samples.data());
   EXPECT_TRUE(std::equal(as_bytes, as_bytes + 2 * samples.size(), played.begin()));
+}
+
+// A device that does not take anything yet, as one that still plays: a pipe that nobody reads.
+TEST(Player, OfSeveralThatWaitTheMostUrgentIsPlayed) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path pipe = folder / "played.pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::vector<char> played;
+  {
+    Player player("file:'" + pipe.string() + "',raw");
+    for (const Sound sound : {Sound::Reached, Sound::Breakout, Sound::Lost, Sound::Refused})
+      player.play(sound);
+    const int reader = ::open(pipe.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    ASSERT_GE(reader, 0);
+    std::jthread reading([&](const std::stop_token& stop) {
+      std::vector<char> piece(1 << 16);
+      for (ssize_t count = 0; count > 0 || !stop.stop_requested();) {
+        count = ::read(reader, piece.data(), piece.size());
+        if (count > 0) played.insert(played.end(), piece.begin(), piece.begin() + count);
+        if (count <= 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+    });
+    player.finish();
+    EXPECT_EQ(player.trouble(), "");
+    reading.request_stop();
+    reading.join();
+    ::close(reader);
+  }
+  const std::vector<std::int16_t> samples = samples_of(Sound::Breakout);
+  ASSERT_GE(played.size(), 2 * samples.size());
+  const auto* const as_bytes = reinterpret_cast<const char*>(samples.data());
+  EXPECT_TRUE(std::equal(as_bytes, as_bytes + 2 * samples.size(), played.begin()));
+  EXPECT_LT(played.size(), 2 * samples.size() + 2 * samples_of(Sound::Refused).size()) << "and no other one";
 }
 
 // No device: said as who stands in the theatre would say it, without the system's words, and nothing else
