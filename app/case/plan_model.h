@@ -38,6 +38,10 @@ class PlanModel {
 
   [[nodiscard]] const cases::Case& knee() const { return knee_; }
   [[nodiscard]] bool has_bone(bones::BoneKind kind) const { return bones_.contains(kind); }
+  // Of the whole mesh, see bones::mesh_sha256. Precondition: has_bone(kind).
+  [[nodiscard]] const std::string& mesh_sha256(bones::BoneKind kind) const {
+    return bones_.at(kind).mesh_sha256;
+  }
   // Preconditions of these three: has_bone(kind).
   [[nodiscard]] const geometry::Surface& surface(bones::BoneKind kind) const {
     return *bones_.at(kind).review.surface;

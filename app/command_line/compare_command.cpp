@@ -47,13 +47,24 @@ std::filesystem::path case_around(const std::string& file) {
   return {};
 }
 
+// With one bone alone: what was compared of the other one stands in the same file.
+void refuse_to_drop(const CompareArguments& arguments) {
+  if (arguments.bone.empty() || arguments.output == "-" || !std::filesystem::exists(arguments.output)) return;
+  for (const auto& [key, comparison] : postop::read_achieved_file(arguments.output))
+    if (bones::to_text(key.bone) != arguments.bone)
+      throw InvalidInput(arguments.output, "",
+                         "holds the comparison of the " + std::string(bones::to_text(key.bone)) +
+                             ", which would be lost: leave --bone out, or write another file");
+}
+
 void compare(Context& context, const CompareArguments& arguments) {
   refuse_before_the_work(
       {.read = {arguments.source}, .written = {arguments.output}, .makes = "achieved.json"});
   // What a workstation that has the case open compares goes into the same file.
   cases::CaseLock lock;
-  if (const auto folder = case_around(arguments.output); !folder.empty())
-    lock = cases::lock_or_refuse(folder);
+  const std::filesystem::path case_of_output = case_around(arguments.output);
+  if (!case_of_output.empty()) lock = cases::lock_or_refuse(case_of_output);
+  refuse_to_drop(arguments);
   if (!lock.notice().empty()) context.say(lock.notice() + ".");
   Progress progress("Comparing", 100);
   open_case::PostopQuestion question{arguments.case_folder,
@@ -65,6 +76,10 @@ void compare(Context& context, const CompareArguments& arguments) {
     progress.advance_to(static_cast<long>(100 * share));
   };
   const open_case::PostopAnswer answer = open_case::compare_with_postop(question);
+  // What a case keeps of its own patient stays.
+  if (!case_of_output.empty() && !answer.other_patient.empty())
+    throw InvalidInput(arguments.source, "",
+                       "is of " + answer.other_patient + ": nothing is written into the case; -o elsewhere");
   postop::write_achieved_file(arguments.output, answer.comparisons, answer.places);
   if (arguments.output != "-") {
     for (const auto& [key, comparison] : answer.comparisons) {

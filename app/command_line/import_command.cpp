@@ -116,7 +116,8 @@ void add_import_command(CLI::App& app, Context& context) {
                   "femur or tibia; default: of a mesh by its name, of a CT or a label map both")
       ->check(CLI::IsMember({"femur", "tibia"}));
   sub->add_option("--side", arguments->side,
-                  "left or right; default: by the name of the source, or by the fibula in a CT")
+                  "left or right; default: by the name of the source, by the fibula in a CT, or by the shape "
+                  "of the bones")
       ->check(CLI::IsMember({"left", "right"}));
   sub->add_option("--unit", arguments->unit, "Unit of a mesh's coordinates: mm, cm, m or in")
       ->check(CLI::IsMember({"mm", "cm", "m", "in"}));
@@ -124,7 +125,8 @@ void add_import_command(CLI::App& app, Context& context) {
                   "Axes of a mesh: lps or ras; default: as the file says, else lps")
       ->check(CLI::IsMember({"lps", "ras"}, CLI::ignore_case));
   sub->add_option("--label", arguments->labels,
-                  "Labels of a label map, as in femur=5,tibia=6; default: by the names of its segments")
+                  "Labels of a label map, as in femur=5,tibia=6; default: by the names of its segments, or "
+                  "by their shapes")
       ->check(read_by([](const std::string& text) { (void)importing::labels_from_text(text); }));
   sub->add_option("--threshold", arguments->threshold,
                   "Least value of bone in a grey volume; default for CT: 250 HU, 180 HU for coarse voxels")

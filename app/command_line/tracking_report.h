@@ -16,8 +16,8 @@ namespace arthronaut::command_line {
 // Why the camera of this file, which is tracked with, is not reliable, where the file says so: nor then is
 // what was seen by it.
 [[nodiscard]] std::vector<std::string> camera_doubts(const std::filesystem::path& camera_file);
-// Whether the camera of this file is of the simulated arthroscope. Nobody can tell whether the pictures are of
-// it, too: what that means else is said on standard error, also to those who want no more than errors.
+// Whether the camera of this file is of the simulated arthroscope. Nobody can tell whether the pictures are
+// of it, too: what that means else is said on standard error, also to those who want no more than errors.
 bool warn_of_simulated_camera(const std::filesystem::path& camera_file);
 void say_statistics(const Context& context, const pipeline::ViewStatistics& statistics);
 

@@ -50,6 +50,9 @@ class PaintStore {
   // painting that cannot be read is said by failure(), and nothing is saved over it.
   [[nodiscard]] std::optional<painting::Painting> take_loaded();
   [[nodiscard]] const std::string& failure() const { return failure_; }  // why nothing is loaded, or saved
+  // False where the case is read-only, and where a saved painting is left alone: what is painted then would
+  // be lost.
+  [[nodiscard]] bool may_save() const { return !is_read_only_; }
 
   // The bones that are painted just as the case has them.
   [[nodiscard]] std::vector<bones::BoneKind> unchanged(const painting::Painting& painting) const;

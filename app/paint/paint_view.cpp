@@ -88,7 +88,7 @@ bool PaintView::is_busy() const {
 
 bool PaintView::can_edit() const {
   const BoneMaking::State making = making_.state();
-  return is_ready() && !is_read_only_ &&
+  return is_ready() && !is_read_only_ && store_.may_save() &&
          (making == BoneMaking::State::Idle || making == BoneMaking::State::Done);
 }
 
@@ -236,7 +236,7 @@ void PaintView::make_bones() {
   if (!hint_.empty()) return;
   drop_preview();
   store_.keep_now(*painting_);
-  if (!store_.failure().empty()) return;
+  if (hint_ = store_.failure(); !hint_.empty()) return;
   making_.start(knee_, case_folder_, *image_to_paint(knee_), *painting_, unchanged);
 }
 

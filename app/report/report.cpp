@@ -118,9 +118,8 @@ class Report {
 
   std::vector<Eigen::Vector3d> touched_points() const {
     std::vector<Eigen::Vector3d> points;
-    const auto counts = content_.session ? registration_that_counts(*content_.session) : std::nullopt;
-    if (!counts) return points;
-    const auto bone_from_marker = counts->marker_from_bone.inverse();
+    if (!content_.registration) return points;
+    const auto bone_from_marker = content_.registration->marker_from_bone.inverse();
     for (const auto& p : content_.session->curves()) points.push_back(bone_from_marker * p.position_mm);
     return points;
   }
@@ -266,10 +265,12 @@ void Report::result_section(const operation::AchievedTunnel& achieved) {
 void Report::navigate_page() {
   pages_.begin_page("In theatre");
   for (const auto& [session, reason] : content_.unreadable)
-    pages_.sentence(session.empty() ? "NOT READABLE, and not in this report: a session of this case."
-                                    : "NOT READABLE, and not in this report: the session " + session + " (" +
-                                          reason + ").",
-                    {.bold = true, .ink = kWarning});
+    pages_.sentence(
+        session.empty() ? "NOT READABLE, or not all of it: a session of this case."
+        : content_.session && session == content_.session->header().id
+            ? "NOT ALL of the session " + session + " is readable (" + reason + ")."
+            : "NOT READABLE, and not in this report: the session " + session + " (" + reason + ").",
+        {.bold = true, .ink = kWarning});
   if (!content_.session) {
     pages_.sentence("No session with a registration or a drilled tunnel is recorded in this case.");
     draw_postop_section(pages_, content_);
@@ -278,6 +279,13 @@ void Report::navigate_page() {
   const auto& session = *content_.session;
   const auto& header = session.header();
   const SessionFigures figures = figures_of(session);
+  if (content_.is_of_another_surface)
+    pages_.sentence(
+        "THE CASE HAS ANOTHER SURFACE OF THE " +
+            std::string(header.bone == bones::BoneKind::Femur ? "FEMUR" : "TIBIA") +
+            " than this session was of: where in the bone it was drilled is not told, and nothing of "
+            "it is drawn on the bone.",
+        {.bold = true, .ink = kWarning});
   if (content_.check.outcome == recording::SessionCheck::Outcome::Broken)
     pages_.sentence(
         "NOT AS RECORDED: something of this session was changed or lost since (see Record by its hashes).",
@@ -300,7 +308,7 @@ void Report::navigate_page() {
     rows.push_back({"Guided to the tunnel", guided});
   for (auto& row : safety_rows(session, content_.cut_short)) rows.push_back(std::move(row));
   pages_.table({70, 100}, rows);
-  if (const auto counts = registration_that_counts(session)) registration_section(*counts);
+  if (content_.registration) registration_section(*content_.registration);
   time_line_section(session);
   for (const operation::AchievedTunnel& achieved : content_.achieved) result_section(achieved);
   for (const Content::Earlier& earlier : content_.earlier) {
@@ -317,7 +325,8 @@ void Report::result_pictures() {
   if (content_.session) {
     pages_.continue_as("Result, camera, tools and versions");
     if (!options_.is_deidentified) draw_stills_section(pages_, content_);
-    const Result navigated = {navigated_tunnels(), touched_points()};
+    const Result navigated =
+        content_.is_of_another_surface ? Result{} : Result{navigated_tunnels(), touched_points()};
     pictures(joint_view(), scene::ViewDirection::Lateral, navigated);
     std::string legend = "Blue: as planned.";
     if (!navigated.achieved.empty())

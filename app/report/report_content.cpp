@@ -13,6 +13,7 @@
 #include "navigation/recording/cut_short.h"
 #include "navigation/recording/recording_lock.h"
 #include "navigation/registration/provenance.h"
+#include "planning/bones/mesh_hash.h"
 #include "planning/files/format.h"
 #include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
@@ -55,6 +56,9 @@ ReadSession read_session(const std::filesystem::path& folder) {
 void put(ReadSession read, Content& content) {
   content.session = std::move(read.session);
   content.achieved = std::move(read.achieved);
+  content.registration.reset();
+  unless_unreadable(content.session->folder(), content,
+                    [&] { content.registration = registration_that_counts(*content.session); });
 }
 
 enum class Registration { Found, Tried };
@@ -81,6 +85,13 @@ void take_named(const std::string& name, std::vector<std::filesystem::path>& ses
   put(read_session(sessions.back()), content);
 }
 
+bool is_of_another_surface(const Content& content) {
+  const recording::SessionHeader& header = content.session->header();
+  const auto bone = content.knee.bones.find(header.bone);
+  return bone != content.knee.bones.end() && !header.mesh_sha256.empty() &&
+         header.mesh_sha256 != bones::mesh_sha256(bone->second.mesh);
+}
+
 // The newest of each bundle that is planned and not among the session's own.
 void add_earlier(const std::vector<std::filesystem::path>& sessions, Content& content) {
   if (content.achieved.empty()) return;
@@ -94,8 +105,9 @@ void add_earlier(const std::vector<std::filesystem::path>& sessions, Content& co
         auto achieved = operation::read_achieved_file(file);
         const tunnels::TunnelKey key = achieved.planned.key();
         if (key.bone != bone || !content.knee.plan.tunnels.contains(key) || known.contains(key)) continue;
-        if (recording::RecordedSession(*it).header().source_kind != content.session->header().source_kind)
-          continue;
+        const recording::RecordedSession before(*it);
+        const recording::SessionHeader &then = before.header(), &now = content.session->header();
+        if (then.source_kind != now.source_kind || then.mesh_sha256 != now.mesh_sha256) continue;
         known.insert(key);
         content.earlier.push_back({std::move(achieved), it->filename().string()});
       }
@@ -125,7 +137,8 @@ void add_looked_at(Content& content) {
 bool is_of_the_plan(const Content& content, const tunnels::TunnelKey& key,
                     const postop::AchievedTunnel& found) {
   const auto plan = content.knee.plan.tunnels.find(key);
-  return plan != content.knee.plan.tunnels.end() && postop::is_against(found, plan->second);
+  return plan != content.knee.plan.tunnels.end() && cases::plan_fit(content.knee, key).is_valid() &&
+         postop::is_against(found, plan->second);
 }
 
 void add_places(Content& content) {
@@ -209,9 +222,11 @@ void blank_for_strangers(Content& content) {
 
 std::vector<std::string> shortcomings_of(const Content& content) {
   std::vector<std::string> sentences;
+  const std::string told = content.session ? content.session->header().id : "";
   for (const auto& [session, reason] : content.unreadable)
-    sentences.push_back(session.empty()
-                            ? "a session of this case cannot be read and is not in it"
+    sentences.push_back(session.empty() ? "a session of this case cannot be read, or not all of it"
+                        : session == told
+                            ? "the session " + session + " cannot be read to its end: " + reason
                             : "the session " + session + " cannot be read and is not in it: " + reason);
   if (content.check.outcome == recording::SessionCheck::Outcome::Broken)
     sentences.push_back("the session " + content.session_name + (content.session_name.empty() ? "" : " ") +
@@ -229,7 +244,7 @@ bool has_proposed_grid(const Content& content, bones::BoneKind bone) {
 std::optional<postop::AchievedPlace> place_of(const Content& content,
                                               const operation::AchievedTunnel& achieved) {
   const bones::BoneKind bone = achieved.planned.bone;
-  if (!content.review->has_bone(bone)) return std::nullopt;
+  if (!content.review->has_bone(bone) || content.is_of_another_surface) return std::nullopt;
   const double depth_mm = achieved.depth_mm.value_or(std::numeric_limits<double>::infinity());
   return postop::place_of(achieved.measured, depth_mm, achieved.planned,
                           content.review->bone(bone).surroundings,
@@ -279,6 +294,8 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
                   .session = nullptr,
                   .session_name = {},
                   .started_utc = {},
+                  .registration = {},
+                  .is_of_another_surface = false,
                   .cut_short = {},
                   .achieved = {},
                   .earlier = {},
@@ -307,6 +324,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   }
   plan_review::propose_landmarks(content.knee, plan_review::Proposing::WithoutGrid);
   content.review = std::make_unique<const plan_review::CaseReview>(content.knee);
+  content.is_of_another_surface = content.session != nullptr && is_of_another_surface(content);
   add_earlier(sessions, content);
   add_postoperative(content);
   add_places(content);

@@ -33,6 +33,10 @@ struct Content {
   std::unique_ptr<recording::RecordedSession> session;
   // Of `session`, as they are told: for strangers empty, as is every name of a session below.
   std::string session_name = {}, started_utc = {};
+  // Of `session`, the one that counts; nullopt, too, where it cannot be read, which `unreadable` then says.
+  std::optional<registration::RegistrationSummary> registration = {};
+  // The case has another surface of its bone by now: nothing of it is drawn there, or measured against it.
+  bool is_of_another_surface = false;
   std::string cut_short = {};                       // why its record is not whole; empty: it is
   std::vector<operation::AchievedTunnel> achieved;  // in `session`
   // Tunnels of other bundles of that bone, drilled in sessions before it: after each start of a source there
@@ -70,7 +74,7 @@ struct Content {
 [[nodiscard]] std::vector<std::string> shortcomings_of(const Content& content);
 // Whether percentages and axes of this bone follow from landmarks of which nobody has looked at all.
 [[nodiscard]] bool has_proposed_grid(const Content& content, bones::BoneKind bone);
-// Where navigation says that it was drilled; nullopt where the case lacks the bone.
+// Where navigation says that it was drilled; nullopt where the case lacks the bone, or has another surface.
 [[nodiscard]] std::optional<postop::AchievedPlace> place_of(const Content& content,
                                                             const operation::AchievedTunnel& achieved);
 // Where the plan is not the one any more that guided there: how it differs; else empty.

@@ -82,6 +82,7 @@ ordered_json session_of(const Content& content) {
   ordered_json node = {{"id", if_told(content.session_name)},
                        {"started_utc", if_told(content.started_utc)},
                        {"bone", bones::to_text(header.bone)},
+                       {"is_of_another_surface", content.is_of_another_surface},
                        {"source_kind", header.source_kind},
                        {"medium", camera::medium_to_text(header.refractive_index)},
                        {"was_finished", session.was_finished()},
@@ -95,7 +96,7 @@ ordered_json session_of(const Content& content) {
   if (content.check.outcome != recording::SessionCheck::Outcome::NoChain)
     node["is_as_recorded"] = content.check.is_unbroken();
   node["registration"] = nullptr;
-  if (const auto counts = registration_that_counts(session)) node["registration"] = json_of(*counts);
+  if (content.registration) node["registration"] = json_of(*content.registration);
   node["safety"] = ordered_json::object();
   for (const auto& row : safety_rows(session, content.cut_short)) node["safety"][row[0]] = row[1];
   node["steps"] = ordered_json::array();
@@ -138,7 +139,9 @@ ordered_json postoperative_of(const Content& content) {
     node["reliable"] = node["verdict"] == "reliable";
     node["reasons"] = doubts_of(content, key);
     node["planned"] = nullptr;
-    if (const auto plan = content.knee.plan.tunnels.find(key); plan != content.knee.plan.tunnels.end())
+    // Of an earlier plan the differences alone are known, not what they are from.
+    if (const auto plan = content.knee.plan.tunnels.find(key);
+        plan != content.knee.plan.tunnels.end() && node["verdict"] != "of an earlier plan")
       node["planned"] = json_of(plan->second);
     node["achieved"] = nullptr;
     if (found.is_found) node["achieved"] = json_of(found.tunnel);

@@ -36,11 +36,15 @@ void ReviewView::change_marks(const std::function<void(MarkBook&)>& change) {
 void ReviewView::begin_mark() {
   open_->playback.plays = false;
   const recording::SessionMark* const there = open_->marks.find(open_->glance().index);
-  note_ = {true, true, there != nullptr ? there->note : ""};
+  note_ = {true,
+           true,
+           there != nullptr ? there->note : "",
+           {open_->glance().index, open_->glance().timestamp_ns, ""}};
 }
 
 void ReviewView::keep_mark() {
-  const recording::SessionMark mark{open_->glance().index, open_->glance().timestamp_ns, note_.text};
+  recording::SessionMark mark = note_.at;
+  mark.note = note_.text;
   change_marks([&](MarkBook& marks) { marks.put(mark); });
   if (notice_.empty()) note_ = {};  // what could not be kept stays to be tried again
 }

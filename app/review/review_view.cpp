@@ -350,6 +350,14 @@ void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
   pane_.draw(ui, "review.view", area);
   const bool is_femur = review.session->header.bone == bones::BoneKind::Femur;
   const auto& plan = open_->standing().plan.plan;
+  if (is_of_another_surface()) {
+    ui.log.note_state("review_bone", "another surface");
+    return widgets::caption(
+        ui, area, widgets::kCaution,
+        std::string(is_femur ? "Femur" : "Tibia") +
+            " of now: the session was of another surface, and nothing of it is drawn here");
+  }
+  ui.log.note_state("review_bone", "the session's");
   const bool shows_drilled = !review.drilled_at(open_->glance().index).empty();
   const std::string planned = !plan ? ""
                               : plan->bundle == norms::Bundle::Whole
@@ -360,6 +368,11 @@ void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
       std::string(is_femur ? "Femur" : "Tibia") + planned + (shows_drilled ? ". Banded: achieved" : ""));
 }
 
+bool ReviewView::is_of_another_surface() const {
+  const recording::SessionHeader& header = open_->review.session->header;
+  return !header.mesh_sha256.empty() && header.mesh_sha256 != model_->mesh_sha256(header.bone);
+}
+
 void ReviewView::show_scene() {
   const SessionReview& review = open_->review;
   const recording::SessionOverview& session = *review.session;
@@ -367,6 +380,7 @@ void ReviewView::show_scene() {
   const bones::BoneKind bone = session.header.bone;
   scene::SceneContent content;
   content.bones.push_back({model_->drawn_mesh(bone), scene::kBoneColor, 1.0});
+  if (is_of_another_surface()) return pane_.show(content);
   const Standing& standing = open_->standing();
   const recording::RecordedSession::PlanChange& plan = standing.plan;
   if (plan.plan) scene::add_planned_tunnel(content, *plan.plan, plan.planned_length_mm);

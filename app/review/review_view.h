@@ -65,6 +65,7 @@ class ReviewView : public mode::Mode {
   struct NoteField {
     bool is_open = false, takes_focus = false;
     std::string text;
+    recording::SessionMark at = {};  // the moment that it was begun for, wherever one looks meanwhile
   };
   void choose(std::size_t session);
   void follow_recording(double now_s);
@@ -100,6 +101,7 @@ class ReviewView : public mode::Mode {
   void draw_scene(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_numbers(const widgets::Ui& ui, widgets::Rect area);
   void show_scene();
+  [[nodiscard]] bool is_of_another_surface() const;  // than the case has of its bone by now
 
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;

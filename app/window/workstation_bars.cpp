@@ -183,15 +183,16 @@ void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Re
   draw.AddText(font, font->FontSize, {area.x + edge, y}, widgets::kQuietText, kNotice);
   ui.log.note("app.notice", {area.x + edge, y}, {area.x + standing, y + font->FontSize});
   const auto [text, warns] = status_words();
-  // Beside what always stands there. Of a folder its end tells which it is; a warning stands whole, in smaller
-  // letters where it is long.
+  // Beside what always stands there. Of a folder its end tells which it is; a warning stands whole, in
+  // smaller letters where it is long.
   const float room = area.width - standing - 2 * edge;
   const widgets::LinesWithin said =
       warns ? widgets::lines_within(font, text, room, area.height)
             : widgets::LinesWithin{widgets::fitting_end(font, text, room), font->FontSize};
   const ImVec2 size = font->CalcTextSizeA(said.letters_px, 1e9F, 0, said.lines.c_str());
   const ImVec2 at{area.x + area.width - edge - size.x, area.y + (area.height - size.y) / 2};
-  draw.AddText(font, said.letters_px, at, warns ? widgets::kCaution : widgets::kQuietText, said.lines.c_str());
+  draw.AddText(font, said.letters_px, at, warns ? widgets::kCaution : widgets::kQuietText,
+               said.lines.c_str());
   if (!said.lines.empty()) ui.log.note("app.status", at, {at.x + size.x, at.y + size.y});
 }
 

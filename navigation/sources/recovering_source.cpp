@@ -66,6 +66,7 @@ class RecoveringSource final : public FrameSource {
       has_ended_ = source_->info().ends;
       if (!has_ended_) tell(info_.name + ": has ended; waiting for it to come back");
     } catch (const DeviceError& error) {
+      if (source_->info().ends) throw;  // anew it would begin at its beginning
       tell(error.what());
     }
     source_.reset();

@@ -60,6 +60,7 @@ void OperationRun::start(const TheatreSource& source) {
   theatre_source_ = source;
   source_ = std::move(opened);
   live_ = Live();
+  frame_state_ = nullptr;  // what is told before its first frame has no time of the source before it
   refusal_.words.clear();
   outside_.tracker = std::move(tracker);
   record_trouble_.clear();

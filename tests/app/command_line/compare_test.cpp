@@ -13,6 +13,7 @@
 #include "planning/images/volume_writer.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/plan_export/drilled_bone.h"
+#include "planning/postop/achieved_file.h"
 #include "tests/app/command_line/program.h"
 #include "tests/planning/images/dicom_series_form.h"
 #include "tests/planning/postop/postop_ct.h"
@@ -167,6 +168,25 @@ TEST_F(CompareCommand, WhoElseTheImagesAreOfIsSaidAndNotKept) {
   EXPECT_THAT(result.errors, AllOf(HasSubstr("of another patient than the case"), HasSubstr("4711")));
   const std::string kept = files::read_text(folder_ / "achieved.json");
   EXPECT_THAT(kept, AllOf(HasSubstr("of another patient than the case"), ::testing::Not(HasSubstr("4711"))));
+  // What the case itself keeps of its own patient stays, here none.
+  const auto into_case = compare("ct", "knee.arthro/achieved.json");
+  EXPECT_EQ(into_case.exit_code, 3);
+  EXPECT_THAT(into_case.errors, AllOf(HasSubstr("4711"), HasSubstr("nothing is written into the case")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "knee.arthro/achieved.json"));
+}
+
+// One bone alone would take the other one's place in the same file.
+TEST_F(CompareCommand, OneBoneTakesNotTheOthersAway) {
+  postop::Comparison of_tibia;
+  postop::write_achieved_file(folder_ / "achieved.json", {{tunnels::TunnelKey(BoneKind::Tibia), of_tibia}},
+                              {});
+  const std::string before = files::read_text(folder_ / "achieved.json");
+  test::write_file(folder_ / "postop.nrrd", "is not even looked at");
+  const auto result = run_program({"compare", folder_ / "knee.arthro", "--postop", folder_ / "postop.nrrd",
+                                   "--bone", "femur", "-o", folder_ / "achieved.json"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, HasSubstr("achieved.json: holds the comparison of the tibia"));
+  EXPECT_EQ(files::read_text(folder_ / "achieved.json"), before);
 }
 
 // The drilled bone as a mesh, as the plan's own export makes it. The case has no landmarks: what its shape

@@ -84,8 +84,8 @@ TEST_F(VideoCommands, Hazard26TheSimulatorsCameraIsSaidAndNotReliableLive) {
                         "--fixed-lens"});
   };
   EXPECT_THAT(navigate(folder_ / "clip.mkv").errors, HasSubstr("of the simulated arthroscope"));
-  const auto live = navigate(
-      "gst:videotestsrc is-live=true ! video/x-raw,width=640,height=480,framerate=30/1 ! appsink");
+  const auto live =
+      navigate("gst:videotestsrc is-live=true ! video/x-raw,width=640,height=480,framerate=30/1 ! appsink");
   EXPECT_EQ(live.exit_code, 4) << live.errors;
   EXPECT_THAT(live.errors, HasSubstr("calibrated on the simulator, and live pictures are of another"));
 }

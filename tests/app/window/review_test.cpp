@@ -135,6 +135,28 @@ TEST_F(ReviewWindow, LeadsThroughASession) {
   app.press("ctrl+y");
   ASSERT_TRUE(app.wait_for_state("marks", "1"));
 
+  // A note is of the moment that it was begun for, also where one looks at another meanwhile.
+  app.press("Right");
+  ASSERT_TRUE(app.wait_for_state("frame", "62"));
+  app.press("m");
+  ASSERT_TRUE(app.wait_for_state("note_field", "open"));
+  app.type("before");
+  app.click("review.time_line");
+  ASSERT_TRUE(becomes([&] { return app.state("frame") != "62"; }, 10));
+  app.click("review.note");
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("marks", "2"));
+  EXPECT_EQ(recording::read_marks(session_).at(1),
+            (recording::SessionMark{62, test::frame_result(62).timestamp_ns, "before"}));
+  app.press("ctrl+z");
+  ASSERT_TRUE(app.wait_for_state("marks", "1"));
+  app.press("Home");
+  ASSERT_TRUE(app.wait_for_state("frame", "0"));
+  app.press("n");
+  ASSERT_TRUE(app.wait_for_state("frame", "60"));
+  app.press("Right");
+  ASSERT_TRUE(app.wait_for_state("frame", "61"));
+
   // A note that was begun is let go by Esc: nothing is kept, and keys are keys again.
   app.press("Right");
   ASSERT_TRUE(app.wait_for_state("frame", "62"));

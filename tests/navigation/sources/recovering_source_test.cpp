@@ -17,12 +17,12 @@ enum class Does { Gives, GivesSmall, HasNone, Breaks, Ends };
 
 class Scripted : public FrameSource {
  public:
-  Scripted(std::vector<Does> script, const Opening& opening, std::int64_t at_ns)
+  Scripted(std::vector<Does> script, const Opening& opening, std::int64_t at_ns, bool ends = false)
       : script_(std::move(script)), stamps_(opening.stamps), remark_(opening.remark), at_ns_(at_ns) {
     info_.name = "scope";
     info_.image_size_px = {64, 48};
     info_.kind = SourceKind::Live;
-    info_.ends = false;
+    info_.ends = ends;
   }
   const SourceInfo& info() const override { return info_; }
   camera::FramePtr next() override {
@@ -67,6 +67,18 @@ TEST(RecoveringSource, GoesOnWhereItWas) {
     EXPECT_EQ(source->info().line->trouble(), "");
   }
   EXPECT_EQ(opened, 4);
+}
+
+// A pipeline that reads a file would begin again at its beginning, as if it went on.
+TEST(RecoveringSource, WhatComesToAnEndIsNotBegunAnew) {
+  int opened = 0;
+  const auto source = recovering([&](const Opening& opening) {
+    ++opened;
+    return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Breaks}, opening, 5, true);
+  });
+  ASSERT_NE(source->next(), nullptr);
+  EXPECT_THROW((void)source->next(), DeviceError);
+  EXPECT_EQ(opened, 1);
 }
 
 TEST(RecoveringSource, PassesOverAnotherSizeAndSaysSo) {
