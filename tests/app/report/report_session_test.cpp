@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -17,21 +16,6 @@
 
 namespace arthronaut::report {
 namespace {
-
-// With a registration that found a pose, on a bone of that surface.
-void record(const std::filesystem::path& session_folder, const std::string& mesh_sha256) {
-  pipeline::PipelineOptions options;
-  options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
-  options.tools = tools::standard_tools();
-  recording::SessionHeader header;
-  header.id = session_folder.filename().string();
-  header.mesh_sha256 = mesh_sha256;
-  registration::RegistrationSummary registration;
-  registration.has_pose = true;
-  recording::SessionRecorder recorder(session_folder, header, options);
-  recorder.set_registration(registration);
-  recorder.finish();
-}
 
 // A session with a registration and a drilled tunnel: the comparison is the one that the geometry says.
 TEST_F(Report, ComparesPlannedAndAchieved) {
@@ -83,39 +67,6 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   cases::save_case(knee_folder(), knee_);
   write(pdf());
   expect_contains(pdf_text(), "The plan was changed since, by 3.0 mm at the entry, 0.0\u00B0: what follows");
-}
-
-// The case's bone was replaced since: where in the new one it was drilled nobody knows.
-TEST_F(Report, TellsNoPlaceInABoneThatTheSessionWasNotOf) {
-  const auto session_folder = cases::create_session_folder(knee_folder());
-  record(session_folder, "of another surface");
-  const auto planned = knee_.plan.tunnels.at(bones::BoneKind::Femur);
-  operation::write_achieved_file(
-      session_folder / "achieved.json",
-      {.planned = planned, .measured = planned, .depth_mm = 30, .pose_count = 42, .truth = {}});
-  write(pdf());
-  const std::string text = pdf_text();
-  expect_contains(text, "THE CASE HAS ANOTHER SURFACE OF THE FEMUR");
-  EXPECT_EQ(text.find("As navigation measured it: entry "), std::string::npos);
-  const auto json_file = pdf().parent_path() / "report.json";
-  write(json_file);
-  const auto json = nlohmann::json::parse(files::read_text(json_file));
-  EXPECT_EQ(json.at("session").at("is_of_another_surface"), true);
-  EXPECT_FALSE(json.at("achieved").at(0).contains("wall_mm"));
-}
-
-// A registration's file that is broken takes nothing else away, also where its session is asked for by name.
-TEST_F(Report, ABrokenRegistrationTakesNothingElseAway) {
-  const auto session_folder = cases::create_session_folder(knee_folder());
-  record(session_folder, "");
-  std::ofstream(session_folder / "registration.json") << "{";
-  ReportOptions options;
-  options.session = session_folder.filename().string();
-  write(pdf(), options);
-  const std::string text = pdf_text();
-  expect_contains(text, "NOT ALL of the session " + options.session + " is readable");
-  expect_contains(text, "registration.json");
-  expect_contains(text, "In theatre");
 }
 
 // Each start of a source is a session of its own: what was drilled in the one before is not left out.
