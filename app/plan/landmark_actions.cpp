@@ -117,8 +117,12 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
   const auto here = [this] {
     return model_ != nullptr && state_.page == PanelPage::Landmarks && model_->has_bone(state_.key.bone);
   };
-  const auto is_there = [this, here] {
-    return here() && model_->landmarks(state_.key.bone).contains(landmark());
+  // Of a case that is only looked at they are looked at alone.
+  const auto can_change = [this, here] {
+    return here() && history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+  };
+  const auto is_there = [this, can_change] {
+    return can_change() && model_->landmarks(state_.key.bone).contains(landmark());
   };
   const auto go = [this](int by) {
     const auto count = static_cast<int>(landmark_rows(*model_, state_.key.bone).size());
@@ -145,11 +149,11 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
                GLFW_KEY_ENTER,
                GLFW_MOD_SHIFT,
                false,
-               here,
+               can_change,
                {},
                [this] { confirm_landmarks(true); }});
-  actions.add({"plan.landmark_place", "Place", "Then click where the landmark is", GLFW_KEY_P, 0, false, here,
-               [this] { return state_.placing == Placing::Landmark; },
+  actions.add({"plan.landmark_place", "Place", "Then click where the landmark is", GLFW_KEY_P, 0, false,
+               can_change, [this] { return state_.placing == Placing::Landmark; },
                [this] {
                  state_.placing = state_.placing == Placing::Landmark ? Placing::Nothing : Placing::Landmark;
                  state_.shows_lateral = false;  // in the radiograph nothing is placed
@@ -161,8 +165,8 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
                GLFW_KEY_R,
                0,
                false,
-               [this, here] {
-                 return here() && model_->proposal(state_.key.bone) &&
+               [this, can_change] {
+                 return can_change() && model_->proposal(state_.key.bone) &&
                         model_->proposal(state_.key.bone)->landmarks.contains(landmark());
                },
                {},
@@ -183,8 +187,9 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
        GLFW_KEY_U,
        0,
        false,
-       [this, here] {
-         return here() && state_.key.bone == bones::BoneKind::Femur && with_other_roof(*model_).has_value();
+       [this, can_change] {
+         return can_change() && state_.key.bone == bones::BoneKind::Femur &&
+                with_other_roof(*model_).has_value();
        },
        {},
        [this] {

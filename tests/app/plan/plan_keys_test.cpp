@@ -80,5 +80,29 @@ TEST(PlanKeys, NoTwoActionsShareOneWhateverWasPressed) {
     EXPECT_GT(pressed[id], 0) << id;
 }
 
+// In a case that is only looked at nothing is offered that would change it, on any page; the landmarks can be
+// gone through.
+TEST(PlanKeys, OfACaseThatIsOnlyLookedAtNothingIsChanged) {
+  unsetenv("DISPLAY");
+  const test::TemporaryFolder folder;
+  const auto case_folder = folder / "Looked at.arthro";
+  open_case::PlanModel model(imaged_knee(case_folder));
+  const scene::OffscreenContext context;
+  PlanView view([&] { context.make_current(); }, [] {}, [] {});
+  widgets::Actions actions;
+  view.add_actions(actions);
+  view.case_opened({&model, case_folder, "is open elsewhere"});
+  const auto can = [&](const char* id) { return actions.find(id)->can_run(); };
+  for (const char* page : {"plan.checks_page", "plan.landmarks_page", "plan.steps_page"}) {
+    actions.find(page)->run();
+    for (const char* id : {"plan.default", "plan.place", "plan.wider", "plan.aim_up", "plan.slide_left",
+                           "plan.remove", "plan.landmark_confirm", "plan.landmark_confirm_all",
+                           "plan.landmark_place", "plan.landmark_reset", "plan.roof", "plan.undo"})
+      EXPECT_FALSE(can(id)) << id << " on " << page;
+  }
+  actions.find("plan.landmarks_page")->run();
+  EXPECT_TRUE(can("plan.landmark_next"));
+}
+
 }  // namespace
 }  // namespace arthronaut::plan

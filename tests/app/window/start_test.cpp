@@ -155,7 +155,7 @@ TEST_F(StartWindow, Hazard15SetUpDoesNotStandOnAReadOnlyCase) {
   EXPECT_TRUE(app.wait_for_state("mode", "plan"));
   // Nor does it lead to a click that could change nothing.
   app.press("p");
-  EXPECT_TRUE(app.wait_for_state("untaken_key", "P did nothing: Place is not possible now"));
+  EXPECT_TRUE(app.wait_for_state("untaken_key", "P did nothing: there is nothing for it now"));
   EXPECT_EQ(app.state("placing"), "nothing");
 }
 
