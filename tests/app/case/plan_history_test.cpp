@@ -113,24 +113,6 @@ TEST_F(PlanHistoryTest, AFailedSaveIsSaidAndLosesNothing) {
   EXPECT_NEAR(model_.tunnel(BoneKind::Femur)->diameter_mm, start_mm_ + 1, 1e-12);
 }
 
-// A disk that has room again, or a share that is back: what could not be saved is saved without another
-// change, which might never come.
-TEST_F(PlanHistoryTest, WhatCouldNotBeSavedIsTriedAgain) {
-  const std::filesystem::path away = folder_.string() + ".away";
-  std::filesystem::rename(folder_, away);
-  history_.apply(wider(1, false), 1.0);
-  history_.settle(2.0);
-  ASSERT_EQ(history_.status().save, PlanStatus::Save::Failed);
-  history_.look_at_disk(10.0);
-  EXPECT_EQ(history_.status().save, PlanStatus::Save::Failed) << "it is still away";
-  std::filesystem::rename(away, folder_);
-  history_.look_at_disk(11.0);
-  EXPECT_EQ(history_.status().save, PlanStatus::Save::Failed) << "not with every frame";
-  history_.look_at_disk(14.0);
-  EXPECT_EQ(history_.status().save, PlanStatus::Save::Saved);
-  EXPECT_NEAR(saved_diameter_mm(), start_mm_ + 1, 1e-9);
-}
-
 // A new step forgets what was undone, and the status names what comes next either way.
 TEST_F(PlanHistoryTest, ANewStepForgetsWhatWasUndone) {
   history_.apply(wider(1, false), 1.0);
