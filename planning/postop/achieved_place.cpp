@@ -38,6 +38,8 @@ constexpr double kBeyondErrors = 8;
 // Less well known than this, a range says of a wall what there is to say: half of the 1 mm below which a wall
 // may break.
 constexpr double kMostWallSigma_mm = 0.5;
+// How near the surface of a bone out of a CT is to the bone, in the median.
+constexpr double kSurface_mm = 0.1;
 
 struct LeastWall {
   double thickness_mm, station_mm;
@@ -56,11 +58,11 @@ void try_walls(const AchievedTunnel& achieved, double depth_mm, const geometry::
                AchievedPlace& place) {
   const auto wall = wall_of(achieved.tunnel, depth_mm, bone);
   if (!wall || !std::isfinite(achieved.diameter_sigma_mm)) return;
-  // Across the axis in one of two directions, and of the radius.
+  // Across the axis in one of two directions, of the radius, and of the bone's surface.
   const auto side_sigma_mm = [&](double station_mm) {
     return std::sqrt(0.5 * (std::pow(achieved.entry_sigma_mm, 2) +
                             std::pow(achieved.direction_sigma_rad * station_mm, 2)) +
-                     std::pow(0.5 * achieved.diameter_sigma_mm, 2));
+                     std::pow(0.5 * achieved.diameter_sigma_mm, 2) + kSurface_mm * kSurface_mm);
   };
   constexpr double kSigmas = 2;
   const double by_mm = kSigmas * side_sigma_mm(achieved.length_mm);

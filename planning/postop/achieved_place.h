@@ -28,10 +28,10 @@ struct AchievedPlace {
   // The least bone beside either. Empty: it misses the bone; of a socket also where it is thinnest only
   // beyond the socket's end.
   std::optional<double> planned_wall_mm = {}, wall_mm = {};
-  // One sigma of `wall_mm`, and what it may be: by trial, its side two sigma further out and in. Where the
-  // tunnel grazes the bone's surface, what counts as a lip of its mouth and what as a breach changes with a
-  // tenth of a millimetre, and the wall leaps. Infinite: nobody knows how well the tunnel is known, or one so
-  // little off has no wall.
+  // One sigma of `wall_mm`, and what it may be: by trial, its side two sigma further out and in, the error of
+  // a bone's surface counted in. Where the tunnel grazes the bone's surface, what counts as a lip of its
+  // mouth and what as a breach changes with a tenth of a millimetre, and the wall leaps. Infinite: nobody
+  // knows how well the tunnel is known, or one so little off has no wall.
   double wall_sigma_mm = std::numeric_limits<double>::infinity();
   double least_wall_mm = 0, most_wall_mm = 0;  // meaningless where the sigma is infinite
 };
