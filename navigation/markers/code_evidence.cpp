@@ -87,7 +87,8 @@ class MarkerLight {
       for (int column = -1; column <= code.cells; ++column) look(view, code, row, column);
     }
   }
-  [[nodiscard]] bool has_highlight() const { return white_count_ > 0; }
+  // Of the inner cells: as much as one of them.
+  [[nodiscard]] bool are_any_hidden() const { return hidden_parts_ >= kParts; }
   // The light that most cells agree on. False when there is none.
   bool fit() {
     for (int pass = 0; pass < kLightPasses; ++pass) {
@@ -125,6 +126,8 @@ class MarkerLight {
     // The margin is no wider than a cell: its half next to the square.
     const auto middle = [&](int k) { return k < 0 ? -0.4 : is_within(k) ? k + 0.5 : k + 0.4; };
     const bool is_margin = !is_within(row) || !is_within(column);
+    const bool is_inside =
+        is_within(row - 1) && is_within(row + 1) && is_within(column - 1) && is_within(column + 1);
     const Eigen::Vector2d at(middle(column), middle(row));
     const double spread = is_margin ? 0.12 : 0.25;
     double sum = 0;
@@ -137,6 +140,7 @@ class MarkerLight {
         ++known;
       } else if (value != MarkerView::kOutside) {
         white_[white_count_++] = part;
+        hidden_parts_ += is_inside;
       }
     }
     if (known < kParts) return;
@@ -146,7 +150,7 @@ class MarkerLight {
 
   std::array<Cell, kMostCells> all_;
   std::array<Eigen::Vector2d, kParts * kMostCells> white_;
-  int count_ = 0, white_count_ = 0;
+  int count_ = 0, white_count_ = 0, hidden_parts_ = 0;
   LightFit fit_;
 };
 
@@ -235,7 +239,7 @@ bool CodeEvidence::add(const LinearImage& image, const camera::CameraModel& came
                        const Smear& smear) {
   const MarkerView view{image, camera, pose, size_mm, code.cells};
   MarkerLight lit(view, code);
-  if (!lit.has_highlight()) return false;
+  if (!lit.are_any_hidden()) return false;
   if (!lit.fit()) return true;
   each_boundary(code.cells, [&](const BoundaryPlace& place) {
     std::array<double, 4> likelihoods;

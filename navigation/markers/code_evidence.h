@@ -22,8 +22,8 @@ namespace arthronaut::markers {
 class CodeEvidence {
  public:
   void start_over() { boundaries_.fill(Boundary()); }
-  // What one more frame shows about the marker at this pose, if it is of this code. False where no highlight
-  // hides any of it: then nothing is added.
+  // What one more frame shows about the marker at this pose, if it is of this code. False where highlights
+  // hide less of the inner cells than one of them: then nothing is added.
   bool add(const LinearImage& image, const camera::CameraModel& camera,
            const geometry::RigidTransform& camera_from_marker, double size_mm, const MarkerCode& code,
            const Smear& smear);
