@@ -20,24 +20,28 @@ std::string mm_text(double value) {
   return text;
 }
 
-// Black cells as rectangles, each row's run as one, so that no hairline shows between cells.
+// The black square whole, then the white cells on it: every edge of the code is where it belongs, and between
+// two black cells there is no seam. White ones are drawn as runs in both directions, so that none shows
+// between them either.
 void draw_marker(PdfDocument& pdf, double x_mm, double y_mm, double size_mm, int id) {
   const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50);
   cv::Mat cells;
   dictionary->drawMarker(id, kCells, cells, 1);
   const double cell = size_mm / kCells;
-  for (int row = 0; row < kCells; ++row) {
-    for (int from = 0; from < kCells;) {
-      int to = from;
-      while (to < kCells && cells.at<std::uint8_t>(row, to) == 0) ++to;
-      if (to > from) {
-        // A twentieth of a cell of overlap downwards closes the seam; the last row keeps the true outline.
-        const double overlap =
-            row + 1 < kCells && cells.at<std::uint8_t>(row + 1, from) == 0 ? 0.05 * cell : 0;
-        pdf.filled_rectangle(x_mm + from * cell, y_mm + row * cell, (to - from) * cell, cell + overlap,
-                             {0, 0, 0});
+  pdf.filled_rectangle(x_mm, y_mm, size_mm, size_mm, {0, 0, 0});
+  for (const bool is_row : {true, false}) {
+    const auto is_white = [&](int line, int at) {
+      return (is_row ? cells.at<std::uint8_t>(line, at) : cells.at<std::uint8_t>(at, line)) != 0;
+    };
+    for (int line = 0; line < kCells; ++line) {
+      for (int from = 0; from < kCells;) {
+        int to = from;
+        while (to < kCells && is_white(line, to)) ++to;
+        if (to > from)
+          pdf.filled_rectangle(x_mm + (is_row ? from : line) * cell, y_mm + (is_row ? line : from) * cell,
+                               (is_row ? to - from : 1) * cell, (is_row ? 1 : to - from) * cell, {1, 1, 1});
+        from = to + 1;
       }
-      from = to + 1;
     }
   }
 }

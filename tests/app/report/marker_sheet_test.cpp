@@ -23,9 +23,9 @@ class MarkerSheet : public ::testing::Test {
   std::filesystem::path file() const { return folder_ / "markers.pdf"; }
 
   // The page as a printer would see it.
-  cv::Mat printed(int page) const {
+  cv::Mat printed(int page, const std::string& how = "-r 600") const {
     const std::string number = std::to_string(page);
-    const std::string command = "pdftoppm -gray -r 600 -f " + number + " -l " + number +
+    const std::string command = "pdftoppm -gray " + how + " -f " + number + " -l " + number +
                                 " -singlefile -png " + file().string() + " " + (folder_ / "page").string();
     EXPECT_EQ(std::system(command.c_str()), 0);
     return cv::imread((folder_ / "page.png").string(), cv::IMREAD_GRAYSCALE);
@@ -68,6 +68,45 @@ TEST_F(MarkerSheet, MarkersHaveTheirIdAndTrueSize) {
   EXPECT_EQ(seen[5], 1);
   EXPECT_EQ(seen[6], 1);
   EXPECT_NEAR(cv::norm(ruler[1] - ruler[0]) * kMmPerPx, 10.0, 0.05);
+}
+
+// Every edge between the cells of a code, along the middle of each row and column, within 0.01 mm.
+TEST_F(MarkerSheet, EdgesOfTheCodeLieWhereTheyBelong) {
+  constexpr double kPxPerMm = 100;
+  constexpr double kSize_mm = 30, kX_mm = 40, kMargin_mm = 2;
+  constexpr int kCells = 6;
+  write_marker_sheet(file(), {.ids = {0, 3}, .size_mm = kSize_mm});
+  for (const auto& [id, y_mm] : std::map<int, double>{{0, 42}, {3, 42 + 53}}) {
+    const int side_px = static_cast<int>((kSize_mm + 2 * kMargin_mm) * kPxPerMm);
+    const cv::Mat seen = printed(1, "-r 2540 -x " + std::to_string(int((kX_mm - kMargin_mm) * kPxPerMm)) +
+                                        " -y " + std::to_string(int((y_mm - kMargin_mm) * kPxPerMm)) +
+                                        " -W " + std::to_string(side_px) + " -H " + std::to_string(side_px));
+    ASSERT_EQ(seen.rows, side_px);
+    cv::Mat cells;
+    cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50)->drawMarker(id, kCells, cells, 1);
+    for (const bool is_row : {true, false}) {
+      const cv::Mat page = is_row ? seen : cv::Mat(seen.t());
+      const cv::Mat code = is_row ? cells : cv::Mat(cells.t());
+      for (int line = 0; line < kCells; ++line) {
+        std::vector<double> expected_mm, edges_mm;
+        for (int at = 0; at <= kCells; ++at) {
+          const auto is_black = [&](int cell) {
+            return cell >= 0 && cell < kCells && code.at<std::uint8_t>(line, cell) == 0;
+          };
+          if (is_black(at - 1) != is_black(at)) expected_mm.push_back(at * kSize_mm / kCells);
+        }
+        const int y = static_cast<int>((kMargin_mm + (line + 0.5) * kSize_mm / kCells) * kPxPerMm);
+        for (int x = 1; x < page.cols; ++x)
+          if ((page.at<std::uint8_t>(y, x - 1) < 128) != (page.at<std::uint8_t>(y, x) < 128))
+            edges_mm.push_back(x / kPxPerMm - kMargin_mm);
+        ASSERT_EQ(edges_mm.size(), expected_mm.size())
+            << "id " << id << (is_row ? " row " : " column ") << line;
+        for (std::size_t i = 0; i < edges_mm.size(); ++i)
+          EXPECT_NEAR(edges_mm[i], expected_mm[i], 0.0101)
+              << "id " << id << (is_row ? " row " : " column ") << line;
+      }
+    }
+  }
 }
 
 // Half of the checkerboard's area is black, and its squares measure what they should.
