@@ -1,7 +1,6 @@
 #include "navigation/tools/rig_calibration.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -294,42 +293,6 @@ RigSummary calibrate_rig(std::span<const RigSighting> sightings, const RigOption
   fill_places(problem, *solution, options, summary);
   judge(problem, options, summary);
   return finish();
-}
-
-std::vector<std::optional<RigidTransform>> mean_relative_poses(std::span<const RigSighting> sightings,
-                                                               const RigOptions& options) {
-  check(options);
-  const RigProblem problem = problem_of(sightings, options);
-  const std::vector<std::size_t> order = order_of(options);
-  std::vector<std::optional<RigidTransform>> means(options.markers.size());
-  for (std::size_t marker = 0; marker < order.size(); ++marker) {
-    Eigen::Matrix3d rotations = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d sum_mm = Eigen::Vector3d::Zero();
-    long count = 0;
-    std::size_t first = 0;
-    for (std::size_t a = 0; a < problem.views.size(); ++a) {
-      if (problem.views[a].frame != problem.views[first].frame) first = a;
-      if (problem.views[a].marker != 0) continue;
-      for (std::size_t b = first;
-           b < problem.views.size() && problem.views[b].frame == problem.views[a].frame; ++b) {
-        if (problem.views[b].marker != marker) continue;
-        const RigidTransform between =
-            problem.views[a].camera_from_marker.inverse() * problem.views[b].camera_from_marker;
-        rotations += between.matrix();
-        sum_mm += between.translation_mm;
-        ++count;
-      }
-    }
-    if (count == 0) continue;
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(rotations, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Matrix3d flip = Eigen::Matrix3d::Identity();
-    flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-    RigidTransform mean;
-    mean.rotation = Eigen::Quaterniond(svd.matrixU() * flip * svd.matrixV().transpose()).normalized();
-    mean.translation_mm = sum_mm / static_cast<double>(count);
-    means[order[marker]] = mean;
-  }
-  return means;
 }
 
 }  // namespace arthronaut::tools

@@ -94,10 +94,4 @@ struct RigSummary {
 // twice, a size or a limit that is not above 0, a reference that is none of them.
 [[nodiscard]] RigSummary calibrate_rig(std::span<const RigSighting> sightings, const RigOptions& options);
 
-// What one would do without: the mean of the relative poses to the reference over the frames in which both
-// are seen (mean of translations, chordal mean of rotations). For comparison only. Empty for a marker never
-// seen with it.
-[[nodiscard]] std::vector<std::optional<geometry::RigidTransform>> mean_relative_poses(
-    std::span<const RigSighting> sightings, const RigOptions& options);
-
 }  // namespace arthronaut::tools

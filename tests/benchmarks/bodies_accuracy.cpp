@@ -6,6 +6,7 @@
 
 #include "navigation/tools/rig_calibration.h"
 #include "tests/navigation/markers/waved_body.h"
+#include "tests/navigation/tools/mean_relative_poses.h"
 
 namespace arthronaut {
 namespace {
@@ -81,7 +82,7 @@ void print_rig(const markers::Body& body, const std::vector<markers::WavedFrame>
         sightings.push_back(
             {static_cast<std::int64_t>(i), static_cast<double>(i) / 30, seen.id, seen.camera_from_marker});
   const tools::RigSummary rig = tools::calibrate_rig(sightings, options);
-  const auto means = tools::mean_relative_poses(sightings, options);
+  const auto means = test::mean_relative_poses(sightings, options);
   std::printf("%-34s %6s %9s %9s\n", "places of the markers", "", "mm", "deg");
   for (std::size_t i = 1; i < body.markers.size(); ++i) {
     const RigidTransform& truth = body.markers[i].body_from_marker;

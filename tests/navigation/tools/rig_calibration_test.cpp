@@ -9,6 +9,7 @@
 
 #include "navigation/tools/rig_problem.h"
 #include "planning/geometry/error.h"
+#include "tests/navigation/tools/mean_relative_poses.h"
 
 namespace arthronaut::tools {
 namespace {
@@ -142,7 +143,7 @@ TEST_F(Rig, BeatsTheMeanOfRelativePoses) {
   for (int wave = 0; wave < 5; ++wave) {
     const auto sightings = wave_of({.frames = 300, .wrong_every = 20});
     const RigSummary rig = calibrate_rig(sightings, options_);
-    const auto means = mean_relative_poses(sightings, options_);
+    const auto means = test::mean_relative_poses(sightings, options_);
     ASSERT_TRUE(rig.has_places()) << rig.message;
     for (std::size_t i = 1; i < 3; ++i) {
       joint += std::pow(angle_deg(rig.places[i].reference_from_marker, truth_[i]), 2);
