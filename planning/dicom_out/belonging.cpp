@@ -4,6 +4,7 @@
 
 #include "planning/bones/mesh_hash.h"
 #include "planning/dicom_out/uid.h"
+#include "planning/files/local_time.h"
 
 namespace arthronaut::dicom_out {
 
@@ -72,6 +73,13 @@ DicomMoment moment_from(const std::string& utc) {
                            utc.substr(11, 2) + utc.substr(14, 2) + utc.substr(17, 2)};
   if (!are_digits(moment.date, 0, 8) || !are_digits(moment.time, 0, 6)) return {};
   return moment;
+}
+
+DicomMoment local_moment_from(const std::string& utc) {
+  if (moment_from(utc).date.empty()) return {};
+  std::string local = files::local_time_in_words(utc) + "Z";
+  local[10] = 'T';
+  return moment_from(local);
 }
 
 std::map<bones::BoneKind, Belonging> belongings_of(const ExportContents& contents) {

@@ -24,5 +24,7 @@ struct DicomMoment {
   std::string date, time;
 };
 [[nodiscard]] DicomMoment moment_from(const std::string& utc);
+// The same moment by this machine's clock on the wall.
+[[nodiscard]] DicomMoment local_moment_from(const std::string& utc);
 
 }  // namespace arthronaut::dicom_out

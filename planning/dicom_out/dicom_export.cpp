@@ -159,7 +159,7 @@ ExportSummary export_dicom(const ExportContents& contents, const fs::path& folde
   if (contents.knee.bones.empty()) throw InvalidInput("dicom: the case holds no bone");
   const Belongings belongings = belongings_of(contents);
   const Belonging& of_case = belongings.begin()->second;
-  const ObjectSetting setting{.side = contents.knee.side, .moment = moment_from(contents.moment_utc)};
+  const ObjectSetting setting{.side = contents.knee.side, .moment_utc = contents.moment_utc};
   ExportSummary summary;
   say_of_which_study(contents, belongings, summary);
   std::vector<Object> objects;

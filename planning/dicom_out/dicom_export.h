@@ -22,7 +22,9 @@
 //
 // The same contents give the same bytes: identifiers follow from what they name (uid.h), and no clock is
 // asked. Anything that changes gives other identifiers of object and series, so that nothing in an archive is
-// replaced. Times of objects are UTC; those of the study are as they came with the images.
+// replaced. Times of objects beside images are by this machine's time zone, as DICOM reads what says no
+// offset from UTC; those of a new study are UTC, and say so. Those of the images' study are as they came with
+// them.
 #pragma once
 
 #include <cstdint>

@@ -39,7 +39,7 @@ void add_patient_and_study(DcmDataset& dataset, const Belonging& belonging) {
 }
 
 void put_content_moment(DcmDataset& dataset, const Belonging& belonging, const ObjectSetting& setting) {
-  const DicomMoment moment = belonging.is_deidentified ? DicomMoment{} : setting.moment;
+  const DicomMoment moment = setting.moment_in(belonging);
   put(dataset, DCM_ContentDate, moment.date);
   put(dataset, DCM_ContentTime, moment.time);
 }
@@ -76,6 +76,11 @@ void add_sources(DcmDataset& dataset, const images::DicomOrigin& study) {
 }
 
 }  // namespace
+
+DicomMoment ObjectSetting::moment_in(const Belonging& belonging) const {
+  if (belonging.is_deidentified) return {};
+  return belonging.is_of_images ? local_moment_from(moment_utc) : moment_from(moment_utc);
+}
 
 Object begun(const Belonging& belonging, const ObjectKind& kind, const char* sop_class) {
   Object object{

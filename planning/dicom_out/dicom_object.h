@@ -37,7 +37,11 @@ struct Object {
 // What they have in common.
 struct ObjectSetting {
   bones::Side side = bones::Side::Right;
-  DicomMoment moment;  // of the contents, UTC
+  std::string moment_utc = {};  // of the contents, ISO 8601; empty: not known
+
+  // As the object says it: by the clock on the wall where it lies beside images, whose times are, too, as
+  // DICOM has it where no offset from UTC is said. Empty where it is not told.
+  [[nodiscard]] DicomMoment moment_in(const Belonging& belonging) const;
 };
 
 // Encapsulated STL (A.85.1). `stl` is binary. Throw IoError when DCMTK refuses an element.

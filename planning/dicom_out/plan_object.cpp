@@ -35,9 +35,9 @@ Object plan_object(const Belonging& belonging, const ObjectSetting& setting,
   DcmDataset& dataset = *object.dataset;
   put_knee(dataset, setting);
   // Here a date is asked for: what stands for one that is not told is long before there was any such plan.
-  const bool is_told = !belonging.is_deidentified && !setting.moment.date.empty();
-  put(dataset, DCM_ContentDate, is_told ? setting.moment.date : "19000101");
-  put(dataset, DCM_ContentTime, is_told ? setting.moment.time : "000000");
+  const DicomMoment moment = setting.moment_in(belonging);
+  put(dataset, DCM_ContentDate, moment.date.empty() ? "19000101" : moment.date);
+  put(dataset, DCM_ContentTime, moment.date.empty() ? "000000" : moment.time);
   put(dataset, DCM_ContentLabel, "TUNNEL_PLAN");
   put(dataset, DCM_ContentDescription, "Planned tunnels of an ACL reconstruction");
   put(dataset, DCM_ContentCreatorName, "");

@@ -142,6 +142,36 @@ TEST_F(DicomExport, LiesBesideTheStudyOfTheImages) {
   }
 }
 
+// What says no offset from UTC is by the clock on the wall: beside images this machine's, else it is said.
+TEST_F(DicomExport, TimesBesideImagesAreThoseOfTheWorkstation) {
+  const char* const zone = std::getenv("TZ");
+  const std::string before = zone != nullptr ? zone : "";
+  const auto set_zone = [](const char* name) {
+    if (name != nullptr)
+      ::setenv("TZ", name, 1);
+    else
+      ::unsetenv("TZ");
+    ::tzset();
+  };
+  set_zone("America/New_York");
+  contents_.moment_utc = "2026-02-01T03:08:09Z";
+  write();
+  for (const std::string& name : all_names()) {
+    Dicom object = read(name);
+    EXPECT_EQ(object[DCM_ContentDate] + object[DCM_ContentTime], "20260201030809") << name;
+    EXPECT_EQ(object[DCM_TimezoneOffsetFromUTC], "+0000") << name;
+  }
+  fs::remove_all(folder_ / "out");
+  be_of_images();
+  write();
+  for (const std::string& name : all_names()) {
+    Dicom object = read(name);
+    EXPECT_EQ(object[DCM_ContentDate] + object[DCM_ContentTime], "20260131220809") << name;
+    EXPECT_EQ(object[DCM_TimezoneOffsetFromUTC], "(absent)") << name;
+  }
+  set_zone(zone != nullptr ? before.c_str() : nullptr);
+}
+
 TEST_F(DicomExport, ModelsAreTheBonesInMillimetres) {
   write();
   for (const bool is_drilled : {false, true}) {
