@@ -5,6 +5,7 @@
 #include "app/command_line/option_checks.h"
 #include "planning/cases/case_lock.h"
 #include "planning/files/format.h"
+#include "planning/geometry/error.h"
 #include "planning/postop/achieved_file.h"
 
 namespace arthronaut::command_line {
