@@ -90,6 +90,8 @@ void train(Context& context, const Arguments& arguments) {
     throw InvalidInput(
         "calibrating is no operation: it needs no knee and leaves no session; leave out --case");
   refuse_before_the_work({.read = {arguments.hand}, .written = {arguments.output, arguments.keep_hand}});
+  // An operation of minutes is not lost to a list that nobody can add to.
+  if (arguments.keep) (void)training::read_training_file(training::training_file());
   const simulator::Hand hand = hand_of(arguments, *exercise);
   training::ExerciseSetup setup{
       .exercise = *exercise, .level = level, .knee = {}, .plan = {}, .seed = arguments.seed};
@@ -133,9 +135,9 @@ void train(Context& context, const Arguments& arguments) {
                       : "hand of " + fs::path(arguments.hand).filename().string();
   score.session = record.folder.filename().string();
   if (!arguments.keep_hand.empty()) training::write_hand_file(arguments.keep_hand, outcome.frames);
-  if (arguments.keep) training::add_to_training_file(training::training_file(), score);
   if (!arguments.output.empty()) training::write_score_file(arguments.output, score);
   if (arguments.output != "-") say_score(context, *exercise, score);
+  if (arguments.keep) training::add_to_training_file(training::training_file(), score);
   if (!score.is_done) context.say_unreliable("the score", {"the exercise was not brought to its end"});
 }
 

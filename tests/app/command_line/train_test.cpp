@@ -84,6 +84,21 @@ TEST_F(TrainCommand, ScoresAndRecords) {
   EXPECT_THAT(train({"--scores"}).output, HasSubstr("hand of hand.json"));
 }
 
+// A list that nobody can add to is told before the work, and leaves nothing of it.
+TEST_F(TrainCommand, AListThatCannotBeReadIsToldFirst) {
+  const fs::path knee = folder_ / "Knee.arthro", score = folder_ / "score.json", kept = folder_ / "kept.json";
+  ASSERT_EQ(test::run_program({"phantom", "-o", knee}).exit_code, 0);
+  fs::create_directories(folder_ / "home/arthronaut");
+  files::write_atomically(folder_ / "home/arthronaut/training.json", "{");
+  const auto run = train({"--exercise", "aim", "--hand", hand(3, true), "--case", knee, "-o", score,
+                          "--keep-hand", kept, "--keep"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_THAT(run.errors, HasSubstr("training.json"));
+  EXPECT_FALSE(fs::exists(score));
+  EXPECT_FALSE(fs::exists(kept));
+  EXPECT_FALSE(fs::exists(knee / "sessions"));
+}
+
 // The calibration of a camera needs no case; done at once it has found none, and says why.
 TEST_F(TrainCommand, Calibrates) {
   const fs::path score = folder_ / "score.json";
