@@ -213,8 +213,7 @@ void segment(Context& context, const SegmentArguments& arguments) {
   if (std::ranges::all_of(painted, [&](std::uint8_t label) { return label == 0 || is_in(bones, label); }))
     reasons.insert(reasons.begin(),
                    "no stroke stands for what surrounds the bones: all of it was given to them");
-  if (!reasons.empty())
-    context.say_unreliable(arguments.output == "-" ? "what was grown" : arguments.output, reasons);
+  if (!reasons.empty()) context.say_unreliable(arguments.output, reasons);
 }
 
 }  // namespace
