@@ -4,6 +4,7 @@
 #include "app/command_line/option_checks.h"
 #include "app/report/report.h"
 #include "app/scene/plan_picture.h"
+#include "app/screen_copy/screen_copies.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/dicom_out/dicom_export.h"
@@ -54,18 +55,19 @@ void add_plan_pictures(const cases::Case& knee, std::vector<dicom_out::KeyPictur
   }
 }
 
-// Those in the case's own folder of pictures, by name.
+// Screenshots (F12), by their time, and those in the case's own folder of pictures, by name.
 void add_pictures_of_operation(const fs::path& case_folder, std::vector<dicom_out::KeyPicture>& pictures) {
   std::vector<fs::path> files;
-  const fs::path folder = case_folder / "pictures";
-  if (fs::is_directory(folder)) {
+  for (const fs::path& folder : {screen_copy::screens_folder(case_folder), case_folder / "pictures"}) {
+    if (!fs::is_directory(folder)) continue;
+    const auto first = static_cast<std::ptrdiff_t>(files.size());
     for (const auto& entry : fs::directory_iterator(folder)) {
       const std::string extension = entry.path().extension().string();
       if (entry.is_regular_file() && (extension == ".png" || extension == ".jpg"))
         files.push_back(entry.path());
     }
+    std::sort(files.begin() + first, files.end());
   }
-  std::sort(files.begin(), files.end());
   int number = 0;
   for (const fs::path& file : files) {
     camera::Frame frame = sources::read_picture(file);
@@ -110,7 +112,8 @@ void add_dicom_command(CLI::App& app, Context& context) {
   const auto arguments = std::make_shared<DicomArguments>();
   CLI::App* sub = add_subcommand(
       app, context, "dicom",
-      "Write bones, drilled bones, plan, report and pictures as DICOM, beside the images' study",
+      "Write bones, drilled bones, plan, report and pictures (the plan's, the screenshots of F12) as DICOM, "
+      "beside the images' study",
       "arthronaut dicom Knee.arthro -o for_the_archive");
   sub->add_option("case", arguments->case_folder, "Case folder")->required();
   sub->add_option("-o,--output", arguments->output, "Folder to write: absent, or empty")

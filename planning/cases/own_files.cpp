@@ -16,8 +16,8 @@ constexpr std::array<std::string_view, 16> kFiles{
     "case.lock",           "note.json",   "measurements.json",   "bone_doubts.json",
     "fluid.json",          "femur.ply",   "femur_cartilage.ply", "tibia.ply",
     "tibia_cartilage.ply", "camera.json", "tools.json",          "achieved.json"};
-constexpr std::array<std::string_view, 6> kFolders{"sessions", "painting", "images",
-                                                   "cache",    "screens",  "plan_versions"};
+constexpr std::array<std::string_view, 7> kFolders{"sessions", "painting", "images",       "cache",
+                                                   "screens",  "pictures", "plan_versions"};
 
 }  // namespace
 

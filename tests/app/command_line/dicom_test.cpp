@@ -140,6 +140,27 @@ TEST_F(DicomCommand, PicturesShowThePlan) {
   EXPECT_FALSE(fs::exists(folder_ / "out" / "image_003.dcm"));
 }
 
+// F12 puts screenshots into the case's screens: these are what a real operation has.
+TEST_F(DicomCommand, ScreenshotsArePicturesOfTheOperation) {
+  take_phantom();
+  fs::create_directory(folder_ / "knee.arthro/screens");
+  scene::write_png(folder_ / "knee.arthro/screens/20260131-120000.png",
+                   {.width = 3, .height = 1, .rgb = {255, 0, 0, 0, 0, 255, 0, 255, 0}});
+  test::write_file(folder_ / "knee.arthro/screens/20260131-120001.mkv", "a video is no picture");
+  ASSERT_EQ(run("out").exit_code, 0);
+  const auto columns_of = [&](const char* name) {
+    DcmFileFormat picture;
+    return picture.loadFile((folder_ / "out" / name).c_str()).good()
+               ? text(*picture.getDataset(), DCM_Columns)
+               : std::string("(none)");
+  };
+  EXPECT_EQ(columns_of("image_003.dcm"), "3");
+  EXPECT_EQ(columns_of("image_004.dcm"), "2");
+  EXPECT_EQ(columns_of("image_005.dcm"), "(none)");
+  ASSERT_EQ(run("nobody", {"--deidentified"}).exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "nobody/image_001.dcm"));
+}
+
 // Hazard 40: what is sent is of the moment of the last operation, whatever was practised since.
 TEST_F(DicomCommand, Hazard40AnExerciseDatesNothing) {
   take_phantom();

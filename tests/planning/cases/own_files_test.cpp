@@ -16,9 +16,9 @@ TEST(OwnFiles, AreTheCasesAndNotWhatLiesBesideThem) {
   const fs::path knee = folder / "Knee.arthro";
   fs::create_directories(knee / "sessions/0001");
   std::ofstream(knee / "case.json");
-  for (const char* own :
-       {"case.json", "plan.json", "identity.json", "femur.ply", "camera.json", "achieved.json",
-        "sessions/0001/session.json", "painting/strokes.nrrd", "../Knee.arthro/plan.json"})
+  for (const char* own : {"case.json", "plan.json", "identity.json", "femur.ply", "camera.json",
+                          "achieved.json", "sessions/0001/session.json", "painting/strokes.nrrd",
+                          "screens/a.png", "pictures/a.png", "../Knee.arthro/plan.json"})
     EXPECT_TRUE(is_own_file(knee / own)) << own;
   for (const char* beside : {"report.pdf", "mine/plan.json", "../plan.json"})
     EXPECT_FALSE(is_own_file(knee / beside)) << beside;
