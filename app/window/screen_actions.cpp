@@ -20,6 +20,12 @@ std::string refusal_to_keep(const open_case::CaseOpening* opened) {
 }  // namespace
 
 void WorkstationWindow::add_screen_actions() {
+  const auto refusal = [this] {
+    const std::string words = refusal_to_keep(case_.get());
+    return words.empty() && shows_start_
+               ? "other patients may be named here, and a case's pictures go to the archive"
+               : words;
+  };
   const auto folder = [this] { return case_ != nullptr ? case_->folder() : std::filesystem::path(); };
   actions_.add(
       {"app.two_screens", "Two screens",
@@ -34,7 +40,7 @@ void WorkstationWindow::add_screen_actions() {
                 false,
                 {},
                 {},
-                [this, folder] { copies_.take_screenshot(folder(), refusal_to_keep(case_.get())); }});
+                [this, folder, refusal] { copies_.take_screenshot(folder(), refusal()); }});
   actions_.add({"app.record_screen",
                 "Record screen",
                 "What the screen shows as a video in the case, until the key is pressed again",

@@ -67,6 +67,13 @@ TEST_F(ScreenCopyKeys, PutWhatTheScreenShowsIntoTheCase) {
   int count = 0;
   while (video->next() != nullptr) ++count;
   EXPECT_GE(count, 2);
+  // The list of cases and a PACS name other patients, and the case's pictures go to the archive.
+  app.press("F5");
+  ASSERT_TRUE(app.wait_for_state("start", "cases"));
+  app.press("F12");
+  EXPECT_TRUE(says(app, "other patients may be named here")) << app.state("screen_copy");
+  EXPECT_EQ(copies(app, ".png").size(), 1U);
+  app.press("F5");
   // Nobody said where to.
   app.press("shift+F12");
   EXPECT_TRUE(says(app, "names no screen_stream")) << app.state("screen_copy");
