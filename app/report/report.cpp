@@ -265,12 +265,10 @@ void Report::result_section(const operation::AchievedTunnel& achieved) {
 void Report::navigate_page() {
   pages_.begin_page("In theatre");
   for (const auto& [session, reason] : content_.unreadable)
-    pages_.sentence(
-        session.empty() ? "NOT READABLE, or not all of it: a session of this case."
-        : content_.session && session == content_.session->header().id
-            ? "NOT ALL of the session " + session + " is readable (" + reason + ")."
-            : "NOT READABLE, and not in this report: the session " + session + " (" + reason + ").",
-        {.bold = true, .ink = kWarning});
+    pages_.sentence(session.empty() ? "NOT READABLE, and not in this report: a session of this case."
+                                    : "NOT READABLE, and not in this report: the session " + session + " (" +
+                                          reason + ").",
+                    {.bold = true, .ink = kWarning});
   if (!content_.session) {
     pages_.sentence("No session with a registration or a drilled tunnel is recorded in this case.");
     draw_postop_section(pages_, content_);
@@ -309,6 +307,9 @@ void Report::navigate_page() {
   for (auto& row : safety_rows(session, content_.cut_short)) rows.push_back(std::move(row));
   pages_.table({70, 100}, rows);
   if (content_.registration) registration_section(*content_.registration);
+  if (!content_.registration_problem.empty())
+    pages_.sentence("NOT READABLE: the registration: " + content_.registration_problem,
+                    {.bold = true, .ink = kWarning});
   time_line_section(session);
   for (const operation::AchievedTunnel& achieved : content_.achieved) result_section(achieved);
   for (const Content::Earlier& earlier : content_.earlier) {

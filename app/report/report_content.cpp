@@ -57,8 +57,14 @@ void put(ReadSession read, Content& content) {
   content.session = std::move(read.session);
   content.achieved = std::move(read.achieved);
   content.registration.reset();
-  unless_unreadable(content.session->folder(), content,
-                    [&] { content.registration = registration_that_counts(*content.session); });
+  content.registration_problem.clear();
+  try {
+    content.registration = registration_that_counts(*content.session);
+  } catch (const InvalidInput& error) {
+    content.registration_problem = files::within_folder(content.folder, error.what());
+  } catch (const IoError& error) {
+    content.registration_problem = files::within_folder(content.folder, error.what());
+  }
 }
 
 enum class Registration { Found, Tried };
@@ -208,8 +214,8 @@ void blank_for_strangers(Content& content) {
   }
   for (recording::SessionMark& mark : content.marks)
     if (!mark.note.empty()) mark.note = kNotTold;
-  for (std::string* const problem :
-       {&content.marks_problem, &content.postoperative_problem, &content.camera_problem})
+  for (std::string* const problem : {&content.registration_problem, &content.marks_problem,
+                                     &content.postoperative_problem, &content.camera_problem})
     if (!problem->empty()) *problem = std::string("why is ") + kNotTold;
   for (recording::CheckFinding& finding : content.check.findings) {
     finding.what = finding.what.substr(0, finding.what.find(':'));  // after it: an error's own words
@@ -222,12 +228,12 @@ void blank_for_strangers(Content& content) {
 
 std::vector<std::string> shortcomings_of(const Content& content) {
   std::vector<std::string> sentences;
-  const std::string told = content.session ? content.session->header().id : "";
   for (const auto& [session, reason] : content.unreadable)
-    sentences.push_back(session.empty() ? "a session of this case cannot be read, or not all of it"
-                        : session == told
-                            ? "the session " + session + " cannot be read to its end: " + reason
+    sentences.push_back(session.empty()
+                            ? "a session of this case cannot be read and is not in it"
                             : "the session " + session + " cannot be read and is not in it: " + reason);
+  if (!content.registration_problem.empty())
+    sentences.push_back("the registration cannot be read and is not in it: " + content.registration_problem);
   if (content.check.outcome == recording::SessionCheck::Outcome::Broken)
     sentences.push_back("the session " + content.session_name + (content.session_name.empty() ? "" : " ") +
                         "is no longer what was recorded: " + recording::check_words(content.check));
@@ -295,6 +301,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
                   .session_name = {},
                   .started_utc = {},
                   .registration = {},
+                  .registration_problem = {},
                   .is_of_another_surface = false,
                   .cut_short = {},
                   .achieved = {},

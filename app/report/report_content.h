@@ -33,8 +33,9 @@ struct Content {
   std::unique_ptr<recording::RecordedSession> session;
   // Of `session`, as they are told: for strangers empty, as is every name of a session below.
   std::string session_name = {}, started_utc = {};
-  // Of `session`, the one that counts; nullopt, too, where it cannot be read, which `unreadable` then says.
+  // Of `session`, the one that counts; and why it cannot be read, empty when it can.
   std::optional<registration::RegistrationSummary> registration = {};
+  std::string registration_problem = {};
   // The case has another surface of its bone by now: nothing of it is drawn there, or measured against it.
   bool is_of_another_surface = false;
   std::string cut_short = {};                       // why its record is not whole; empty: it is

@@ -97,6 +97,7 @@ ordered_json session_of(const Content& content) {
     node["is_as_recorded"] = content.check.is_unbroken();
   node["registration"] = nullptr;
   if (content.registration) node["registration"] = json_of(*content.registration);
+  if (!content.registration_problem.empty()) node["registration_problem"] = content.registration_problem;
   node["safety"] = ordered_json::object();
   for (const auto& row : safety_rows(session, content.cut_short)) node["safety"][row[0]] = row[1];
   node["steps"] = ordered_json::array();

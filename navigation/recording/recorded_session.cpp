@@ -17,7 +17,6 @@ struct RecordedSession::State {
   std::vector<SessionEvent> events;
   std::vector<KeptPicture> pictures;  // empty when the video is the source's own
   strokes::Curves curves;
-  std::optional<registration::RegistrationSummary> registration;
 };
 
 RecordedSession::RecordedSession(const std::filesystem::path& folder) : state_(std::make_unique<State>()) {
@@ -40,9 +39,6 @@ RecordedSession::RecordedSession(const std::filesystem::path& folder) : state_(s
   if (const auto file = folder / "curves.csv"; std::filesystem::exists(file)) {
     s.curves = strokes::read_curves_file(file);
   }
-  if (const auto file = folder / "registration.json"; std::filesystem::exists(file)) {
-    s.registration = registration::read_registration_file(file);
-  }
 }
 
 RecordedSession::~RecordedSession() = default;
@@ -55,8 +51,10 @@ const std::vector<RecordedFrame>& RecordedSession::frames() const { return state
 const std::vector<SessionEvent>& RecordedSession::events() const { return state_->events; }
 const std::vector<KeptPicture>& RecordedSession::pictures() const { return state_->pictures; }
 const strokes::Curves& RecordedSession::curves() const { return state_->curves; }
-const std::optional<registration::RegistrationSummary>& RecordedSession::registration() const {
-  return state_->registration;
+std::optional<registration::RegistrationSummary> RecordedSession::registration() const {
+  const std::filesystem::path file = state_->folder / "registration.json";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  return registration::read_registration_file(file);
 }
 pipeline::PipelineOptions RecordedSession::pipeline_options() const { return state_->options; }
 std::filesystem::path RecordedSession::folder() const { return state_->folder; }

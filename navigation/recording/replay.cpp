@@ -175,7 +175,7 @@ Eigen::Vector3d target_of(const RecordedSession& session, const registration::Re
 
 void compare_registration(const RecordedSession& session, const operation::OperationState& now,
                           const ReplayOptions& options, ReplaySummary& summary) {
-  const auto& then = session.registration();
+  const auto then = session.registration();
   const auto& found = now.registration->in_force.registration;
   if (!then && must_hold_registration(session.was_finished(), session.events()))
     summary.differences.push_back({-1, "registration", 0, "", "registration.json is not there any more"});

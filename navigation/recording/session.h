@@ -244,7 +244,9 @@ class RecordedSession {
   // frame.
   [[nodiscard]] const std::vector<KeptPicture>& pictures() const;
   [[nodiscard]] const strokes::Curves& curves() const;
-  [[nodiscard]] const std::optional<registration::RegistrationSummary>& registration() const;
+  // The newest; read when it is asked for. Throws IoError or InvalidInput where it cannot be read: the rest
+  // can.
+  [[nodiscard]] std::optional<registration::RegistrationSummary> registration() const;
   [[nodiscard]] pipeline::PipelineOptions pipeline_options() const;  // to run it again
   [[nodiscard]] std::filesystem::path video() const;                 // empty when none was kept
   [[nodiscard]] std::filesystem::path folder() const;

@@ -53,7 +53,7 @@ TEST_F(Report, ABrokenRegistrationTakesNothingElseAway) {
   options.session = session_folder.filename().string();
   write(pdf(), options);
   const std::string text = pdf_text();
-  expect_contains(text, "NOT ALL of the session " + options.session + " is readable");
+  expect_contains(text, "NOT READABLE: the registration: ");
   expect_contains(text, "registration.json");
   expect_contains(text, "In theatre");
 }
