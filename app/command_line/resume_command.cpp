@@ -32,7 +32,8 @@ nlohmann::ordered_json json_of(const recording::ResumeSearch& search) {
   json["session"] = was.session;
   json["bone"] = bones::to_text(found.header.bone);
   json["source"] = found.header.source_kind;
-  json["was_cut_off"] = !found.was_finished;
+  json["was_cut_off"] = !found.was_finished && !found.is_being_recorded;
+  json["is_being_recorded"] = found.is_being_recorded;
   json["registration"] = nullptr;
   if (was.registration) {
     json["registration"] = {{"marker_from_bone", files::to_json(was.registration->marker_from_bone)},
@@ -57,7 +58,10 @@ nlohmann::ordered_json json_of(const recording::ResumeSearch& search) {
 void say(const Context& context, const recording::Resumable& found) {
   const operation::ResumeOperation& was = found.operation;
   context.say("session " + was.session + ", " + std::string(bones::to_text(found.header.bone)) + ", " +
-              found.header.source_kind + (found.was_finished ? "" : ", cut off"));
+              found.header.source_kind +
+              (found.is_being_recorded ? ", being recorded now"
+               : found.was_finished    ? ""
+                                       : ", cut off"));
   if (was.registration)
     context.say(files::format("registration: predicted error %.2f mm%s; guides after one touch on the bone",
                               was.registration->predicted_tre_mm,

@@ -6,6 +6,7 @@
 
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
+#include "navigation/recording/recording_lock.h"
 #include "navigation/recording/rerun.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/registration/registration_file.h"
@@ -212,11 +213,13 @@ ResumeSearch find_resumable(const std::filesystem::path& case_folder, bones::Bon
     try {  // one broken session must not hide the others for good; that it was passed over is told
       pipeline::PipelineOptions options;
       if (read_session_header(folder, options).bone != bone) continue;
+      const bool goes_on = is_being_recorded(folder);  // before it is read: it may end meanwhile
       const RecordedSession session(folder);
       if (is_exercise(session.header())) continue;
       if (session.frames().empty() && session.header().continues.empty()) continue;
       std::string why = why_over(session, mesh_sha256, planned);
       if (why.empty()) search.left = resumable_from(session);
+      if (search.left) search.left->is_being_recorded = goes_on && !session.was_finished();
       if (!search.left)
         search.why_none = "session " + session.header().id + ": " +
                           (why.empty() ? "it came to nothing that could be gone on with" : why);

@@ -24,7 +24,8 @@ struct Resumable {
   std::vector<tunnels::TunnelKey> drilled;
   SessionHeader header;                                // of the newest session of it
   std::chrono::system_clock::time_point last_written;  // when that was
-  bool was_finished = false;                           // false: it was cut off, as by a crash
+  bool was_finished = false;                           // false: it was cut off, as by a crash; or it goes on:
+  bool is_being_recorded = false;                      // now, in another window or program
 };
 
 struct ResumeSearch {

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
+#include <optional>
+#include <thread>
 
 #include "navigation/recording/session_check.h"
 #include "navigation/sources/exercise_source.h"
@@ -32,6 +35,23 @@ TEST_F(ResumableTest, Hazard40AnExerciseIsPassedOver) {
   end(again);
   ASSERT_TRUE(found());
   EXPECT_EQ(found()->operation.session, left);
+}
+
+// While it goes on it was not cut off.
+TEST_F(ResumableTest, OneThatIsBeingRecordedIsSaidToBe) {
+  PhantomOperation run;
+  operate(run, test::scripted_source(SourceKind::Live));
+  std::optional<Resumable> left;  // the record is committed twice a second
+  for (int i = 0; i < 100 && !left; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    left = found();
+  }
+  ASSERT_TRUE(left);
+  EXPECT_FALSE(left->was_finished);
+  EXPECT_TRUE(left->is_being_recorded);
+  end(run);
+  EXPECT_TRUE(found()->was_finished);
+  EXPECT_FALSE(found()->is_being_recorded);
 }
 
 // To the last bit: what is brought back is what there was.
