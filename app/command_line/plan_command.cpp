@@ -308,10 +308,10 @@ void add_plan_command(CLI::App& app, Context& context) {
           ->excludes(direction)
           ->excludes(remove);
   auto* exports =
-      sub->add_option("--export", arguments->export_folder,
-                      "Folder for plan.json, plan.csv, plan.mrk.json and the drilled bones (STL and PLY), in "
-                      "place of an "
-                      "earlier export; no case's, and nothing that another program changed or wrote")
+      sub->add_option(
+             "--export", arguments->export_folder,
+             "Folder for plan.json, plan.csv, plan.mrk.json and the drilled bones (STL and PLY), in "
+             "place of an earlier export; no case's, and nothing that another program changed or wrote")
           ->check(a_file());
   auto* json =
       sub->add_flag("--json", arguments->as_json, "Print the tunnel as JSON, without --bone every tunnel");
@@ -327,16 +327,10 @@ void add_plan_command(CLI::App& app, Context& context) {
                    ->excludes(remove);
   auto* keep = sub->add_flag("--keep", arguments->keeps,
                              "Keep the plan as a version beside the one that is worked on");
-  sub->add_flag("--versions", arguments->lists_versions, "List the kept versions and how each differs")
-      ->excludes(by_default)
-      ->excludes(markups)
-      ->excludes(direction)
-      ->excludes(take)
-      ->excludes(remove)
-      ->excludes(keep)
-      ->excludes(exports)
-      ->excludes(list)
-      ->excludes(json);
+  auto* versions =
+      sub->add_flag("--versions", arguments->lists_versions, "List the kept versions and how each differs");
+  for (CLI::Option* other : {by_default, markups, direction, take, remove, keep, exports, list, json})
+    versions->excludes(other);
   entry->needs(direction);
   footprint->needs(direction);
   sub->callback([arguments, entry, direction, type, diameter, &context] {

@@ -92,10 +92,11 @@ void take_named(const std::string& name, std::vector<std::filesystem::path>& ses
 }
 
 bool is_of_another_surface(const Content& content) {
+  if (content.session == nullptr) return false;
   const recording::SessionHeader& header = content.session->header();
   const auto bone = content.knee.bones.find(header.bone);
-  return bone != content.knee.bones.end() && !header.mesh_sha256.empty() &&
-         header.mesh_sha256 != bones::mesh_sha256(bone->second.mesh);
+  return bone != content.knee.bones.end() &&
+         recording::is_of_another_surface(header, bones::mesh_sha256(bone->second.mesh));
 }
 
 // The newest of each bundle that is planned and not among the session's own.
@@ -113,7 +114,8 @@ void add_earlier(const std::vector<std::filesystem::path>& sessions, Content& co
         if (key.bone != bone || !content.knee.plan.tunnels.contains(key) || known.contains(key)) continue;
         const recording::RecordedSession before(*it);
         const recording::SessionHeader &then = before.header(), &now = content.session->header();
-        if (then.source_kind != now.source_kind || then.mesh_sha256 != now.mesh_sha256) continue;
+        if (then.source_kind != now.source_kind || recording::is_of_another_surface(then, now.mesh_sha256))
+          continue;
         known.insert(key);
         content.earlier.push_back({std::move(achieved), it->filename().string()});
       }
@@ -331,7 +333,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   }
   plan_review::propose_landmarks(content.knee, plan_review::Proposing::WithoutGrid);
   content.review = std::make_unique<const plan_review::CaseReview>(content.knee);
-  content.is_of_another_surface = content.session != nullptr && is_of_another_surface(content);
+  content.is_of_another_surface = is_of_another_surface(content);
   add_earlier(sessions, content);
   add_postoperative(content);
   add_places(content);

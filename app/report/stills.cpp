@@ -16,7 +16,6 @@
 #include "navigation/recording/of_drilled.h"
 #include "navigation/recording/recorded_pictures.h"
 #include "navigation/recording/told_events.h"
-#include "planning/bones/mesh_hash.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 
@@ -160,9 +159,7 @@ class Drawer {
   explicit Drawer(const Content& content)
       : session_(*content.session), options_(session_.pipeline_options()) {
     const auto bone = content.knee.bones.find(session_.header().bone);
-    if (bone == content.knee.bones.end()) return;
-    const std::string& seen_on = session_.header().mesh_sha256;
-    if (!seen_on.empty() && bones::mesh_sha256(bone->second.mesh) != seen_on) return;
+    if (bone == content.knee.bones.end() || content.is_of_another_surface) return;
     mesh_ = &bone->second.mesh;
     surface_ = std::make_shared<geometry::Surface>(*mesh_);
   }

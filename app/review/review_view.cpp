@@ -123,7 +123,9 @@ void ReviewView::take_opened() {
 void ReviewView::look_at_tunnel() {
   const bones::BoneKind bone = open_->review.session->header.bone;
   if (!model_->has_bone(bone)) return;
-  const std::optional<tunnels::Tunnel>& tunnel = open_->standing().plan.plan;
+  // Of another surface's plan nobody knows where it lies in this one.
+  const std::optional<tunnels::Tunnel> tunnel =
+      is_of_another_surface() ? std::nullopt : open_->standing().plan.plan;
   const geometry::Bounds bounds = model_->bounds(bone);
   pane_.look(tunnel ? scene::orbited(
                           scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 190, {0, 0, 1}),
@@ -338,68 +340,6 @@ void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) 
   if (!fetched)
     widgets::caption(ui, area, widgets::kCaution,
                      "Reading. This picture: " + nearness_in_words(picture->timestamp_ns, wish.timestamp_ns));
-}
-
-void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
-  const SessionReview& review = open_->review;
-  if (!model_->has_bone(review.session->header.bone)) return;
-  if (open_->shown_frame != open_->playback.frame) {
-    show_scene();
-    open_->shown_frame = open_->playback.frame;
-  }
-  pane_.draw(ui, "review.view", area);
-  const bool is_femur = review.session->header.bone == bones::BoneKind::Femur;
-  const auto& plan = open_->standing().plan.plan;
-  if (is_of_another_surface()) {
-    ui.log.note_state("review_bone", "another surface");
-    return widgets::caption(
-        ui, area, widgets::kCaution,
-        std::string(is_femur ? "Femur" : "Tibia") +
-            " of now: the session was of another surface, and nothing of it is drawn here");
-  }
-  ui.log.note_state("review_bone", "the session's");
-  const bool shows_drilled = !review.drilled_at(open_->glance().index).empty();
-  const std::string planned = !plan ? ""
-                              : plan->bundle == norms::Bundle::Whole
-                                  ? ". Blue: planned"
-                                  : ". Blue: planned " + tunnels::name_of(plan->key());
-  widgets::caption(
-      ui, area, widgets::kText,
-      std::string(is_femur ? "Femur" : "Tibia") + planned + (shows_drilled ? ". Banded: achieved" : ""));
-}
-
-bool ReviewView::is_of_another_surface() const {
-  const recording::SessionHeader& header = open_->review.session->header;
-  return !header.mesh_sha256.empty() && header.mesh_sha256 != model_->mesh_sha256(header.bone);
-}
-
-void ReviewView::show_scene() {
-  const SessionReview& review = open_->review;
-  const recording::SessionOverview& session = *review.session;
-  const recording::RecordedFrame& frame = open_->timeline().frame(open_->playback.frame);
-  const bones::BoneKind bone = session.header.bone;
-  scene::SceneContent content;
-  content.bones.push_back({model_->drawn_mesh(bone), scene::kBoneColor, 1.0});
-  if (is_of_another_surface()) return pane_.show(content);
-  const Standing& standing = open_->standing();
-  const recording::RecordedSession::PlanChange& plan = standing.plan;
-  if (plan.plan) scene::add_planned_tunnel(content, *plan.plan, plan.planned_length_mm);
-  for (const DrilledTunnel* const drilled : review.drilled_at(frame.index))
-    scene::add_achieved_tunnel(content, drilled->achieved.measured, drilled->length_mm);
-  if (standing.registration != nullptr && standing.registration->has_pose) {
-    const geometry::RigidTransform bone_from_marker = standing.registration->marker_from_bone.inverse();
-    std::vector<Eigen::Vector3d> touched;
-    for (const strokes::CurvePoint& point : session.curves)
-      touched.push_back(bone_from_marker * point.position_mm);
-    scene::add_curve_points(content, touched);
-    if (frame.tip_is_valid)
-      content.balls.push_back({bone_from_marker * frame.tip_in_world_mm, 2.5, scene::kGuideColor, false});
-  }
-  if (frame.guidance.is_valid())
-    scene::add_guide(content, frame.guidance.guide_point_mm, frame.guidance.guide_direction,
-                     frame.guidance.drill ? std::max(frame.guidance.drill->remaining_mm, 5.0)
-                                          : std::max(plan.planned_length_mm, 5.0));
-  pane_.show(content);
 }
 
 }  // namespace arthronaut::review

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "app/widgets/tooltip.h"
 #include "app/widgets/wrapped_text.h"
+#include "planning/files/fixed_number.h"
 
 namespace arthronaut::widgets {
 
@@ -256,11 +256,8 @@ void caption(const Ui& ui, const Rect& picture, ImU32 color, std::string_view te
 }
 
 std::string fixed(double value, int decimals) {
-  std::array<char, 64> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.*f", decimals, std::abs(value));
-  std::string text = buffer.data();
-  const bool is_zero = text.find_first_of("123456789") == std::string::npos;
-  return value < 0 && !is_zero ? "\u2212" + text : text;
+  std::string text = files::fixed(value, decimals);
+  return text.front() == '-' ? "\u2212" + text.substr(1) : text;
 }
 
 std::string plus_minus(double sigma) { return "\u00B1 " + fixed(std::max(sigma, 0.1), 1); }

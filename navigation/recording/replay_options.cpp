@@ -11,8 +11,7 @@ ReplayOptions replay_options_of(const std::filesystem::path& case_folder, const 
   ReplayOptions options;
   const auto found = knee.bones.find(session.header().bone);
   if (found == knee.bones.end()) return options;
-  const std::string& recorded = session.header().mesh_sha256;
-  if (!recorded.empty() && recorded != bones::mesh_sha256(found->second.mesh)) {
+  if (is_of_another_surface(session.header(), bones::mesh_sha256(found->second.mesh))) {
     options.other_bone = "the case's " + std::string(bones::to_text(found->first)) +
                          " is not the mesh that this session was recorded with: nothing is registered again";
     return options;

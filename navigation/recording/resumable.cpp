@@ -197,7 +197,7 @@ std::string why_over(const RecordedSession& newest, const std::string& mesh_sha2
   const SessionHeader& header = newest.header();
   if (header.source_kind.empty() || header.registers_after_mm > 0)
     return "nobody was at its pedal: what navigate ran on a recording is run again, not resumed";
-  if (!header.mesh_sha256.empty() && !mesh_sha256.empty() && header.mesh_sha256 != mesh_sha256)
+  if (is_of_another_surface(header, mesh_sha256))
     return "it is of another surface of the bone than the case has now";
   return has_come_to_its_end(newest, planned) ? "its tunnels are drilled, it came to its end" : "";
 }

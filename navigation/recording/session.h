@@ -57,6 +57,12 @@ struct SessionHeader {
   std::string build;  // build_identity() of the program that recorded it
 };
 
+// Whether it was recorded on another surface of the bone than the one of this hash (bones::mesh_sha256).
+// Where either is not known, empty, nothing says so.
+[[nodiscard]] inline bool is_of_another_surface(const SessionHeader& header, const std::string& mesh_sha256) {
+  return !header.mesh_sha256.empty() && !mesh_sha256.empty() && header.mesh_sha256 != mesh_sha256;
+}
+
 // SHA-256 of the running program: the same build gives the same states to the last bit. Computed once.
 [[nodiscard]] const std::string& build_identity();
 

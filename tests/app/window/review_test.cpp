@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "navigation/recording/session_marks.h"
@@ -53,6 +54,18 @@ TEST_F(ReviewWindow, SaysThatARecordWasChanged) {
   app.press("F3");
   ASSERT_TRUE(app.wait_for_state("review_picture", "shown"));
   EXPECT_TRUE(app.wait_for_state("record", "broken"));
+}
+
+// The case's bone was replaced since: nothing of the session is drawn on the new one.
+TEST_F(ReviewWindow, DrawsNothingOnABoneThatTheSessionWasNotOf) {
+  nlohmann::json header = nlohmann::json::parse(std::ifstream(session_ / "session.json"));
+  header["mesh_sha256"] = "of another surface";
+  std::ofstream(session_ / "session.json") << header;
+  const VirtualDisplay display(1920, 1080);
+  RunningWorkstation app(display, folder_.path(), {case_folder_.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F3");
+  EXPECT_TRUE(app.wait_for_state("review_bone", "another surface"));
 }
 
 // A folder that cannot be looked into is a sentence on the screen; the workstation goes on. By key that is
