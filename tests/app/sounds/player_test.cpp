@@ -52,18 +52,22 @@ TEST(Player, OfSeveralThatWaitTheMostUrgentIsPlayed) {
       player.play(sound);
     const int reader = ::open(pipe.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
     ASSERT_GE(reader, 0);
-    std::jthread reading([&](const std::stop_token& stop) {
+    const auto read_what_is_there = [&] {
       std::vector<char> piece(1 << 16);
-      for (ssize_t count = 0; count > 0 || !stop.stop_requested();) {
-        count = ::read(reader, piece.data(), piece.size());
-        if (count > 0) played.insert(played.end(), piece.begin(), piece.begin() + count);
-        if (count <= 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      for (ssize_t count = 0; (count = ::read(reader, piece.data(), piece.size())) > 0;)
+        played.insert(played.end(), piece.begin(), piece.begin() + count);
+    };
+    std::jthread reading([&](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+        read_what_is_there();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
     });
     player.finish();
     EXPECT_EQ(player.trouble(), "");
     reading.request_stop();
     reading.join();
+    read_what_is_there();  // what was written while the thread slept for the last time
     ::close(reader);
   }
   const std::vector<std::int16_t> samples = samples_of(Sound::Breakout);
