@@ -28,6 +28,13 @@ std::vector<tunnels::Tunnel> planned(const cases::Case& knee, const PostopQuesti
 // Names nobody: it is kept, and goes out with reports that name nobody.
 constexpr const char* kOtherPatient = "the images say that they are of another patient than the case";
 
+// As whoever took them marked them: a wrong mark of the right knee is possible, too.
+std::string other_side_of(const images::Volume& volume, const cases::Case& knee) {
+  if (!volume.side || *volume.side == knee.side) return "";
+  return "the images are marked as those of a " + std::string(bones::to_text(*volume.side)) +
+         " knee, the case is a " + std::string(bones::to_text(knee.side)) + " one";
+}
+
 // Empty: of the same patient, or nobody says so.
 std::string other_patient_of(const images::Volume& volume, const std::filesystem::path& case_folder) {
   const cases::Identity images{volume.patient.name, volume.patient.id, volume.patient.birth_date};
@@ -106,6 +113,8 @@ PostopAnswer compare_with_postop(const PostopQuestion& question) {
   if (!answer.other_patient.empty()) {
     for (auto& [key, comparison] : answer.comparisons) doubt(comparison, kOtherPatient);
   }
+  if (const std::string other_side = other_side_of(answer.images, knee); !other_side.empty())
+    for (auto& [key, comparison] : answer.comparisons) doubt(comparison, other_side);
   return answer;
 }
 

@@ -44,9 +44,9 @@ struct PostopAnswer {
   [[nodiscard]] std::vector<std::string> doubts() const;
 };
 
-// A tunnel of images that say they are of another patient than the case is in doubt for that reason. Throws
-// IoError or InvalidInput: nothing planned, a plan of another bone, images that cannot be read or show no
-// bone.
+// A tunnel of images that say they are of another patient than the case, or of a knee of the other side, is
+// in doubt for that reason. Throws IoError or InvalidInput: nothing planned, a plan of another bone, images
+// that cannot be read or show no bone.
 [[nodiscard]] PostopAnswer compare_with_postop(const PostopQuestion& question);
 
 }  // namespace arthronaut::open_case

@@ -85,9 +85,10 @@ void import(Context& context, const ImportArguments& arguments) {
   }
   workstation_library::note_case(folder);
   context.say("Wrote " + folder.string() + ": a " + std::string(bones::to_text(target.side)) + " knee" +
-              (import.side_is_by_segment ? " (by the name of a segment)"
-               : import.side_was_guessed ? " (by the name of the source)"
-                                         : "") +
+              (import.side_is_by_segment  ? " (by the name of a segment)"
+               : import.side_is_by_images ? " (as the images are marked)"
+               : import.side_was_guessed  ? " (by the name of the source)"
+                                          : "") +
               (import.side_is_by_shape ? " (by the shape of its bones alone)"
                : import.side_was_seen  ? " (by its anatomy)"
                                        : "") +

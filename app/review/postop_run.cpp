@@ -71,6 +71,7 @@ images::Volume read_beside(const std::filesystem::path& source, const std::files
   if (!read.image) throw InvalidInput(source, "", "could not be handed over by the process that read it");
   images::Volume volume = images::volume_of(read.image->volume);
   volume.patient = {read.identity.patient_name, read.identity.patient_id, read.identity.birth_date};
+  volume.side = read.side_in_images;
   return volume;
 }
 

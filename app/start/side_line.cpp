@@ -9,8 +9,18 @@ using widgets::Severity;
 SideLine side_line(const importing::BoneImport& import, std::optional<bones::Side> side, bool was_said) {
   if (!side) return {Severity::Caution, "neither names nor images tell: press R or L"};
   const std::string word(bones::to_text(*side));
-  const std::string by_name =
-      import.side_is_by_segment ? ", by the name of a segment" : ", by the name of the source";
+  const std::string by_name = import.side_is_by_segment  ? ", by the name of a segment"
+                              : import.side_is_by_images ? ", as the images are marked"
+                                                         : ", by the name of the source";
+  if (import.side_in_images && *import.side_in_images != *side) {
+    const char* told_by = was_said                  ? ", as you say"
+                          : import.side_is_by_shape ? ", by the shape of the bones"
+                          : import.side_was_seen    ? ", by the fibula"
+                                                    : "";
+    return {Severity::Bad, word + told_by + ", but the images are marked as those of a " +
+                               std::string(bones::to_text(*import.side_in_images)) +
+                               " knee: look at the picture"};
+  }
   if (was_said && import.side_was_seen && import.side != side)
     return {import.side_is_by_shape ? Severity::Caution : Severity::Bad,
             word + ", as you say, but " +

@@ -159,6 +159,13 @@ std::optional<std::vector<double>> decimals_of(DcmItem& item, const DcmTagKey& k
   return values;
 }
 
+std::optional<bones::Side> side_of(DcmItem& item, const DcmTagKey& key) {
+  const std::string text = text_of(item, key);
+  if (text == "L") return bones::Side::Left;
+  if (text == "R") return bones::Side::Right;
+  return std::nullopt;
+}
+
 int unsigned_short_of(DcmItem& item, const DcmTagKey& key, int absent) {
   Uint16 value = 0;
   return item.findAndGetUint16(key, value).good() ? static_cast<int>(value) : absent;

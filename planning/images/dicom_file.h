@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "planning/bones/bone.h"
+
 class DcmDataset;
 class DcmItem;
 class DcmTagKey;
@@ -36,6 +38,8 @@ namespace arthronaut::images {
 // nullopt unless the element holds exactly `count` finite numbers.
 [[nodiscard]] std::optional<std::vector<double>> decimals_of(DcmItem& item, const DcmTagKey& key,
                                                              std::size_t count);
+// "L" or "R", as an element for a laterality has it; nullopt for whatever else is there: "B" is both.
+[[nodiscard]] std::optional<bones::Side> side_of(DcmItem& item, const DcmTagKey& key);
 [[nodiscard]] int unsigned_short_of(DcmItem& item, const DcmTagKey& key, int absent);
 
 }  // namespace arthronaut::images

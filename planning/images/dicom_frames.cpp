@@ -63,6 +63,19 @@ void read_echo_time(DcmItem* own, DcmItem* shared, DicomSlice& slice) {
   }
 }
 
+// DCMTK's class for it knows no frame without a code for its region.
+void read_side(DcmItem* own, DcmItem* shared, DicomSlice& slice) {
+  for (DcmItem* groups : {own, shared}) {
+    DcmItem* anatomy = nullptr;
+    if (!groups || groups->findAndGetSequenceItem(DCM_FrameAnatomySequence, anatomy).bad() || !anatomy)
+      continue;
+    if (const auto side = side_of(*anatomy, DCM_FrameLaterality)) {
+      slice.side = side;
+      return;
+    }
+  }
+}
+
 // A group is either of one frame or of all (DICOM PS3.3, C.7.6.16): of two places none is to be believed.
 void refuse_said_twice(DcmItem& own, DcmItem& shared, const DicomSlice& slice) {
   for (const DcmTagKey& key :
@@ -107,6 +120,7 @@ std::vector<DicomSlice> slices_of_frames(const DicomSlice& common, DcmDataset& d
     read_geometry(groups, i, slice);
     read_rescaling(groups, i, slice);
     read_echo_time(own, shared_item, slice);
+    read_side(own, shared_item, slice);
   }
   return slices;
 }

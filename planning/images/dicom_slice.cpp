@@ -63,6 +63,9 @@ DicomSlice common_part(const std::filesystem::path& file, DcmDataset& dataset) {
   }
   slice.frame.slope = rescaling_of(slice, dataset, DCM_RescaleSlope, slice.frame.slope);
   slice.frame.intercept = rescaling_of(slice, dataset, DCM_RescaleIntercept, slice.frame.intercept);
+  // Of the image before that of the series, of which it may be one of the other side.
+  slice.side = side_of(dataset, DCM_ImageLaterality);
+  if (!slice.side) slice.side = side_of(dataset, DCM_Laterality);
   if (const auto echo = decimals_of(dataset, DCM_EchoTime, 1)) slice.echo_time_ms = echo->front();
   if (const auto number = decimals_of(dataset, DCM_InstanceNumber, 1))
     slice.instance_number = number->front();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "planning/bones/bone.h"
 #include "planning/images/dicom_origin.h"
 #include "planning/images/dicom_pixels.h"
 #include "planning/images/volume.h"
@@ -27,6 +28,7 @@ struct DicomSlice {
   Eigen::Vector3d along_rows = Eigen::Vector3d::Zero();     // unit, of increasing row index
   double column_spacing_mm = 0, row_spacing_mm = 0;
   std::optional<double> echo_time_ms;
+  std::optional<bones::Side> side;            // that is shown; not of both, or unpaired
   std::optional<double> instance_number;      // of the file, as its scanner counted
   double gantry_tilt_deg = 0;                 // as the header says; 0 where it does not
   std::shared_ptr<const DicomOrigin> origin;  // of the whole file

@@ -3,8 +3,11 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "planning/bones/bone.h"
 
 namespace arthronaut::images {
 
@@ -26,9 +29,12 @@ struct Volume {
   Eigen::Affine3d lps_from_index = Eigen::Affine3d::Identity();
   // i runs fastest. Rescaled: Hounsfield units for a CT, labels as they are. Finite.
   std::vector<float> values;
-  std::string format;              // "DICOM", "NIfTI"
-  Patient patient;                 // DICOM alone says so
-  std::string modality;            // "CT", "MR"; empty when the file does not say
+  std::string format;    // "DICOM", "NIfTI"
+  Patient patient;       // DICOM alone says so
+  std::string modality;  // "CT", "MR"; empty when the file does not say
+  // Of the body that is shown, as whoever took the images marked them (DICOM alone); nullopt where none of
+  // them says it, or not all the same.
+  std::optional<bones::Side> side;
   std::vector<Segment> segments;   // empty where the file names none
   std::vector<std::string> notes;  // choices that the reader made, for a person to see
 

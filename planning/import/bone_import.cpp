@@ -269,6 +269,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   result.lines.insert(result.lines.end(), volume.notes.begin(), volume.notes.end());
 
   const auto labels = labels_of(volume);
+  take_side_of_images(result, volume.side, options.side.has_value());
   result.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
   const bool is_label_map = labels.size() > 1 && labels.front().first >= 0 && volume.modality.empty();
   bool fibula_was_seen = false;
@@ -314,6 +315,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
                                .volume = encoded(volume)};
   tell({ImportStage::LookingAtBones});
   check_shapes(result, fibula_was_seen);
+  check_side_of_images(result);
   // After the shapes, which are looked at where nothing speaks against a bone yet.
   for (ImportedBone& imported : result.bones)
     for (const ImageCut& cut : images_of_bones.cuts[imported.bone.kind])

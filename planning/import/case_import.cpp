@@ -40,7 +40,8 @@ cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, con
                              std::string(bones::to_text(*import.side)) + " one" +
                              (!import.side_was_guessed    ? ""
                               : import.side_is_by_segment ? " by its segments' names (--side says otherwise)"
-                                                          : " by its name (--side says otherwise)"));
+                              : import.side_is_by_images ? " as its images are marked (--side says otherwise)"
+                                                         : " by its name (--side says otherwise)"));
     }
     if (!name.empty()) existing.name = name;
     return existing;

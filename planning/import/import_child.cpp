@@ -97,6 +97,7 @@ void read_postop(int socket, const ChildRequest& request) {
   const images::Volume volume = postop::read_postop(request.source, options);
   BoneImport import;
   import.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
+  import.side_in_images = volume.side;
   const images::EncodedVolume encoded = images::encoded(volume);
   if (!put_voxels(kSharedDescriptor, encoded.voxels)) throw std::bad_alloc();
   import.image.emplace().volume.header = encoded.header;

@@ -170,6 +170,8 @@ void describe(Archive& archive, BoneImport& import) {
   describe(archive, import.side);
   describe(archive, import.side_was_guessed);
   describe(archive, import.side_is_by_segment);
+  describe(archive, import.side_is_by_images);
+  describe(archive, import.side_in_images);
   describe(archive, import.side_was_seen);
   describe(archive, import.side_is_by_shape);
   describe(archive, import.side_is_contradicted);
@@ -326,8 +328,9 @@ void refuse_unsound(const SeriesPicture& picture) {
 }
 
 void refuse_unsound(const BoneImport& import) {
-  if (import.side && *import.side != bones::Side::Left && *import.side != bones::Side::Right)
-    throw InvalidInput("the importing process sent a side that is none");
+  for (const auto& side : {import.side, import.side_in_images})
+    if (side && *side != bones::Side::Left && *side != bones::Side::Right)
+      throw InvalidInput("the importing process sent a side that is none");
   for (const ImportedBone& imported : import.bones) {
     const geometry::TriangleMesh& mesh = imported.bone.mesh;
     const auto count = static_cast<std::int64_t>(mesh.vertices_mm.size());

@@ -42,6 +42,33 @@ std::string side_by_shape_alone(bones::Side shape) {
   return "that it is a " + word_of(shape) + " knee is told by the shape of its bones alone: check the side";
 }
 
+std::string other_side_in_images(bones::Side images, bones::Side said) {
+  return "the images are marked as those of a " + word_of(images) + " knee, but the side is " +
+         word_of(said) + ": check the side";
+}
+
+void take_side_of_images(BoneImport& import, std::optional<bones::Side> marked, bool was_said) {
+  import.side_in_images = marked;
+  if (!marked) return;
+  std::string line = "the images are marked as those of a " + word_of(*marked) + " knee";
+  if (!was_said && import.side && *import.side != *marked) {
+    line += ", the name says that it is a " + word_of(*import.side) + " one: neither is taken";
+    import.side.reset();
+    import.side_was_guessed = false;
+  } else if (!import.side) {
+    import.side = marked;
+    import.side_was_guessed = import.side_is_by_images = true;
+  }
+  import.lines.push_back(line);
+}
+
+void check_side_of_images(BoneImport& import) {
+  if (!import.side || !import.side_in_images || *import.side == *import.side_in_images) return;
+  for (ImportedBone& bone : import.bones)
+    bone.doubts.push_back(other_side_in_images(*import.side_in_images, *import.side));
+  import.side_is_contradicted = true;
+}
+
 std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBone& bone, bones::Side side,
                                      bool is_said_by_person) {
   std::vector<std::string> doubts = bone.doubts;
@@ -53,7 +80,10 @@ std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBon
     for (const bool of_both : {true, false})
       std::erase(doubts, other_side_by_shape(side, *import.side, of_both));
     std::erase(doubts, side_by_shape_alone(*import.side));
+    std::erase(doubts, other_side_in_images(side, *import.side));
   }
+  if (import.side_in_images && *import.side_in_images != side)
+    doubts.push_back(other_side_in_images(*import.side_in_images, side));
   if (fibula_told(import)) {
     doubts.push_back(other_side_by_fibula(*import.side, side));
   } else if (const auto shape = side_by_shapes(import);
@@ -72,10 +102,11 @@ void say_side(BoneImport& import, bones::Side side) {
     return;
   }
   const auto shape = side_by_shapes(import);
-  import.side_is_contradicted = fibula_told(import) || (shape && *shape != side);
+  import.side_is_contradicted = fibula_told(import) || (shape && *shape != side) ||
+                                (import.side_in_images && *import.side_in_images != side);
   import.side = side;
-  import.side_was_guessed = import.side_is_by_segment = import.side_was_seen = import.side_is_by_shape =
-      false;
+  import.side_was_guessed = import.side_is_by_segment = import.side_is_by_images = false;
+  import.side_was_seen = import.side_is_by_shape = false;
 }
 
 bool add_bones(BoneImport& import, BoneImport more) {

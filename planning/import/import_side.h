@@ -17,6 +17,13 @@ namespace arthronaut::importing {
 [[nodiscard]] std::string other_side_by_fibula(bones::Side fibula, bones::Side said);
 [[nodiscard]] std::string other_side_by_shape(bones::Side shape, bones::Side said, bool of_both);
 [[nodiscard]] std::string side_by_shape_alone(bones::Side shape);
+[[nodiscard]] std::string other_side_in_images(bones::Side images, bones::Side said);
+
+// As the images are marked, where nobody said it. A name that says the other side is as good a witness:
+// neither is believed then, and the bones may tell.
+void take_side_of_images(BoneImport& import, std::optional<bones::Side> marked, bool was_said);
+// The doubts of all bones where the side, whatever told it, is not that of the images.
+void check_side_of_images(BoneImport& import);
 
 // The doubts of one of its bones in a knee of that side: as a person says it, or as the case has it that the
 // bone is added to. Those of shapes stay with the first bone.

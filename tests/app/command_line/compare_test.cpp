@@ -1,4 +1,6 @@
 // compare on the built-in knee, drilled and scanned, as a user types it.
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dctk.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -173,6 +175,21 @@ TEST_F(CompareCommand, WhoElseTheImagesAreOfIsSaidAndNotKept) {
   EXPECT_EQ(into_case.exit_code, 3);
   EXPECT_THAT(into_case.errors, AllOf(HasSubstr("4711"), HasSubstr("nothing is written into the case")));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "knee.arthro/achieved.json"));
+}
+
+// The other knee of the same patient, or one that was marked wrongly: to be looked at before it is relied on.
+TEST_F(CompareCommand, ImagesThatAreMarkedAsOfTheOtherSideAreDoubted) {
+  test::DicomSeriesForm form;
+  const bool is_left = knee_.side == bones::Side::Left;
+  form.change = [&](DcmDataset& dataset, int) {
+    ASSERT_TRUE(dataset.putAndInsertString(DCM_Laterality, is_left ? "R" : "L").good());
+  };
+  test::write_dicom_series(folder_ / "ct", test::postop_ct({made_.femur.mesh}, {}, lying_, test::half_fine()),
+                           form);
+  const auto result = compare("ct", "achieved.json");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.errors, HasSubstr(std::string("the images are marked as those of a ") +
+                                       (is_left ? "right" : "left") + " knee"));
 }
 
 // One bone alone would take the other one's place in the same file.

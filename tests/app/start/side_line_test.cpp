@@ -49,6 +49,26 @@ TEST(SideLineTest, APersonAgainstTheAnatomyIsTold) {
   EXPECT_NE(shape.text.find("shaped as in a left knee"), std::string::npos) << shape.text;
 }
 
+// How the images are marked is told where it is all there is, and against a person, the fibula or the shape.
+TEST(SideLineTest, HowTheImagesAreMarkedIsTold) {
+  importing::BoneImport import = import_of(true, false, false);
+  import.side_is_by_images = true;
+  import.side_in_images = Side::Left;
+  EXPECT_EQ(side_line(import, Side::Left, false).text,
+            "left, as the images are marked: is that so? Press R or L");
+  EXPECT_EQ(side_line(import, Side::Left, false).severity, Severity::Caution);
+  EXPECT_EQ(side_line(import, Side::Left, true).text, "left, as you say");
+  const SideLine other = side_line(import, Side::Right, true);
+  EXPECT_EQ(other.severity, Severity::Bad);
+  EXPECT_EQ(other.text,
+            "right, as you say, but the images are marked as those of a left knee: look at the picture");
+  importing::BoneImport fibula = import_of(false, true, false);
+  fibula.side_in_images = Side::Right;
+  const SideLine seen = side_line(fibula, Side::Left, false);
+  EXPECT_EQ(seen.severity, Severity::Bad);
+  EXPECT_TRUE(seen.text.starts_with("left, by the fibula, but the images are marked")) << seen.text;
+}
+
 // Where a bone alone was looked at, which tells nothing by itself.
 TEST(SideLineTest, APersonAgainstTheShapeOfABoneAloneIsTold) {
   importing::BoneImport import;

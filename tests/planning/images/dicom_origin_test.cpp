@@ -1,6 +1,8 @@
 // Which study a series is of, as the reader passes it on.
 #include "planning/images/dicom_origin.h"
 
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dctk.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -63,6 +65,39 @@ TEST(DicomOrigin, NamesOfAnUnknownCharacterSetStayAsTheyAre) {
   form.character_set = "ISO_IR 4711";
   test::write_dicom_series(folder.path(), test::oblique_volume(), form);
   EXPECT_EQ(read(folder.path()).volume.patient.name, "M\xfcller");
+}
+
+// Some scanners mark each image, some the series; "B" and nothing are no side, nor are both.
+TEST(DicomSide, IsTheOneThatTheImagesAreMarkedWith) {
+  const auto side_where = [](const std::function<void(DcmDataset&, int k)>& change) {
+    const test::TemporaryFolder folder;
+    test::DicomSeriesForm form;
+    form.change = change;
+    test::write_dicom_series(folder.path(), test::oblique_volume(), form);
+    return read(folder.path()).volume.side;
+  };
+  const auto put = [](DcmDataset& dataset, const DcmTagKey& key, const char* value) {
+    ASSERT_TRUE(dataset.putAndInsertString(key, value).good());
+  };
+  using bones::Side;
+  EXPECT_EQ(side_where(nullptr), std::nullopt);
+  EXPECT_EQ(side_where([&](DcmDataset& d, int) { put(d, DCM_Laterality, "L"); }), Side::Left);
+  EXPECT_EQ(side_where([&](DcmDataset& d, int) { put(d, DCM_ImageLaterality, "R"); }), Side::Right);
+  EXPECT_EQ(side_where([&](DcmDataset& d, int) { put(d, DCM_Laterality, "B"); }), std::nullopt);
+  EXPECT_EQ(side_where([&](DcmDataset& d, int k) {
+              if (k == 2) put(d, DCM_Laterality, "R");
+            }),
+            Side::Right)
+      << "what the others leave out";
+  EXPECT_EQ(side_where([&](DcmDataset& d, int k) { put(d, DCM_ImageLaterality, k == 2 ? "R" : "L"); }),
+            std::nullopt)
+      << "of two none is believed";
+  EXPECT_EQ(side_where([&](DcmDataset& d, int) {
+              put(d, DCM_Laterality, "L");
+              put(d, DCM_ImageLaterality, "R");
+            }),
+            Side::Right)
+      << "the image itself before its series";
 }
 
 TEST(DicomOrigin, OtherVolumesHaveNone) {

@@ -80,6 +80,7 @@ void write_dicom_series(const std::filesystem::path& folder, const images::Volum
             joined(volume.lps_from_index.linear().col(1) / spacing.y()));
     put(dataset, DCM_PixelSpacing, number(spacing.y()) + "\\" + number(spacing.x()));
     put_pixels(dataset, volume, k);
+    if (form.change) form.change(dataset, k);
     const auto file = folder / ("slice" + std::to_string(1000 + k) + ".dcm");
     require(format.saveFile(file.c_str(), EXS_LittleEndianExplicit), "saving");
   }

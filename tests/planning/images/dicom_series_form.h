@@ -2,10 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "planning/images/dicom_origin.h"
 #include "planning/images/volume.h"
+
+class DcmDataset;
 
 namespace arthronaut::test {
 
@@ -25,6 +28,8 @@ struct DicomSeriesForm {
                              .sop_instance_uids = {}};
   // The texts are taken to be written in it already.
   std::string character_set = "";
+  // The last change of slice k before its file is written.
+  std::function<void(DcmDataset&, int k)> change = nullptr;
 };
 
 // One file a slice, of the volume as it is (modality CT). Slice k is the instance "series_uid.k".

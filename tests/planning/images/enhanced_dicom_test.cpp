@@ -97,6 +97,23 @@ TEST(EnhancedDicom, OfSeveralEchoesTheFirstIsTakenAndSaid) {
   EXPECT_THAT(volume.notes, Contains(AllOf(HasSubstr("2 echoes"), HasSubstr("12.5 ms"))));
 }
 
+TEST(EnhancedDicom, TheFramesAnatomyTellsTheSide) {
+  const test::TemporaryFolder folder;
+  const auto side_by = [&](const DcmTagKey& groups) {
+    test::EnhancedForm form;
+    form.change = [&](DcmDataset& dataset) {
+      DcmItem *item = nullptr, *anatomy = nullptr;
+      ASSERT_TRUE(dataset.findOrCreateSequenceItem(groups, item).good());
+      ASSERT_TRUE(item->findOrCreateSequenceItem(DCM_FrameAnatomySequence, anatomy).good());
+      ASSERT_TRUE(anatomy->putAndInsertString(DCM_FrameLaterality, "L").good());
+    };
+    test::write_enhanced_dicom(folder / "knee.dcm", test::oblique_volume(), form);
+    return read_volume(folder / "knee.dcm").side;
+  };
+  EXPECT_EQ(side_by(DCM_SharedFunctionalGroupsSequence), bones::Side::Left);
+  EXPECT_EQ(side_by(DCM_PerFrameFunctionalGroupsSequence), bones::Side::Left) << "of the first frame alone";
+}
+
 TEST(EnhancedDicom, OddFramesAreRefusedByNumber) {
   EXPECT_THAT(refusal({.slices = {0, 1, 3}}), AllOf(HasSubstr("knee.dcm: frame "), HasSubstr("missing")));
   EXPECT_THAT(refusal({.slices = {0, 1, 1, 2, 3}}), HasSubstr("same place"));

@@ -1,5 +1,7 @@
 #include "planning/import/bone_import.h"
 
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dctk.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +12,7 @@
 #include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
 #include "tests/planning/geometry/shapes.h"
+#include "tests/planning/images/dicom_series_form.h"
 #include "tests/planning/segmentation/known_mr.h"
 #include "tests/temporary_folder.h"
 
@@ -156,6 +159,41 @@ TEST(BoneImport, ASegmentsNameTellsTheSide) {
   BoneImportOptions femur_alone;
   femur_alone.kind = BoneKind::Femur;
   EXPECT_EQ(import_as("knee.seg.nrrd", "Right femur", "Left tibia", femur_alone).side, Side::Right);
+}
+
+// How the scanner's images are marked is no more than a name: a person's word goes before it, but not unsaid.
+TEST(BoneImport, TheMarkOfTheImagesTellsTheSide) {
+  const TemporaryFolder folder;
+  test::DicomSeriesForm form;
+  form.change = [](DcmDataset& dataset, int) {
+    ASSERT_TRUE(dataset.putAndInsertString(DCM_Laterality, "L").good());
+  };
+  for (const char* name : {"scan", "right"})
+    test::write_dicom_series(folder / name, test::ellipsoid_ct(), form);
+  BoneImportOptions options;
+  options.images_only = true;
+  const BoneImport marked = import_bones(folder / "scan", options);
+  EXPECT_EQ(marked.side, Side::Left);
+  EXPECT_TRUE(marked.side_was_guessed);
+  EXPECT_TRUE(marked.side_is_by_images);
+  EXPECT_THAT(marked.lines, Contains("the images are marked as those of a left knee"));
+
+  const BoneImport named = import_bones(folder / "right", options);
+  EXPECT_EQ(named.side, std::nullopt);
+  EXPECT_THAT(named.lines, Contains(HasSubstr("neither is taken")));
+
+  options = {};
+  options.kind = BoneKind::Femur;
+  options.side = Side::Right;
+  BoneImport said = import_bones(folder / "scan", options);
+  EXPECT_EQ(said.side, Side::Right);
+  EXPECT_TRUE(said.side_is_contradicted);
+  const std::string doubt = other_side_in_images(Side::Left, Side::Right);
+  EXPECT_THAT(said.bones.front().doubts, Contains(doubt));
+  say_side(said, Side::Left);
+  EXPECT_FALSE(said.side_is_contradicted);
+  EXPECT_THAT(said.bones.front().doubts, Not(Contains(doubt)));
+  EXPECT_THAT(doubts_with(said, said.bones.front(), Side::Right), Contains(doubt));
 }
 
 TEST(BoneImport, TheShapeOfAKneeIsHeldAgainstTheSideThatASegmentsNameTells) {
