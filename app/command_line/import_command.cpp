@@ -84,15 +84,9 @@ void import(Context& context, const ImportArguments& arguments) {
                        " reads it the other way round");
   }
   workstation_library::note_case(folder);
+  const std::string by = importing::told_by(import.side_source);
   context.say("Wrote " + folder.string() + ": a " + std::string(bones::to_text(target.side)) + " knee" +
-              (import.side_is_by_segment  ? " (by the name of a segment)"
-               : import.side_is_by_images ? " (as the images are marked)"
-               : import.side_was_guessed  ? " (by the name of the source)"
-                                          : "") +
-              (import.side_is_by_shape ? " (by the shape of its bones alone)"
-               : import.side_was_seen  ? " (by its anatomy)"
-                                       : "") +
-              ".");
+              (by.empty() ? "" : " (" + by + ")") + ".");
   if (!doubts.empty()) context.say_unreliable(folder.string(), doubts);
 }
 

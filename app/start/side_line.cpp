@@ -7,37 +7,31 @@ namespace arthronaut::start {
 using widgets::Severity;
 
 SideLine side_line(const importing::BoneImport& import, std::optional<bones::Side> side, bool was_said) {
+  using importing::SideSource;
   if (!side) return {Severity::Caution, "neither names nor images tell: press R or L"};
-  const std::string word(bones::to_text(*side));
-  const std::string by_name = import.side_is_by_segment  ? ", by the name of a segment"
-                              : import.side_is_by_images ? ", as the images are marked"
-                                                         : ", by the name of the source";
-  if (import.side_in_images && *import.side_in_images != *side) {
-    const char* told_by = was_said                  ? ", as you say"
-                          : import.side_is_by_shape ? ", by the shape of the bones"
-                          : import.side_was_seen    ? ", by the fibula"
-                                                    : "";
-    return {Severity::Bad, word + told_by + ", but the images are marked as those of a " +
-                               std::string(bones::to_text(*import.side_in_images)) +
-                               " knee: look at the picture"};
-  }
-  if (was_said && import.side_was_seen && import.side != side)
-    return {import.side_is_by_shape ? Severity::Caution : Severity::Bad,
-            word + ", as you say, but " +
-                (import.side_is_by_shape ? "the bones are shaped" : "the fibula lies") + " as in a " +
-                std::string(bones::to_text(*import.side)) + " knee: look at the picture"};
+  const std::string by = importing::told_by(import.side_source);
+  const std::string told = std::string(bones::to_text(*side)) + (was_said     ? ", as you say"
+                                                                 : by.empty() ? ""
+                                                                              : ", " + by);
+  const auto against = [&](Severity severity, const char* witness, bones::Side other) {
+    return SideLine{severity, told + ", but " + witness + " a " + std::string(bones::to_text(other)) +
+                                  " knee: look at the picture"};
+  };
+  const auto& images = import.side_in_images;
+  const auto& fibula = import.side_by_fibula;
+  if (images && *images != *side) return against(Severity::Bad, "the images are marked as those of", *images);
+  if (fibula && *fibula != *side) return against(Severity::Bad, "the fibula lies as in", *fibula);
   if (import.side_is_contradicted && import.side == side)
-    return {Severity::Bad, word + (was_said ? ", as you say" : by_name) +
-                               ", but the bones speak against it, see below: look at the picture"};
-  if (const auto shape = importing::side_by_shapes(import); was_said && shape && *shape != *side)
-    return {Severity::Caution, word + ", as you say, but the bones are shaped as in a " +
-                                   std::string(bones::to_text(*shape)) + " knee: look at the picture"};
-  if (was_said) return {Severity::Good, word + ", as you say"};
-  if (import.side_was_guessed) return {Severity::Caution, word + by_name + ": is that so? Press R or L"};
-  if (import.side_is_by_shape)
-    return {Severity::Caution, word + ", by the shape of the bones alone: is that so? Press R or L"};
-  if (import.side_was_seen) return {Severity::Good, word + ", by the fibula"};
-  return {Severity::Good, word};
+    return {Severity::Bad, told + ", but the bones speak against it, see below: look at the picture"};
+  const auto shape =
+      import.side_source == SideSource::Shapes ? import.side : importing::side_by_shapes(import);
+  if (was_said && shape && *shape != *side)
+    return against(Severity::Caution, "the bones are shaped as in", *shape);
+  if (was_said) return {Severity::Good, told};
+  if (fibula && is_guess(import.side_source)) return {Severity::Good, told + ", and the fibula lies so"};
+  if (is_guess(import.side_source) || import.side_source == SideSource::Shapes)
+    return {Severity::Caution, told + ": is that so? Press R or L"};
+  return {Severity::Good, told};
 }
 
 }  // namespace arthronaut::start

@@ -116,7 +116,7 @@ DicomOrigin origin_of(const DicomSlices& slices) {
 }
 
 // What most slices leave out some of them may say; where two say different things nothing is known.
-std::optional<bones::Side> side_of(const DicomSlices& slices) {
+std::optional<bones::Side> side_of_all(const DicomSlices& slices) {
   std::optional<bones::Side> all;
   for (const DicomSlice& slice : slices) {
     if (slice.side && all && *slice.side != *all) return std::nullopt;
@@ -146,7 +146,7 @@ Volume read_dicom(const fs::path& source, const VolumeFileOptions& options) {
   volume.notes.insert(volume.notes.end(), left_out.begin(), left_out.end());
   volume.modality = first.modality;
   volume.patient = first.patient;
-  volume.side = side_of(slices);
+  volume.side = side_of_all(slices);
   volume.size = {first.frame.columns, first.frame.rows, static_cast<int>(slices.size())};
   volume.values.reserve(checked_voxel_count(source, volume.size, 0, options.most_bytes));
   volume.lps_from_index.linear().col(0) = first.along_columns * first.column_spacing_mm;

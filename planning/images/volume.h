@@ -53,6 +53,10 @@ struct Volume {
 // empty.
 [[nodiscard]] std::vector<std::pair<int, std::size_t>> labels_of(const Volume& volume);
 
+// Whether the volume is one of labels: no modality, whole numbers from 0, and each mostly beside its own
+// like. An image of 8 bits has as few numbers, but another one beside nearly every voxel.
+[[nodiscard]] bool is_label_map(const Volume& volume);
+
 // "left-posterior-superior" for the axes i, j, k: the patient direction that each comes closest to.
 [[nodiscard]] std::string axes_in_words(const Volume& volume);
 

@@ -187,7 +187,7 @@ void take_side_of_segments(const Volume& volume, const std::map<BoneKind, int>& 
   }
   if (names.empty()) return;
   result.side = only_one(words, Side::Left, Side::Right, says_side);
-  result.side_was_guessed = result.side_is_by_segment = result.side.has_value();
+  result.side_source = result.side ? SideSource::SegmentName : SideSource::None;
   result.lines.push_back(result.side ? "segment \"" + names.front() + "\" says that it is a " +
                                            std::string(bones::to_text(*result.side)) + " knee"
                                      : "segment \"" + names.front() +
@@ -217,8 +217,7 @@ void import_labels(BoneImages& images, const std::map<BoneKind, int>& labels,
   if (result.bones.empty()) throw InvalidInput("--label does not name the bone of --bone");
 }
 
-// Returns whether a fibula told the side.
-bool import_ct(BoneImages& images, const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
+void import_ct(BoneImages& images, const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
   segmentation::CtBonesOptions ct;
   ct.threshold = options.threshold;
   ct.only = options.kind;
@@ -226,28 +225,23 @@ bool import_ct(BoneImages& images, const BoneImportOptions& options, BoneImport&
   ct.tell = [&](double fraction) { tell({ImportStage::FindingBones, fraction}); };
   const segmentation::CtBones found = segmentation::bones_of_ct(images.volume, ct);
   result.lines.insert(result.lines.end(), found.notes.begin(), found.notes.end());
+  result.side_by_fibula = found.side_by_fibula;
   for (const segmentation::CtBone& bone : found.bones) {
     result.bones.push_back(finished(bone.kind, images.volume.format, bone.mesh, &images, tell));
     ImportedBone& imported = result.bones.back();
     imported.lines.insert(imported.lines.begin(), bone.notes.begin(), bone.notes.end());
     imported.doubts.insert(imported.doubts.begin(), bone.doubts.begin(), bone.doubts.end());
-    if (found.side_by_fibula && result.side && *found.side_by_fibula != *result.side) {
-      imported.doubts.push_back(other_side_by_fibula(*found.side_by_fibula, *result.side));
+    if (result.side_by_fibula && result.side && *result.side_by_fibula != *result.side) {
+      imported.doubts.push_back(other_side_by_fibula(*result.side_by_fibula, *result.side));
       result.side_is_contradicted = true;
     }
   }
-  if (!options.kind && found.bones.size() == 1) {
-    const bool has_femur = found.bones.front().kind == BoneKind::Femur;
-    result.bones.front().doubts.push_back(std::string("the volume shows no ") +
-                                          (has_femur ? "tibia" : "femur"));
-  }
-  if (!result.side && found.side_by_fibula) {
-    result.side = found.side_by_fibula;
-    result.side_was_seen = true;
+  if (!result.side && result.side_by_fibula) {
+    result.side = result.side_by_fibula;
+    result.side_source = SideSource::Fibula;
     result.lines.push_back("the fibula says that it is a " + std::string(bones::to_text(*result.side)) +
                            " knee");
   }
-  return found.side_by_fibula.has_value();
 }
 
 void import_volume(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result,
@@ -271,15 +265,15 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   const auto labels = labels_of(volume);
   take_side_of_images(result, volume.side, options.side.has_value());
   result.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
-  const bool is_label_map = labels.size() > 1 && labels.front().first >= 0 && volume.modality.empty();
-  bool fibula_was_seen = false;
+  const bool has_labels = is_label_map(volume);
+  bool is_ct = false;
   BoneImages images_of_bones{volume};
   try {
     if (options.images_only) {
-      if (is_label_map) throw InvalidInput("is a label map: there is no image to paint in");
+      if (has_labels) throw InvalidInput("is a label map: there is no image to paint in");
     } else if (!options.labels.empty()) {
       import_labels(images_of_bones, options.labels, options, result, tell);
-    } else if (is_label_map && !options.threshold) {
+    } else if (has_labels && !options.threshold) {
       auto named = labels_by_name(volume, result.lines);
       if (named.empty() && volume.segments.empty()) {
         tell({ImportStage::LookingAtBones});
@@ -296,7 +290,8 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
       import_labels(images_of_bones, named, options, result, tell);
     } else {
       refuse_without_threshold(volume, source, options);
-      fibula_was_seen = import_ct(images_of_bones, options, result, tell);
+      is_ct = true;
+      import_ct(images_of_bones, options, result, tell);
     }
   } catch (const segmentation::ShowsBothKnees& error) {
     throw refusal(source, error.what(), {.reason = FailureReason::ShowsBothKnees});
@@ -309,14 +304,18 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   result.image = ImportedImage{.image = {.file = {},
                                          .modality = volume.modality,
                                          .source = volume.format,
-                                         .is_label_map = is_label_map,
+                                         .is_label_map = has_labels,
                                          .size = volume.size,
                                          .spacing_mm = spacing},
                                .volume = encoded(volume)};
   tell({ImportStage::LookingAtBones});
-  check_shapes(result, fibula_was_seen);
-  check_side_of_images(result);
+  check_shapes(result, result.side_by_fibula.has_value());
   // After the shapes, which are looked at where nothing speaks against a bone yet.
+  check_side_of_images(result);
+  if (is_ct && !options.kind && result.bones.size() == 1)
+    result.bones.front().doubts.push_back(
+        std::string("the volume shows no ") +
+        (result.bones.front().bone.kind == BoneKind::Femur ? "tibia" : "femur"));
   for (ImportedBone& imported : result.bones)
     for (const ImageCut& cut : images_of_bones.cuts[imported.bone.kind])
       imported.doubts.push_back(cut_doubt(cut));
@@ -332,7 +331,9 @@ BoneImport import_bones(const std::filesystem::path& source, const BoneImportOpt
   if (!std::filesystem::exists(source)) throw IoError(source, "does not exist");
   BoneImport result;
   result.side = options.side ? options.side : side_in_name(source);
-  result.side_was_guessed = !options.side && result.side;
+  result.side_source = options.side  ? SideSource::Person
+                       : result.side ? SideSource::SourceName
+                                     : SideSource::None;
   if (bones::is_mesh_file(source) && !std::filesystem::is_directory(source)) {
     import_mesh(source, options, result, tell);
     tell({ImportStage::LookingAtBones});

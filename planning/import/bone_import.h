@@ -67,18 +67,23 @@ struct ImportedImage {
   images::EncodedVolume volume;
 };
 
+// What told the side of an import. Names and marks are guesses: as good as who wrote them. Of the shapes
+// alone it is a doubt.
+enum class SideSource { None, Person, SourceName, SegmentName, ImageMark, Fibula, Shapes };
+[[nodiscard]] constexpr bool is_guess(SideSource source) {
+  return source == SideSource::SourceName || source == SideSource::SegmentName ||
+         source == SideSource::ImageMark;
+}
+
 struct BoneImport {
   std::vector<ImportedBone> bones;
-  std::optional<bones::Side> side;    // nullopt: neither given nor in the name
-  bool side_was_guessed = false;      // by a name: of the file,
-  bool side_is_by_segment = false;    // of a label map's segments,
-  bool side_is_by_images = false;     // or as the images are marked
-  bool side_was_seen = false;         // by the anatomy: the fibula,
-  bool side_is_by_shape = false;      // or the shape of the bones alone, which is a doubt
-  bool side_is_contradicted = false;  // the one that was said or named, by either: a doubt of the bones
-  // As the images are marked, whatever the side is: another one is a doubt of the bones.
-  std::optional<bones::Side> side_in_images;
-  std::vector<std::string> lines;  // about the source
+  std::optional<bones::Side> side;  // nullopt: nothing told it
+  SideSource side_source = SideSource::None;
+  bool side_is_contradicted = false;  // by fibula, shapes or mark: a doubt of the bones
+  // What each of these says, whatever told the side: another side is a doubt of the bones.
+  std::optional<bones::Side> side_by_fibula;
+  std::optional<bones::Side> side_in_images;  // as they are marked
+  std::vector<std::string> lines;             // about the source
   // Whose bones they are, where the source says so (DICOM does). For identity.json alone: nothing else of the
   // import names a person, nor a file or folder, whose name often is the patient's.
   cases::Identity identity;

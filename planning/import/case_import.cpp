@@ -35,13 +35,12 @@ cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, con
   if (fs::exists(folder / "case.json")) {
     cases::Case existing = cases::load_case(folder);
     if (import.side && *import.side != existing.side) {
-      throw InvalidInput(folder, "",
-                         "is a " + std::string(bones::to_text(existing.side)) + " knee, the import is a " +
-                             std::string(bones::to_text(*import.side)) + " one" +
-                             (!import.side_was_guessed    ? ""
-                              : import.side_is_by_segment ? " by its segments' names (--side says otherwise)"
-                              : import.side_is_by_images ? " as its images are marked (--side says otherwise)"
-                                                         : " by its name (--side says otherwise)"));
+      throw InvalidInput(
+          folder, "",
+          "is a " + std::string(bones::to_text(existing.side)) + " knee, the import is a " +
+              std::string(bones::to_text(*import.side)) + " one" +
+              (is_guess(import.side_source) ? " " + told_by(import.side_source) + " (--side says otherwise)"
+                                            : ""));
     }
     if (!name.empty()) existing.name = name;
     return existing;
@@ -85,18 +84,24 @@ void refuse_planned_bones(const fs::path& folder, const cases::Case& target, con
 }
 
 // Landmarks and cartilage of a bone that is replaced lie on its surface. They leave the disk before another
-// surface comes: whatever happens in between, none is found on a bone that it is not of.
-void forget_replaced(const fs::path& folder, cases::Case& target, const BoneImport& import) {
+// surface comes: whatever happens in between, none is found on a bone that it is not of. So does what is
+// known of its images: another bone's coordinates would go to the hospital in the frame of reference of this
+// one.
+void forget_replaced(const fs::path& folder, cases::Case& target, const BoneImport& import,
+                     cases::Studies& studies) {
   bool is_replaced = false;
   for (const ImportedBone& imported : import.bones) {
     const bones::BoneKind kind = imported.bone.kind;
     if (!target.bones.contains(kind)) continue;
     is_replaced = true;
+    studies.erase(kind);
     target.landmarks.erase(kind);
     target.landmark_states.erase(kind);
     files::remove_file(cases::cartilage_file(folder, kind));
   }
-  if (is_replaced) cases::save_case(folder, target);
+  if (!is_replaced) return;
+  cases::save_studies(folder, studies);
+  cases::save_case(folder, target);
 }
 
 std::vector<bones::BoneKind> replaced_bones(const cases::Case& target, const BoneImport& import) {
@@ -194,8 +199,8 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
   const bool is_other_knee = replaces_images(target, import, studies);
   const auto image = store_new_image(folder, target, import);
   try {
+    forget_replaced(folder, target, import, studies);
     if (is_other_knee && image) target.images.clear();
-    forget_replaced(folder, target, import);
     // Before its bone: of a doubt too many, after a crash, nobody drills wrongly.
     save_doubts_of(folder, import, target.side, std::move(doubts));
     put_bones(target, import);

@@ -168,12 +168,9 @@ template <typename Archive>
 void describe(Archive& archive, BoneImport& import) {
   describe(archive, import.bones);
   describe(archive, import.side);
-  describe(archive, import.side_was_guessed);
-  describe(archive, import.side_is_by_segment);
-  describe(archive, import.side_is_by_images);
+  describe(archive, import.side_source);
+  describe(archive, import.side_by_fibula);
   describe(archive, import.side_in_images);
-  describe(archive, import.side_was_seen);
-  describe(archive, import.side_is_by_shape);
   describe(archive, import.side_is_contradicted);
   describe(archive, import.lines);
   describe(archive, import.identity.patient_name);
@@ -328,13 +325,14 @@ void refuse_unsound(const SeriesPicture& picture) {
 }
 
 void refuse_unsound(const BoneImport& import) {
-  for (const auto& side : {import.side, import.side_in_images})
-    if (side && *side != bones::Side::Left && *side != bones::Side::Right)
-      throw InvalidInput("the importing process sent a side that is none");
+  bool is_sound = import.side_source >= SideSource::None && import.side_source <= SideSource::Shapes;
+  for (const auto& side : {import.side, import.side_by_fibula, import.side_in_images})
+    is_sound = is_sound && (!side || *side == bones::Side::Left || *side == bones::Side::Right);
+  if (!is_sound) throw InvalidInput("the importing process sent a side that is none");
   for (const ImportedBone& imported : import.bones) {
     const geometry::TriangleMesh& mesh = imported.bone.mesh;
     const auto count = static_cast<std::int64_t>(mesh.vertices_mm.size());
-    bool is_sound =
+    is_sound =
         (imported.bone.kind == bones::BoneKind::Femur || imported.bone.kind == bones::BoneKind::Tibia) &&
         (!imported.read_in || *imported.read_in == bones::Space::LPS ||
          *imported.read_in == bones::Space::RAS);

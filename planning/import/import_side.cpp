@@ -14,7 +14,9 @@ std::ptrdiff_t judged_count(const BoneImport& import) {
   return std::ranges::count_if(import.bones, &ImportedBone::shape_was_judged);
 }
 
-bool fibula_told(const BoneImport& import) { return import.side_was_seen && !import.side_is_by_shape; }
+bool is_against(const std::optional<bones::Side>& witness, bones::Side side) {
+  return witness && *witness != side;
+}
 
 }  // namespace
 
@@ -26,6 +28,25 @@ std::optional<bones::Side> side_by_shapes(const BoneImport& import) {
     all = bone.side_by_shape;
   }
   return all;
+}
+
+std::string told_by(SideSource source) {
+  switch (source) {
+    case SideSource::None:
+    case SideSource::Person:
+      return "";
+    case SideSource::SourceName:
+      return "by the name of the source";
+    case SideSource::SegmentName:
+      return "by the name of a segment";
+    case SideSource::ImageMark:
+      return "as the images are marked";
+    case SideSource::Fibula:
+      return "by the fibula";
+    case SideSource::Shapes:
+      return "by the shape of the bones alone";
+  }
+  return "";
 }
 
 std::string other_side_by_fibula(bones::Side fibula, bones::Side said) {
@@ -54,16 +75,16 @@ void take_side_of_images(BoneImport& import, std::optional<bones::Side> marked, 
   if (!was_said && import.side && *import.side != *marked) {
     line += ", the name says that it is a " + word_of(*import.side) + " one: neither is taken";
     import.side.reset();
-    import.side_was_guessed = false;
+    import.side_source = SideSource::None;
   } else if (!import.side) {
     import.side = marked;
-    import.side_was_guessed = import.side_is_by_images = true;
+    import.side_source = SideSource::ImageMark;
   }
   import.lines.push_back(line);
 }
 
 void check_side_of_images(BoneImport& import) {
-  if (!import.side || !import.side_in_images || *import.side == *import.side_in_images) return;
+  if (!import.side || !is_against(import.side_in_images, *import.side)) return;
   for (ImportedBone& bone : import.bones)
     bone.doubts.push_back(other_side_in_images(*import.side_in_images, *import.side));
   import.side_is_contradicted = true;
@@ -82,10 +103,10 @@ std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBon
     std::erase(doubts, side_by_shape_alone(*import.side));
     std::erase(doubts, other_side_in_images(side, *import.side));
   }
-  if (import.side_in_images && *import.side_in_images != side)
+  if (is_against(import.side_in_images, side))
     doubts.push_back(other_side_in_images(*import.side_in_images, side));
-  if (fibula_told(import)) {
-    doubts.push_back(other_side_by_fibula(*import.side, side));
+  if (is_against(import.side_by_fibula, side)) {
+    doubts.push_back(other_side_by_fibula(*import.side_by_fibula, side));
   } else if (const auto shape = side_by_shapes(import);
              shape && *shape != side && bone.bone.kind == import.bones.front().bone.kind) {
     doubts.push_back(other_side_by_shape(*shape, side, judged_count(import) > 1));
@@ -98,15 +119,14 @@ void say_side(BoneImport& import, bones::Side side) {
   for (const ImportedBone& bone : import.bones) doubts.push_back(doubts_with(import, bone, side, true));
   for (std::size_t i = 0; i < doubts.size(); ++i) import.bones[i].doubts = std::move(doubts[i]);
   if (import.side == side) {  // known as it was known
-    if (import.side_is_by_shape) import.side_was_seen = import.side_is_by_shape = false;
+    if (import.side_source == SideSource::Shapes) import.side_source = SideSource::Person;
     return;
   }
-  const auto shape = side_by_shapes(import);
-  import.side_is_contradicted = fibula_told(import) || (shape && *shape != side) ||
-                                (import.side_in_images && *import.side_in_images != side);
+  import.side_is_contradicted = is_against(import.side_by_fibula, side) ||
+                                is_against(side_by_shapes(import), side) ||
+                                is_against(import.side_in_images, side);
   import.side = side;
-  import.side_was_guessed = import.side_is_by_segment = import.side_is_by_images = false;
-  import.side_was_seen = import.side_is_by_shape = false;
+  import.side_source = SideSource::Person;
 }
 
 bool add_bones(BoneImport& import, BoneImport more) {
@@ -114,14 +134,13 @@ bool add_bones(BoneImport& import, BoneImport more) {
   const auto tell = [](const BoneImport& who_knows, BoneImport& other) {
     if (!who_knows.side || other.side) return;
     say_side(other, *who_knows.side);
-    other.side_was_guessed = who_knows.side_was_guessed;
-    other.side_is_by_segment = who_knows.side_is_by_segment;
-    other.side_was_seen = who_knows.side_was_seen;
-    other.side_is_by_shape = who_knows.side_is_by_shape;
+    other.side_source = who_knows.side_source;
   };
   tell(import, more);
   tell(more, import);
   import.side_is_contradicted = import.side_is_contradicted || more.side_is_contradicted;
+  if (!import.side_by_fibula) import.side_by_fibula = more.side_by_fibula;
+  if (!import.side_in_images) import.side_in_images = more.side_in_images;
   std::ranges::move(more.bones, std::back_inserter(import.bones));
   std::ranges::move(more.lines, std::back_inserter(import.lines));
   return true;

@@ -13,6 +13,8 @@ namespace arthronaut::importing {
 // a fibula tells the side none is).
 [[nodiscard]] std::optional<bones::Side> side_by_shapes(const BoneImport& import);
 
+// "by the name of a segment"; empty where a person said it, or nothing did.
+[[nodiscard]] std::string told_by(SideSource source);
 // The sentences of such doubts.
 [[nodiscard]] std::string other_side_by_fibula(bones::Side fibula, bones::Side said);
 [[nodiscard]] std::string other_side_by_shape(bones::Side shape, bones::Side said, bool of_both);

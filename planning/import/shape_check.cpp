@@ -63,7 +63,7 @@ void check_shapes(BoneImport& import, bool fibula_was_seen) {
   }
   if (!import.side && judged > 1) {
     import.side = shape;
-    import.side_was_seen = import.side_is_by_shape = true;
+    import.side_source = SideSource::Shapes;
     import.bones.front().doubts.push_back(side_by_shape_alone(*shape));
   }
 }

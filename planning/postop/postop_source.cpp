@@ -114,11 +114,9 @@ images::Volume read_postop(const std::filesystem::path& source, const PostopSour
   if (!volume.modality.empty() && volume.modality != "CT")
     throw InvalidInput(source, "",
                        "is " + volume.modality + ": a tunnel is found in a CT, or in a label map");
-  const auto labels = images::labels_of(volume);
-  const bool is_label_map =
-      !options.labels.empty() || (labels.size() > 1 && labels.front().first >= 0 &&
-                                  labels.back().first < kLeastBone_hu && volume.modality.empty());
-  if (is_label_map) make_picture_of_labels(volume, options.labels, source);
+  const bool has_labels = !options.labels.empty() ||
+                          (images::is_label_map(volume) && std::ranges::max(volume.values) < kLeastBone_hu);
+  if (has_labels) make_picture_of_labels(volume, options.labels, source);
   return volume;
 }
 

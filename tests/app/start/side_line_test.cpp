@@ -8,51 +8,63 @@ namespace {
 using bones::Side;
 using widgets::Severity;
 
-importing::BoneImport import_of(bool guessed, bool seen, bool by_shape) {
+using importing::SideSource;
+
+importing::BoneImport import_of(SideSource source) {
   importing::BoneImport import;
   import.side = Side::Left;
-  import.side_was_guessed = guessed;
-  import.side_was_seen = seen;
-  import.side_is_by_shape = by_shape;
+  import.side_source = source;
+  if (source == SideSource::Fibula) import.side_by_fibula = Side::Left;
   return import;
 }
 
 // Nothing but the fibula or a person makes the side sure; every doubt is a caution, says what the side is
 // told by, and asks.
 TEST(SideLineTest, WhatIsNotSureIsACautionThatAsks) {
-  for (const auto& [import, by] : {std::pair{import_of(true, false, false), "name"},
-                                   std::pair{import_of(false, true, true), "shape of the bones alone"}}) {
-    const SideLine line = side_line(import, Side::Left, false);
+  for (const auto& [source, by] : {std::pair{SideSource::SourceName, "name"},
+                                   std::pair{SideSource::Shapes, "shape of the bones alone"}}) {
+    const SideLine line = side_line(import_of(source), Side::Left, false);
     EXPECT_EQ(line.severity, Severity::Caution) << line.text;
     EXPECT_TRUE(line.text.starts_with("left")) << line.text;
     EXPECT_NE(line.text.find(by), std::string::npos) << line.text;
     EXPECT_NE(line.text.find("is that so?"), std::string::npos) << line.text;
   }
-  EXPECT_EQ(side_line(import_of(false, false, false), std::nullopt, false).severity, Severity::Caution);
+  EXPECT_EQ(side_line(import_of(SideSource::Person), std::nullopt, false).severity, Severity::Caution);
 }
 
 TEST(SideLineTest, AFibulaAndAPersonAreSure) {
-  const SideLine fibula = side_line(import_of(false, true, false), Side::Left, false);
+  const SideLine fibula = side_line(import_of(SideSource::Fibula), Side::Left, false);
   EXPECT_EQ(fibula.severity, Severity::Good);
   EXPECT_EQ(fibula.text, "left, by the fibula");
-  EXPECT_EQ(side_line(import_of(false, true, false), Side::Left, true).severity, Severity::Good);
-  EXPECT_EQ(side_line(import_of(false, false, false), Side::Right, true).text, "right, as you say");
+  EXPECT_EQ(side_line(import_of(SideSource::Fibula), Side::Left, true).severity, Severity::Good);
+  EXPECT_EQ(side_line(import_of(SideSource::Person), Side::Right, true).text, "right, as you say");
+}
+
+// A name that the fibula bears out is sure; and whoever then says the other side is told of the fibula.
+TEST(SideLineTest, AFibulaStandsByAName) {
+  importing::BoneImport import = import_of(SideSource::SourceName);
+  import.side_by_fibula = Side::Left;
+  EXPECT_EQ(side_line(import, Side::Left, false).text,
+            "left, by the name of the source, and the fibula lies so");
+  EXPECT_EQ(side_line(import, Side::Left, false).severity, Severity::Good);
+  const SideLine other = side_line(import, Side::Right, true);
+  EXPECT_EQ(other.severity, Severity::Bad);
+  EXPECT_EQ(other.text, "right, as you say, but the fibula lies as in a left knee: look at the picture");
 }
 
 // What a person says counts, but not unsaid against the anatomy: a wrong side is a wrong operation.
 TEST(SideLineTest, APersonAgainstTheAnatomyIsTold) {
-  const SideLine fibula = side_line(import_of(false, true, false), Side::Right, true);
+  const SideLine fibula = side_line(import_of(SideSource::Fibula), Side::Right, true);
   EXPECT_EQ(fibula.severity, Severity::Bad);
   EXPECT_EQ(fibula.text, "right, as you say, but the fibula lies as in a left knee: look at the picture");
-  const SideLine shape = side_line(import_of(false, true, true), Side::Right, true);
+  const SideLine shape = side_line(import_of(SideSource::Shapes), Side::Right, true);
   EXPECT_EQ(shape.severity, Severity::Caution);
   EXPECT_NE(shape.text.find("shaped as in a left knee"), std::string::npos) << shape.text;
 }
 
 // How the images are marked is told where it is all there is, and against a person, the fibula or the shape.
 TEST(SideLineTest, HowTheImagesAreMarkedIsTold) {
-  importing::BoneImport import = import_of(true, false, false);
-  import.side_is_by_images = true;
+  importing::BoneImport import = import_of(SideSource::ImageMark);
   import.side_in_images = Side::Left;
   EXPECT_EQ(side_line(import, Side::Left, false).text,
             "left, as the images are marked: is that so? Press R or L");
@@ -62,7 +74,7 @@ TEST(SideLineTest, HowTheImagesAreMarkedIsTold) {
   EXPECT_EQ(other.severity, Severity::Bad);
   EXPECT_EQ(other.text,
             "right, as you say, but the images are marked as those of a left knee: look at the picture");
-  importing::BoneImport fibula = import_of(false, true, false);
+  importing::BoneImport fibula = import_of(SideSource::Fibula);
   fibula.side_in_images = Side::Right;
   const SideLine seen = side_line(fibula, Side::Left, false);
   EXPECT_EQ(seen.severity, Severity::Bad);
@@ -81,15 +93,15 @@ TEST(SideLineTest, APersonAgainstTheShapeOfABoneAloneIsTold) {
 
 // Said before the bones were made, as of images of both knees, or told by a name.
 TEST(SideLineTest, ASideThatTheBonesSpeakAgainstIsNotGood) {
-  importing::BoneImport import = import_of(false, false, false);
+  importing::BoneImport import = import_of(SideSource::Person);
   import.side_is_contradicted = true;
   EXPECT_EQ(side_line(import, Side::Left, true).severity, Severity::Bad);
   EXPECT_EQ(side_line(import, Side::Right, true).severity, Severity::Good);
-  import.side_was_guessed = true;
+  import.side_source = SideSource::SourceName;
   const SideLine named = side_line(import, Side::Left, false);
   EXPECT_EQ(named.severity, Severity::Bad);
   EXPECT_TRUE(named.text.starts_with("left, by the name of the source, but")) << named.text;
-  import.side_is_by_segment = true;
+  import.side_source = SideSource::SegmentName;
   const SideLine of_segment = side_line(import, Side::Left, false);
   EXPECT_TRUE(of_segment.text.starts_with("left, by the name of a segment, but")) << of_segment.text;
 }

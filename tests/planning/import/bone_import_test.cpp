@@ -5,6 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <random>
+
 #include "planning/geometry/error.h"
 #include "planning/images/volume_writer.h"
 #include "planning/import/import_side.h"
@@ -13,6 +17,7 @@
 #include "tests/planning/bones/mesh_text_forms.h"
 #include "tests/planning/geometry/shapes.h"
 #include "tests/planning/images/dicom_series_form.h"
+#include "tests/planning/segmentation/known_ct.h"
 #include "tests/planning/segmentation/known_mr.h"
 #include "tests/temporary_folder.h"
 
@@ -24,6 +29,7 @@ using bones::Side;
 using test::message_of;
 using test::TemporaryFolder;
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -65,7 +71,7 @@ TEST(BoneImport, AMeshBecomesAClosedOutwardBone) {
   const BoneImport import = import_bones(folder / "right_femur.stl");
   ASSERT_EQ(import.bones.size(), 1U);
   EXPECT_EQ(import.side, Side::Right);
-  EXPECT_TRUE(import.side_was_guessed);
+  EXPECT_TRUE(is_guess(import.side_source));
   EXPECT_TRUE(import.bones[0].repair.is_closed);
   EXPECT_GT(geometry::signed_volume_mm3(import.bones[0].bone.mesh), 0);
   EXPECT_EQ(import.bones[0].bone.source, "binary STL");
@@ -142,13 +148,12 @@ TEST(BoneImport, ASegmentsNameTellsTheSide) {
   };
   const BoneImport right = import_as("knee.seg.nrrd", "Right femur", "tibia");
   EXPECT_EQ(right.side, Side::Right);
-  EXPECT_TRUE(right.side_was_guessed);
-  EXPECT_TRUE(right.side_is_by_segment);
+  EXPECT_EQ(right.side_source, SideSource::SegmentName);
   EXPECT_THAT(right.lines, Contains("segment \"Right femur\" says that it is a right knee"));
 
   const BoneImport both = import_as("knee.seg.nrrd", "Right femur", "Left tibia");
   EXPECT_EQ(both.side, std::nullopt);
-  EXPECT_FALSE(both.side_was_guessed);
+  EXPECT_EQ(both.side_source, SideSource::None);
   EXPECT_THAT(both.lines, Contains(HasSubstr("do not say the same side")));
   const BoneImport by_file = import_as("left.seg.nrrd", "Right femur", "tibia");
   EXPECT_EQ(by_file.side, std::nullopt);
@@ -174,8 +179,7 @@ TEST(BoneImport, TheMarkOfTheImagesTellsTheSide) {
   options.images_only = true;
   const BoneImport marked = import_bones(folder / "scan", options);
   EXPECT_EQ(marked.side, Side::Left);
-  EXPECT_TRUE(marked.side_was_guessed);
-  EXPECT_TRUE(marked.side_is_by_images);
+  EXPECT_EQ(marked.side_source, SideSource::ImageMark);
   EXPECT_THAT(marked.lines, Contains("the images are marked as those of a left knee"));
 
   const BoneImport named = import_bones(folder / "right", options);
@@ -203,7 +207,7 @@ TEST(BoneImport, TheShapeOfAKneeIsHeldAgainstTheSideThatASegmentsNameTells) {
   images::write_volume(folder / "knee.seg.nrrd", right_knee);
   const BoneImport import = import_bones(folder / "knee.seg.nrrd");
   EXPECT_EQ(import.side, Side::Left);
-  EXPECT_TRUE(import.side_was_guessed);
+  EXPECT_TRUE(is_guess(import.side_source));
   EXPECT_TRUE(import.side_is_contradicted);
 }
 
@@ -240,10 +244,11 @@ TEST(BoneImport, ASideThatIsSaidAgainstTheFibulaStaysADoubt) {
   BoneImport import;
   import.bones.resize(1);
   import.side = bones::Side::Left;
-  import.side_was_seen = true;
+  import.side_source = SideSource::Fibula;
+  import.side_by_fibula = bones::Side::Left;
   say_side(import, bones::Side::Left);
   EXPECT_TRUE(import.bones[0].doubts.empty());
-  EXPECT_TRUE(import.side_was_seen);
+  EXPECT_EQ(import.side_source, SideSource::Fibula);
   say_side(import, bones::Side::Right);
   EXPECT_EQ(import.side, bones::Side::Right);
   ASSERT_EQ(import.bones[0].doubts.size(), 1U);
@@ -252,6 +257,62 @@ TEST(BoneImport, ASideThatIsSaidAgainstTheFibulaStaysADoubt) {
   say_side(import, bones::Side::Left);
   EXPECT_TRUE(import.bones[0].doubts.empty()) << "what was said by mistake is no doubt";
   EXPECT_FALSE(import.side_is_contradicted);
+}
+
+// The fibula is heard where a name told the same side before it, too.
+TEST(BoneImport, WhatTheFibulaSaysIsKeptBesideAName) {
+  BoneImport import;
+  import.bones.resize(1);
+  import.side = Side::Left;
+  import.side_source = SideSource::SourceName;
+  import.side_by_fibula = Side::Left;
+  say_side(import, Side::Right);
+  EXPECT_THAT(import.bones[0].doubts, ElementsAre(other_side_by_fibula(Side::Left, Side::Right)));
+  EXPECT_TRUE(import.side_is_contradicted);
+}
+
+// One bone alone in a CT is a doubt, and no reason not to look at its shape.
+TEST(BoneImport, ABoneThatIsAloneInItsImagesIsHeldAgainstItsSide) {
+  const TemporaryFolder folder;
+  static const auto phantom = phantom::make_phantom_knee({.edge_length_mm = 1.5});  // a right knee
+  test::KnownCtOptions coarse;
+  coarse.spacing_mm = {0.8, 0.8, 1};
+  images::Volume volume = test::known_ct({phantom.femur.mesh}, coarse);
+  volume.modality = "CT";
+  images::write_volume(folder / "knee.nrrd", volume);
+  BoneImportOptions options;
+  options.side = Side::Left;
+  const BoneImport import = import_bones(folder / "knee.nrrd", options);
+  ASSERT_EQ(import.bones.size(), 1U);
+  EXPECT_THAT(import.bones[0].doubts,
+              testing::UnorderedElementsAre("the volume shows no tibia",
+                                            other_side_by_shape(Side::Right, Side::Left, false)));
+}
+
+// Of an MR that says no modality and has no more grey values than a label map could have.
+TEST(BoneImport, AnImageOfEightBitsIsNoLabelMap) {
+  const TemporaryFolder folder;
+  images::Volume volume = two_blocks();
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0, 3);
+  for (std::size_t i = 0; i < volume.values.size(); ++i) {
+    const bool is_background = i % 40 < 15;
+    const double grey = 60 + 3 * static_cast<double>(i / 1600) + noise(random);
+    volume.values[i] = is_background ? 0.0F : static_cast<float>(std::clamp(std::round(grey), 1.0, 255.0));
+  }
+  ASSERT_GT(images::labels_of(volume).size(), 40U);
+  EXPECT_FALSE(images::is_label_map(volume));
+  images::write_volume(folder / "left_mr.nrrd", volume);
+  BoneImportOptions options;
+  options.images_only = true;
+  const BoneImport import = import_bones(folder / "left_mr.nrrd", options);
+  ASSERT_TRUE(import.image.has_value());
+  EXPECT_FALSE(import.image->image.is_label_map);
+  // As many labels as a whole body has, in blocks.
+  for (std::size_t i = 0; i < volume.values.size(); ++i)
+    volume.values[i] = static_cast<float>(i / 8 % 5 + 5 * (i / 1600 / 2));
+  ASSERT_GT(images::labels_of(volume).size(), 40U);
+  EXPECT_TRUE(images::is_label_map(volume));
 }
 
 TEST(BoneImport, WhatIsNotSaidIsAskedFor) {

@@ -245,14 +245,17 @@ TEST(CaseImport, EdgesOfAnotherImageAreRefused) {
               HasSubstr("is not the image that the labels were painted in"));
 }
 
-// An import that fails half-way, here at a tibia that cannot be written, leaves no landmark and no cartilage
-// of the femur that it has replaced, and no image.
+// An import that fails half-way, here at a tibia that cannot be written, leaves no landmark, no cartilage and
+// no study of the femur that it has replaced, and no image.
 TEST(CaseImport, WhatFailsHalfWayLeavesNothingOnAnotherSurface) {
   const TemporaryFolder folder;
   cases::Case made = add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
   made.landmarks[BoneKind::Femur]["medial_epicondyle"] = {40, 0, 0};
   cases::save_case(folder / "a", made);
   cases::save_cartilage(folder / "a", BoneKind::Femur, test::box({4, 4, 1}));
+  images::DicomOrigin study;
+  study.study_uid = "1.2.3";
+  cases::save_studies(folder / "a", {{BoneKind::Femur, study}});
   std::filesystem::create_directory(cases::mesh_file(folder / "a", BoneKind::Tibia));
   BoneImport both = imported(BoneKind::Femur);
   both.bones[0].bone.mesh = test::ellipsoid({38, 30, 25}, 2);
@@ -272,6 +275,7 @@ TEST(CaseImport, WhatFailsHalfWayLeavesNothingOnAnotherSurface) {
   EXPECT_EQ(after.bones.at(BoneKind::Femur).mesh.vertices_mm, both.bones[0].bone.mesh.vertices_mm);
   EXPECT_TRUE(after.landmarks.empty());
   EXPECT_FALSE(cases::load_cartilage(folder / "a", BoneKind::Femur));
+  EXPECT_TRUE(cases::load_studies(folder / "a").empty()) << "it is not of that study";
   EXPECT_TRUE(after.images.empty());
   EXPECT_FALSE(std::filesystem::exists(folder / "a/images/1.nrrd"));
 }

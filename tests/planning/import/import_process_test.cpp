@@ -71,7 +71,7 @@ TEST_F(ImportProcessTest, GivesTheSameBonesAsAnImportInThisProcess) {
   EXPECT_EQ(apart.bones[0].repair.holes_filled, 1U);
   EXPECT_TRUE(apart.bones[0].repair.is_closed);
   EXPECT_EQ(apart.side, Side::Right);
-  EXPECT_TRUE(apart.side_was_guessed);
+  EXPECT_EQ(apart.side_source, SideSource::SourceName);
   EXPECT_EQ(apart.lines, here.lines);
 }
 
@@ -127,7 +127,7 @@ TEST_F(ImportProcessTest, PassesTheOptionsOn) {
   const BoneImport import = process.take_result();
   EXPECT_EQ(import.bones.at(0).bone.kind, BoneKind::Tibia);
   EXPECT_EQ(import.side, Side::Left);
-  EXPECT_FALSE(import.side_was_guessed);
+  EXPECT_FALSE(is_guess(import.side_source));
   // 30 mm to the right in a RAS file is at -30 mm in LPS; floats of the STL carry it to 1e-5 mm.
   EXPECT_NEAR(geometry::bounds_of(import.bones[0].bone.mesh).center_mm().x(), -30, 1e-3);
 }

@@ -20,6 +20,7 @@ BoneImport knee(Side side, std::optional<Side> said) {
   static const auto phantom = phantom::make_phantom_knee({.edge_length_mm = 1.5});
   BoneImport import;
   import.side = said;
+  if (said) import.side_source = SideSource::Person;
   for (const bones::Bone& bone : {phantom.femur, phantom.tibia}) {
     import.bones.emplace_back().bone = bone;
     if (side == Side::Right) continue;
@@ -40,7 +41,7 @@ TEST(ShapeCheck, SaysNothingOfAKneeThatIsWhatItIsSaidToBe) {
     BoneImport import = knee(side, side);
     check_shapes(import, false);
     EXPECT_THAT(doubts_of(import), IsEmpty());
-    EXPECT_FALSE(import.side_was_seen);
+    EXPECT_EQ(import.side_source, SideSource::Person);
   }
 }
 
@@ -112,8 +113,7 @@ TEST(ShapeCheck, APersonWhoConfirmsWhatTheShapesToldLeavesNoDoubt) {
   EXPECT_THAT(doubts_with(import, import.bones.front(), Side::Left, true), IsEmpty());
   say_side(import, Side::Left);
   EXPECT_THAT(doubts_of(import), IsEmpty());
-  EXPECT_FALSE(import.side_is_by_shape);
-  EXPECT_FALSE(import.side_was_seen);
+  EXPECT_EQ(import.side_source, SideSource::Person);
 }
 
 // Two bones from files of their own, of which one alone says the side.
@@ -122,12 +122,12 @@ TEST(ShapeCheck, ASecondFileHearsOfTheFirstOnesSide) {
   femur.bones.pop_back();
   tibia.bones.erase(tibia.bones.begin());
   femur.side = Side::Right;
-  femur.side_was_guessed = true;
+  femur.side_source = SideSource::SourceName;
   check_shapes(tibia, false);
   BoneImport both = femur;
   ASSERT_TRUE(add_bones(both, tibia));
   EXPECT_EQ(both.bones.size(), 2U);
-  EXPECT_TRUE(both.side_was_guessed);
+  EXPECT_EQ(both.side_source, SideSource::SourceName);
   EXPECT_TRUE(both.side_is_contradicted);
   EXPECT_THAT(doubts_of(both), ElementsAre(HasSubstr("by the shape of the bone it is a left knee")));
   ASSERT_TRUE(add_bones(tibia, femur));
@@ -151,8 +151,7 @@ TEST(ShapeCheck, BothBonesTogetherTellTheSideButOneAloneDoesNot) {
     BoneImport import = knee(side, std::nullopt);
     check_shapes(import, false);
     EXPECT_EQ(import.side, side);
-    EXPECT_TRUE(import.side_was_seen);
-    EXPECT_TRUE(import.side_is_by_shape);
+    EXPECT_EQ(import.side_source, SideSource::Shapes);
     EXPECT_THAT(doubts_of(import), ElementsAre(HasSubstr("alone: check the side")));
     BoneImport alone = knee(side, std::nullopt);
     alone.bones.pop_back();
