@@ -35,7 +35,9 @@ PaintView::PaintView(PaintCallbacks callbacks)
       model_(callbacks_.make_current) {}
 
 void PaintView::open(const cases::Case& knee, const std::filesystem::path& case_folder, bool read_only) {
-  const bool is_same = case_folder == case_folder_ && (is_ready() || store_.is_loading());
+  // Of one that another program had until now that program may have painted more.
+  const bool is_same =
+      case_folder == case_folder_ && read_only == is_read_only_ && (is_ready() || store_.is_loading());
   knee_ = knee;
   knee_.bones.clear();  // the meshes go to the store
   is_read_only_ = read_only;

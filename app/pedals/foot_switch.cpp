@@ -127,16 +127,17 @@ struct FootSwitch::Reader {
   };
   using Worker = worker::Worker<int, Status>;
 
-  Reader(const TheatreSettings& settings, const std::function<void()>& wake)
+  Reader(const TheatreSettings& settings, const std::function<void()>& wake, const Grab& grabs)
       : worker(
             worker::Backlog::Lossless,
-            [settings, queue = queue, wake](Worker::Inbox& inbox) {
-              read_all(settings, *queue, wake, inbox);
+            [settings, queue = queue, wake, grabs](Worker::Inbox& inbox) {
+              read_all(settings, *queue, wake, grabs, inbox);
             },
             wake) {}
 
   // Opens what is there and not open yet; what can't be opened is told.
-  static std::string find(const TheatreSettings& settings, std::map<fs::path, Device>& devices) {
+  static std::string find(const TheatreSettings& settings, const Grab& grabs,
+                          std::map<fs::path, Device>& devices) {
     std::vector<fs::path> wanted = settings.foot_switches;
     const bool looks_for_names = wanted.empty();
     std::error_code error;
@@ -160,9 +161,13 @@ struct FootSwitch::Reader {
         close(descriptor);
         continue;
       }
-      // A file that is no device cannot be taken, and need not be. The times of its events are of a clock
-      // that nobody sets.
-      (void)ioctl(descriptor, EVIOCGRAB, 1);
+      // A file that is no device cannot be taken, and need not be.
+      if (grabs(descriptor) == EBUSY) {
+        close(descriptor);
+        trouble = path.string() + ": another program has taken it, and all that is pressed goes there";
+        continue;
+      }
+      // The times of its events are of a clock that nobody sets.
       const int clock = CLOCK_MONOTONIC;
       (void)ioctl(descriptor, EVIOCSCLOCKID, &clock);
       devices.emplace(path, Device(descriptor, name.empty() ? path.string() : name, settings.codes));
@@ -171,14 +176,14 @@ struct FootSwitch::Reader {
   }
 
   static void read_all(const TheatreSettings& settings, Queue& queue, const std::function<void()>& wake,
-                       Worker::Inbox& inbox) {
+                       const Grab& grabs, Worker::Inbox& inbox) {
     std::map<fs::path, Device> devices;
     Clock::time_point next_search = Clock::now();
     Status told{{}, "not looked for yet"};
     std::string trouble;
     while (!inbox.stops()) {
       if (Clock::now() >= next_search) {
-        trouble = find(settings, devices);
+        trouble = find(settings, grabs, devices);
         next_search = Clock::now() + kSearch;
       }
       Status status{{}, trouble};
@@ -211,8 +216,10 @@ struct FootSwitch::Reader {
   Worker worker;
 };
 
-FootSwitch::FootSwitch(const TheatreSettings& settings, std::function<void()> wake)
-    : reader_(std::make_unique<Reader>(settings, wake)) {}
+int FootSwitch::grab(int descriptor) { return ioctl(descriptor, EVIOCGRAB, 1) == 0 ? 0 : errno; }
+
+FootSwitch::FootSwitch(const TheatreSettings& settings, std::function<void()> wake, Grab grabs)
+    : reader_(std::make_unique<Reader>(settings, wake, grabs)) {}
 FootSwitch::~FootSwitch() = default;
 
 std::vector<PedalEvent> FootSwitch::take() {

@@ -2,8 +2,9 @@
 // time. A device that is read is taken for this program alone, so that what it types does not reach the
 // window a second time.
 //
-// States of a device: absent -> read -> absent ...; refused (no permission) is told, and tried again.
-// Threads: FootSwitch belongs to one thread, the window's; the devices are read by one of its own.
+// States of a device: absent -> read -> absent ...; refused (no permission, or another program has it, to
+// which all its events go) is told, and tried again. Threads: FootSwitch belongs to one thread, the window's;
+// the devices are read by one of its own.
 #pragma once
 
 #include <chrono>
@@ -50,8 +51,12 @@ class FootSwitch {
     std::string trouble;               // why one is not ("/dev/input/event5: permission denied"); empty else
   };
 
+  // Takes an open device for this program alone; returns 0 or an errno.
+  using Grab = std::function<int(int descriptor)>;
+  [[nodiscard]] static int grab(int descriptor);  // as the kernel does it
+
   // wake: called from the other thread when there is something to take.
-  FootSwitch(const TheatreSettings& settings, std::function<void()> wake);
+  FootSwitch(const TheatreSettings& settings, std::function<void()> wake, Grab grabs = grab);
   ~FootSwitch();
   FootSwitch(const FootSwitch&) = delete;
   FootSwitch& operator=(const FootSwitch&) = delete;

@@ -37,7 +37,7 @@ KeyListLayout key_list_layout(const ImFont* font, const std::vector<std::string>
   return layout;
 }
 
-void draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& prefixes) {
+bool draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& prefixes) {
   std::vector<const widgets::Action*> shown;
   std::vector<std::string> explanations;
   for (const widgets::Action& action : ui.actions.all()) {
@@ -72,6 +72,16 @@ void draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& p
     }
     y = at;
   }
+  ImGui::SetNextWindowPos({0, 0});
+  ImGui::SetNextWindowSize(size);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::Begin("keys", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav);
+  ImGui::PopStyleVar();
+  const bool is_clicked = ImGui::InvisibleButton("cover", size);
+  ImGui::End();
+  return is_clicked;
 }
 
 }  // namespace arthronaut::window

@@ -19,7 +19,8 @@ struct KeyListLayout {
 [[nodiscard]] KeyListLayout key_list_layout(const ImFont* font, const std::vector<std::string>& explanations,
                                             float room_px, float height_px);
 
-// Of the actions whose id starts with one of the prefixes.
-void draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& prefixes);
+// Of the actions whose id starts with one of the prefixes. It covers what lies under it for the mouse, too.
+// Returns whether it was clicked on.
+[[nodiscard]] bool draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& prefixes);
 
 }  // namespace arthronaut::window

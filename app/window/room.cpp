@@ -37,6 +37,16 @@ void Room::press_pedals(widgets::Actions& actions, const std::vector<std::string
   }
 }
 
+void Room::drop_pedals(widgets::Actions& actions, const std::function<void()>& pressed) {
+  if (foot_switch_ == nullptr) return;
+  for (const pedals::PedalEvent& event : foot_switch_->take()) {
+    if (event.is_down)
+      pressed();
+    else
+      actions.release(pedals::key_of(event.pedal));
+  }
+}
+
 std::string Room::trouble() const {
   if (!settings_trouble_.empty()) return settings_trouble_;
   const std::string trouble = foot_switch_ != nullptr ? foot_switch_->status().trouble : "";

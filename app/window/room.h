@@ -27,6 +27,9 @@ class Room {
   // nobody's.
   void press_pedals(widgets::Actions& actions, const std::vector<std::string_view>& prefixes, bool is_typing);
 
+  // While they mean nothing: `pressed` is called where one was pressed.
+  void drop_pedals(widgets::Actions& actions, const std::function<void()>& pressed);
+
   [[nodiscard]] std::string trouble() const;  // of the settings or of a foot switch; empty: none
   [[nodiscard]] std::string devices() const;  // that are read, by name; "none"
 

@@ -42,6 +42,14 @@ void UntakenKey::note(const widgets::KeyPress& press, const widgets::Actions& ac
   action_ = its->id;
 }
 
+void UntakenKey::note_drop(double now_s) {
+  words_ = "Nothing that is dropped is taken while something runs: stop it first, then drop it again";
+  action_.clear();
+  early_key_.clear();
+  holds_ = true;
+  noted_at_s_ = now_s;
+}
+
 void UntakenKey::look_again(const widgets::Actions& actions, bool is_opening, double now_s) {
   if (words_.empty()) return;
   if (!early_key_.empty()) {

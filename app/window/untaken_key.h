@@ -1,5 +1,6 @@
 // A key that was pressed and did nothing, because a case is still being opened or because what it is for is
-// not possible now. Said for some seconds: no key is lost in silence.
+// not possible now, and what was dropped on the window then. Said for some seconds: nothing is lost in
+// silence.
 #pragma once
 
 #include <string>
@@ -16,6 +17,8 @@ class UntakenKey {
   // key that is for nothing here, held on, or a way out of what is not there (Esc) needs no words.
   void note(const widgets::KeyPress& press, const widgets::Actions& actions,
             const std::vector<std::string_view>& prefixes, bool is_opening, double now_s);
+  // Of what was dropped while something runs that would be cut off.
+  void note_drop(double now_s);
   // Once a frame: words that hold no more go as soon as they could be read. What was pressed while a case was
   // being opened, however long that takes, is said until it is open, and then for as long that it is to be
   // pressed again.

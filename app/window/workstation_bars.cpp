@@ -87,9 +87,9 @@ std::pair<std::string, bool> WorkstationWindow::status_words() {
   const std::string fault = fault_.words(widgets::GraphicsWindow::now_s());
   const std::string untaken = untaken_.words(widgets::GraphicsWindow::now_s());
   // What threatens comes before what was asked for in vain.
-  const std::string notice = !failure_.empty()                ? failure_
-                             : !fault.empty()                 ? fault
+  const std::string notice = !fault.empty()                   ? fault
                              : !standstill.empty()            ? standstill
+                             : !failure_.empty()              ? failure_
                              : !untaken.empty()               ? untaken
                              : shows_start() || shows_paint() ? std::string()
                              : !shown().notice().empty()      ? shown().notice()

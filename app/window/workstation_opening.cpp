@@ -115,10 +115,7 @@ void WorkstationWindow::take_over_when_free() {
 void WorkstationWindow::take_dropped() {
   const auto dropped = window_.take_dropped();
   if (dropped.empty()) return;
-  if (has_running_work() || opening_ != nullptr) {
-    failure_ = "Nothing that is dropped is taken while something runs: stop it first, then drop it again";
-    return;
-  }
+  if (has_running_work() || opening_ != nullptr) return untaken_.note_drop(GraphicsWindow::now_s());
   failure_.clear();
   const mode::Mode* const in_front = shows_start() || shows_paint() ? nullptr : &shown();
   if (in_front == plan_ && in_front != nullptr && dropped.front().string().ends_with(".mrk.json"))

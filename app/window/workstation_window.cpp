@@ -239,7 +239,18 @@ void WorkstationWindow::close_paint() {
   start_.enter(case_->folder());
 }
 
+void WorkstationWindow::close_key_list() {
+  room_.drop_pedals(actions_, [this] { shows_keys_ = false; });
+  for (const widgets::KeyPress& press : window_.keys()) {
+    log_.add("keys", 1);
+    // F10 itself closes it, and quitting is quitting.
+    if (actions_.press(press, {"app."}) || press.is_repeat) continue;
+    if (!widgets::key_name(press.key, press.mods).empty()) shows_keys_ = false;
+  }
+}
+
 void WorkstationWindow::dispatch_keys() {
+  if (shows_keys_) return close_key_list();
   // Elsewhere than in theatre and in Set up a key means what it is called.
   const auto prefixes = action_prefixes();
   const bool has_pedals = std::find(prefixes.begin(), prefixes.end(), "navigate.") != prefixes.end() ||
@@ -248,10 +259,6 @@ void WorkstationWindow::dispatch_keys() {
   for (widgets::KeyPress press : window_.keys()) {
     log_.add("keys", 1);
     if (has_pedals && press.mods == 0) press.key = room_.meaning_of(press.key);
-    if (shows_keys_ && press.key == GLFW_KEY_ESCAPE) {
-      shows_keys_ = false;
-      continue;
-    }
     if (actions_.press(press, action_prefixes()))
       untaken_.forget();
     else if (!has_pedals || opening_ != nullptr)
@@ -284,6 +291,7 @@ void WorkstationWindow::show(std::size_t mode) {
   actions_.let_go();
   start_.leave();
   shows_start_ = false;
+  failure_.clear();
   if (std::exchange(shows_paint_, false)) paint_.leave();
   if (mode != shown_) shown().leave();
   shown_ = mode;
@@ -292,6 +300,7 @@ void WorkstationWindow::show(std::size_t mode) {
 
 void WorkstationWindow::close_start() {
   if (!std::exchange(shows_start_, false)) return;
+  failure_.clear();
   start_.leave();
   if (!shows_paint()) shown().enter();
 }
@@ -334,13 +343,14 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
     shown().draw(ui, inner);
     if (header) draw_header(ui, *header);
   }
-  if (shows_keys_) draw_key_list(ui, action_prefixes());
+  if (shows_keys_ && draw_key_list(ui, action_prefixes())) shows_keys_ = false;
   const auto kind = shows_start() || shows_paint() ? std::nullopt : shown().source_kind();
   if (kind) widgets::draw_source_frame(ui, {0, 0, size.x, size.y}, *kind);
   widgets::draw_hold_hint(ui, {0, 0, size.x, size.y}, header);
   ImGui::PopFont();
   ImGui::End();
   if (!kind) log_.note_state("source_kind", "none");
+  log_.note_state("key_list", shows_keys_ ? "shown" : "none");
   log_.note_state("room", room_.trouble());
   log_.note_state("foot_switch", room_.devices());
   log_.note_state("standstill", heartbeat_.words());

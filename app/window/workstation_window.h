@@ -67,6 +67,8 @@ class WorkstationWindow {
   void dispatch_keys();
   // What the ids of the actions that work now start with.
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const;
+  // While the list of keys covers everything whatever is pressed closes it and does nothing that nobody sees.
+  void close_key_list();
   void show(std::size_t mode);
   void draw_screen(const widgets::Ui& ui);
   void draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area);
@@ -97,7 +99,7 @@ class WorkstationWindow {
   std::unique_ptr<open_case::CaseOpening> known_to_modes_;
   open_case::CaseOpening* lender_ = nullptr;  // one of these, whose lock opening_ has
   double looked_for_lock_s_ = 0;              // of a case that another program had
-  std::string failure_;                       // why the last one could not be opened; empty when it could
+  std::string failure_;  // why the last one could not be opened, until something else is shown; else empty
   widgets::Actions actions_;
   widgets::WidgetLog log_;
   std::vector<std::unique_ptr<mode::Mode>> modes_;  // in the order of their buttons

@@ -2,15 +2,24 @@
 
 #include <cctype>
 
+#include "planning/files/folded_text.h"
+
 namespace arthronaut::cases {
 
 namespace {
 
-// What one scanner writes in capitals, or with blanks, another one does not.
-std::string letters_of(std::string text) {
-  std::erase_if(text, [](unsigned char c) { return c < 0x80 && std::isalnum(c) == 0; });
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
+// What one scanner writes in capitals, with blanks, or an umlaut as two letters (MUELLER), another one does
+// not.
+std::string letters_of(const std::string& text) {
+  std::string letters;
+  for (const char c : files::folded(text)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && std::isalnum(byte) == 0) continue;
+    const char before = letters.empty() ? '\0' : letters.back();
+    if (c == 'e' && (before == 'a' || before == 'o' || before == 'u')) continue;
+    letters += c;
+  }
+  return letters;
 }
 
 bool both_say(const std::string& a, const std::string& b) {

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "planning/files/folded_text.h"
 #include "planning/files/local_time.h"
 #include "planning/geometry/error.h"
 
@@ -22,42 +23,6 @@ constexpr std::array<std::pair<CaseOrder, std::string_view>, 5> kOrders{{
     {CaseOrder::EntryOffset, "offset"},
 }};
 
-// What U+00C0 to U+017F are without accents: a capital stands for two letters, a point for what is no letter.
-constexpr std::string_view kBases =
-    "aaaaaaAceeeeiiiidnooooo.ouuuuyTSaaaaaaAceeeeiiiidnooooo.ouuuuyTy"
-    "aaaaaaccccccccddddeeeeeeeeeegggggggghhhhiiiiiiiiiiJJjjkkkllllllllllnnnnnnnnnooooooOOrrrrrrssssssss"
-    "ttttttuuuuuuuuuuuuwwyyyzzzzzzs";
-static_assert(kBases.size() == 192);
-
-// Small letters without accents, of UTF-8: so Dvořák is found, and stands, as by a keyboard without them.
-std::string folded(std::string_view text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0U;
-    if (byte >= 'A' && byte <= 'Z') {
-      result += static_cast<char>(byte + 32);
-    } else if (byte >= 0xC3 && byte <= 0xC5 && next >= 0x80 && next <= 0xBF) {
-      const char base = kBases[(byte - 0xC3U) * 64U + (next - 0x80U)];
-      const std::string_view both = base == 'A'   ? "ae"
-                                    : base == 'S' ? "ss"
-                                    : base == 'T' ? "th"
-                                    : base == 'O' ? "oe"
-                                                  : "ij";
-      if (base == '.')
-        result += text.substr(i, 2);
-      else
-        result += base >= 'a' ? std::string_view(&base, 1) : both;
-      ++i;
-    } else if ((byte == 0xCC && next >= 0x80) || (byte == 0xCD && next >= 0x80 && next <= 0xAF)) {
-      ++i;  // an accent of its own, behind its letter
-    } else {
-      result += text[i];
-    }
-  }
-  return result;
-}
-
 std::string searched(const CaseRecord& record) {
   std::string text = record.name + "\n" + record.note + "\n" + record.side + "\n" + record.created_utc +
                      "\n" + record.changed_utc + "\n" + std::string(to_text(record.state())) + "\n" +
@@ -66,7 +31,7 @@ std::string searched(const CaseRecord& record) {
   for (const SessionFacts& session : record.sessions)
     text += "\n" + session.started_utc + "\n" + files::local_day(session.started_utc) + "\n" + session.bone +
             "\n" + session.source_kind + "\n" + session.outcome();
-  return folded(text);
+  return files::folded(text);
 }
 
 double last_offset_mm(const CaseRecord& record) {
@@ -109,7 +74,7 @@ CaseOrder case_order_from_text(std::string_view text) {
 
 std::vector<std::size_t> find_cases(std::span<const CaseRecord> records, const CaseQuery& query) {
   std::vector<std::string> words;
-  std::istringstream stream(folded(query.words));
+  std::istringstream stream(files::folded(query.words));
   for (std::string word; stream >> word;) words.push_back(std::move(word));
   std::vector<std::size_t> found;
   std::vector<std::string> names(records.size());
@@ -123,7 +88,7 @@ std::vector<std::size_t> find_cases(std::span<const CaseRecord> records, const C
                        [&](const std::string& word) { return text.find(word) != std::string::npos; }))
         continue;
     }
-    names[i] = folded(record.name);
+    names[i] = files::folded(record.name);
     found.push_back(i);
   }
   std::sort(found.begin(), found.end(), [&](std::size_t a, std::size_t b) {

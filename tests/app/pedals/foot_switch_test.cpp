@@ -164,6 +164,23 @@ TEST_F(Pipe, SaysThatPermissionIsDenied) {
   EXPECT_EQ(foot.status().trouble.find(path_.string()), 0U);
 }
 
+// Another program that has taken it gets all its events: it is not shown as one that works, and works as soon
+// as the other program has ended.
+TEST_F(Pipe, SaysThatAnotherProgramHasTakenIt) {
+  std::atomic<bool> is_taken = true;
+  make();
+  const int keeps_open = open(path_.c_str(), O_RDWR | O_NONBLOCK);
+  FootSwitch foot(
+      settings_, [] {}, [&](int) { return is_taken ? EBUSY : 0; });
+  EXPECT_TRUE(becomes([&] { return foot.status().trouble.find("another program") != std::string::npos; }));
+  EXPECT_EQ(foot.status().trouble.find(path_.string()), 0U);
+  EXPECT_TRUE(foot.status().devices.empty());
+  is_taken = false;
+  EXPECT_TRUE(becomes([&] { return foot.status().devices.size() == 1; }));
+  EXPECT_EQ(foot.status().trouble, "");
+  close(keeps_open);
+}
+
 // It ends at once, with a device and without one.
 TEST_F(Pipe, EndsAtOnce) {
   const auto started = std::chrono::steady_clock::now();

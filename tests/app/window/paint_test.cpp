@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "planning/cases/case.h"
+#include "planning/cases/case_lock.h"
 #include "planning/images/volume_writer.h"
 #include "planning/painting/painting_file.h"
 #include "planning/phantom/phantom_case.h"
@@ -98,6 +100,32 @@ class PaintWindow : public ::testing::Test {
   const TemporaryFolder folder_;
   const KnownKnee known_;
 };
+
+// Of a case that another program had what it left is gone on with, not what was there when it was opened.
+TEST_F(PaintWindow, ACaseThatBecomesFreeIsPaintedOnAsItWasLeft) {
+  const VirtualDisplay display(1280, 720);
+  auto theirs = std::make_unique<cases::CaseLock>(case_folder());
+  ASSERT_TRUE(theirs->is_held());
+  RunningWorkstation app(display, folder_.path(), {case_folder().string()});
+  ASSERT_TRUE(app.wait_for_state("painting", "ready", 120));
+  ASSERT_TRUE(app.wait_for_state("access", "read-only"));
+  painting::SavedPainting painted;
+  painted.bones.assign(known_.labels.values.size(), 0);
+  painted.strokes = painted.bones;
+  std::fill_n(painted.bones.begin() + static_cast<std::ptrdiff_t>(painted.bones.size() / 2), 500,
+              painting::kFemur);
+  painting::save_painting(case_folder(), known_.labels, painted);
+  theirs.reset();
+  ASSERT_TRUE(app.wait_for_state("access", "own", 60));
+  ASSERT_TRUE(app.wait_for_state("painting", "ready", 120));
+  app.press("1");
+  stroke(app, "paint.coronal_slice", at(0.4, 0.5, 0.8), at(0.6, 0.5, 0.8));
+  ASSERT_TRUE(app.wait_for_state("paint_undo", "Paint femur stroke"));
+  EXPECT_TRUE(app.wait_for_state("paint_saved", "yes", 60));
+  const auto kept = painting::load_painting(case_folder(), known_.labels);
+  EXPECT_GE(std::ranges::count(kept->bones, painting::kFemur), 500);
+  EXPECT_GT(std::ranges::count(kept->strokes, painting::kFemur), 0);
+}
 
 TEST_F(PaintWindow, StrokesBecomeTheBonesOfTheCaseAndACrashLosesNothing) {
   const VirtualDisplay display(1600, 900);

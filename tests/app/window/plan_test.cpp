@@ -83,6 +83,29 @@ TEST_F(PlanWindow, PlacingCanBeLeftAndTakesNoOtherBone) {
 }
 
 // "+" is understood from every key that has it.
+// The list of keys covers the whole screen: what is pressed or clicked under it does nothing but close it.
+TEST_F(PlanWindow, NothingActsUnseenBehindTheListOfKeys) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  const std::string before = app.state("undo");
+  for (const char* key : {"plus", "Delete", "n"}) {
+    app.press("F10");
+    ASSERT_TRUE(app.wait_for_state("key_list", "shown"));
+    app.press(key);
+    EXPECT_TRUE(app.wait_for_state("key_list", "none")) << key;
+  }
+  app.press("F10");
+  ASSERT_TRUE(app.wait_for_state("key_list", "shown"));
+  const auto [x, y] = middle(app, "plan.wider");
+  app.click_at(x, y);
+  EXPECT_TRUE(app.wait_for_state("key_list", "none"));
+  app.press("F10");
+  app.press("F10");
+  EXPECT_TRUE(app.wait_for_state("key_list", "none"));
+  EXPECT_EQ(app.state("undo"), before);
+}
+
 TEST_F(PlanWindow, PlusAndTheNumberPadWiden) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_.path());

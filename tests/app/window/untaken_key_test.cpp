@@ -67,6 +67,15 @@ TEST_F(UntakenKeys, PressedWhileACaseOpensAreSaidUntilItIsOpenAndThen) {
   EXPECT_EQ(untaken.words(60), "");
 }
 
+// For some seconds, as a key: what threatens the operation must not be kept from the screen by it.
+TEST_F(UntakenKeys, WhatIsDroppedWhileSomethingRunsIsSaidForSomeSeconds) {
+  UntakenKey untaken;
+  untaken.note_drop(10);
+  untaken.look_again(actions_, false, 11);
+  EXPECT_NE(untaken.words(12).find("Nothing that is dropped is taken"), std::string::npos);
+  EXPECT_EQ(untaken.words(20), "");
+}
+
 TEST_F(UntakenKeys, AreForgottenWithTheNextThatIsTaken) {
   UntakenKey untaken;
   untaken.note({GLFW_KEY_N, 0, false}, actions_, {"plan."}, false, 10);

@@ -22,4 +22,13 @@ TEST(SamePatient, IsToldByWhatBothSay) {
   }
 }
 
+// Of the names, where no more is said by both: umlauts in capitals, without their dots, or as two letters.
+TEST(SamePatient, NamesAreTheSameHoweverAScannerWritesThem) {
+  const Identity joerg{"Müller^Jörg", "4711", ""};
+  for (const char* name : {"MÜLLER^JÖRG", "MULLER^JORG", "Mueller^Joerg", "MUELLER JOERG"})
+    EXPECT_FALSE(is_another_patient(joerg, Identity{name, "", "19500101"})) << name;
+  for (const char* name : {"Miller^Jörg", "Müller^Jürg"})
+    EXPECT_TRUE(is_another_patient(joerg, Identity{name, "", "19500101"})) << name;
+}
+
 }  // namespace arthronaut::cases
