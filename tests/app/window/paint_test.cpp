@@ -118,13 +118,13 @@ TEST_F(PaintWindow, ACaseThatBecomesFreeIsPaintedOnAsItWasLeft) {
   theirs.reset();
   ASSERT_TRUE(app.wait_for_state("access", "own", 60));
   ASSERT_TRUE(app.wait_for_state("painting", "ready", 120));
+  ASSERT_TRUE(app.wait_for_widget("paint.coronal_slice", 20));
   app.press("1");
   stroke(app, "paint.coronal_slice", at(0.4, 0.5, 0.8), at(0.6, 0.5, 0.8));
-  ASSERT_TRUE(app.wait_for_state("paint_undo", "Paint femur stroke"));
+  ASSERT_TRUE(app.wait_for_state("paint_undo", "Paint femur bone"));
   EXPECT_TRUE(app.wait_for_state("paint_saved", "yes", 60));
   const auto kept = painting::load_painting(case_folder(), known_.labels);
-  EXPECT_GE(std::ranges::count(kept->bones, painting::kFemur), 500);
-  EXPECT_GT(std::ranges::count(kept->strokes, painting::kFemur), 0);
+  EXPECT_GT(std::ranges::count(kept->bones, painting::kFemur), 500) << "theirs, and what was added";
 }
 
 TEST_F(PaintWindow, StrokesBecomeTheBonesOfTheCaseAndACrashLosesNothing) {
