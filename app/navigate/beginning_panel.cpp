@@ -112,8 +112,9 @@ std::optional<double> DepthEntry::draw(const widgets::Ui& ui, const widgets::Rec
   ImGui::SetCursorScreenPos(bar.min());
   ImGui::SetNextItemWidth(bar.width);
   if (wants_focus_) ImGui::SetKeyboardFocusHere();
-  const bool is_entered = ImGui::InputText(
-      "##depth_stop", &text_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CharsDecimal);
+  // Every letter is taken, and the whole judged: ImGui's filter for numbers drops a comma, and 12,5 became
+  // 125.
+  const bool is_entered = ImGui::InputText("##depth_stop", &text_, ImGuiInputTextFlags_EnterReturnsTrue);
   ui.log.note("navigate.depth_field", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   if (is_entered) {
     const std::optional<double> depth_mm = depth_from_text(text_);

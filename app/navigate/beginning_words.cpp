@@ -1,11 +1,10 @@
 #include "app/navigate/beginning_words.h"
 
-#include <algorithm>
-#include <charconv>
 #include <regex>
 
 #include "navigation/camera/medium.h"
 #include "planning/files/format.h"
+#include "planning/files/typed_number.h"
 
 namespace arthronaut::navigate {
 
@@ -126,15 +125,10 @@ Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedT
   return card;
 }
 
-std::optional<double> depth_from_text(std::string text) {
+std::optional<double> depth_from_text(const std::string& text) {
   constexpr double kLongest_mm = 150;
-  std::replace(text.begin(), text.end(), ',', '.');
-  const auto is_space = [](char letter) { return letter == ' '; };
-  text.erase(std::remove_if(text.begin(), text.end(), is_space), text.end());
-  double depth_mm = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), depth_mm);
-  const bool is_number = error == std::errc() && end == text.data() + text.size();
-  return is_number && depth_mm >= 0 && depth_mm <= kLongest_mm ? std::optional(depth_mm) : std::nullopt;
+  const auto depth_mm = files::typed_number(text, "mm");
+  return depth_mm && *depth_mm >= 0 && *depth_mm <= kLongest_mm ? depth_mm : std::nullopt;
 }
 
 }  // namespace arthronaut::navigate

@@ -39,6 +39,6 @@ struct Card {
 
 // What is typed as the depth stop's reading: millimetres, with a point or a comma. Empty when it is no number
 // from 0 to 150, which is longer than any drill in a knee.
-[[nodiscard]] std::optional<double> depth_from_text(std::string text);
+[[nodiscard]] std::optional<double> depth_from_text(const std::string& text);
 
 }  // namespace arthronaut::navigate

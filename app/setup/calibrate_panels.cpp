@@ -5,6 +5,8 @@
 
 #include "app/setup/calibrate_station.h"
 #include "app/setup/capture_panels.h"
+#include "planning/files/format.h"
+#include "planning/files/typed_number.h"
 
 namespace arthronaut::setup {
 
@@ -34,9 +36,11 @@ void CalibrateStation::draw_form(const widgets::Ui& ui, const widgets::Rect& are
   field("Square side", "setup.square", [&] {
     if (form_.wants_focus) ImGui::SetKeyboardFocusHere();
     form_.wants_focus = false;
-    double side = form_.square_mm;
-    if (ImGui::InputDouble("##square", &side, 0, 0, "%.2f mm") && side > 0 && side < 100)
-      form_.square_mm = side;
+    // Text, as ImGui's own field for numbers drops a comma: 1,5 became 15.
+    std::string text = files::format("%.2f mm", form_.square_mm);
+    if (ImGui::InputText("##square", &text, ImGuiInputTextFlags_AutoSelectAll))
+      if (const auto side_mm = files::typed_number(text, "mm"); side_mm && *side_mm > 0 && *side_mm < 100)
+        form_.square_mm = *side_mm;
   });
   field("Scope", "setup.scope", [&] { ImGui::InputText("##scope", &form_.scope_name); });
   field("Head", "setup.head", [&] { ImGui::InputText("##head", &form_.head_name); });

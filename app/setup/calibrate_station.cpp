@@ -8,6 +8,7 @@
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/doubted_camera_file.h"
 #include "planning/cases/case.h"
+#include "planning/files/fixed_number.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
@@ -177,6 +178,7 @@ void CalibrateStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
     draw_result(ui, area);
   else
     draw_pictures(ui, area);
+  ui.log.note_state("setup_square_mm", files::fixed(form_.square_mm, 2));
   ui.log.note_state("setup_taken", std::to_string(status_.job.taken.size()));
   ui.log.note_state("setup_band", run_ != nullptr ? display_.band.headline : "no source");
   ui.log.note_state("setup_verdict", display_.verdict.headline);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <utility>
 
 #include "navigation/camera/camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
@@ -24,6 +25,15 @@ TEST(SettingUp, LeadsToAnAdoptedCameraAndTip) {
   app.press("F4");
   ASSERT_TRUE(app.wait_for_state("setup_next", "start Simulated arthroscope"));
   EXPECT_FALSE(std::filesystem::exists(folder / "camera.json"));
+
+  // With a comma, as most of Europe writes it.
+  for (const auto& [typed, is] : {std::pair{"1,75", "1.75"}, std::pair{"1,5", "1.50"}}) {
+    app.click("setup.square");
+    app.press("ctrl+a");
+    app.type(typed);
+    app.press("Return");
+    ASSERT_TRUE(app.wait_for_state("setup_square_mm", is)) << app.state("setup_square_mm");
+  }
 
   // Pictures that are good and held still are taken without a key.
   app.press("space");

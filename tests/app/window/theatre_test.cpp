@@ -175,7 +175,7 @@ TEST_F(Theatre, Hazard7TheDepthStopIsTypedAndTheMarkerPlacedAnewIsAKey) {
   app.type("210");
   app.press("Return");
   EXPECT_FALSE(becomes([&] { return app.state("depth_stop") != "none"; }, 1)) << "no drill is so long";
-  app.type("21.5");
+  app.type("21,5");  // as most of Europe writes it
   app.press("Return");
   ASSERT_TRUE(app.wait_for_state("depth_stop", "21.5"));
   EXPECT_EQ(app.state("picture"), "live");
