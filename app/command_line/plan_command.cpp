@@ -153,6 +153,10 @@ void put(const tunnels::Tunnel& tunnel, const std::string& mesh_sha256, cases::C
   }
 }
 
+bool is_asked_for(const PlanArguments& arguments, bones::BoneKind bone) {
+  return arguments.bone.empty() || arguments.bone == bones::to_text(bone);
+}
+
 void take_markups(const PlanArguments& arguments, cases::Case& knee, std::vector<std::string>& notes) {
   std::map<bones::BoneKind, geometry::Surface> surfaces;
   const auto surface_of = [&](bones::BoneKind kind) -> const geometry::Surface* {
@@ -162,7 +166,8 @@ void take_markups(const PlanArguments& arguments, cases::Case& knee, std::vector
   const plan_export::TakenTunnels taken = plan_export::read_tunnels(arguments.markups, knee.plan, surface_of);
   if (!taken.note.empty()) notes.push_back("The " + taken.note + ".");
   for (const auto& [key, tunnel] : taken.tunnels)
-    put(tunnel, bones::mesh_sha256(knee.bones.at(key.bone).mesh), knee, notes);
+    if (is_asked_for(arguments, key.bone))
+      put(tunnel, bones::mesh_sha256(knee.bones.at(key.bone).mesh), knee, notes);
 }
 
 void show(const PlanArguments& arguments, const Context& context, const cases::Case& knee,
@@ -170,7 +175,7 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
   auto tunnels_json = nlohmann::ordered_json::array();
   bool has_any = false;
   for (const auto& [key, tunnel] : knee.plan.tunnels) {
-    if (!arguments.bone.empty() && arguments.bone != bones::to_text(key.bone)) continue;
+    if (!is_asked_for(arguments, key.bone)) continue;
     if (arguments.names_type && arguments.type != norms::to_text(key.bundle)) continue;
     if (!review.has_bone(key.bone))
       throw InvalidInput(arguments.case_folder, "plan.json", "plans a bone that the case lacks");
@@ -224,7 +229,14 @@ void take_version(const PlanArguments& arguments, cases::Case& knee) {
                        "holds no version " + std::to_string(arguments.version) + " (it holds " +
                            std::to_string(versions.size()) + ")");
   }
-  knee.plan = found->plan;
+  for (const bones::BoneKind bone : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+    if (!is_asked_for(arguments, bone)) continue;
+    for (const tunnels::TunnelKey& key : knee.plan.of(bone)) knee.plan.remove(key);
+    for (const tunnels::TunnelKey& key : found->plan.of(bone)) {
+      const auto mesh = found->plan.mesh_sha256.find(key);
+      knee.plan.put(found->plan.tunnels.at(key), mesh != found->plan.mesh_sha256.end() ? mesh->second : "");
+    }
+  }
 }
 
 void list_versions(const PlanArguments& arguments, const Context& context, const cases::Case& knee) {
@@ -306,6 +318,7 @@ void add_plan_command(CLI::App& app, Context& context) {
       sub->add_option("--from-markups", arguments->markups, "Take the tunnels from a .mrk.json of 3D Slicer")
           ->excludes(by_default)
           ->excludes(direction)
+          ->excludes(type)
           ->excludes(remove);
   auto* exports =
       sub->add_option(
@@ -324,6 +337,7 @@ void add_plan_command(CLI::App& app, Context& context) {
                    ->excludes(by_default)
                    ->excludes(markups)
                    ->excludes(direction)
+                   ->excludes(type)
                    ->excludes(remove);
   auto* keep = sub->add_flag("--keep", arguments->keeps,
                              "Keep the plan as a version beside the one that is worked on");

@@ -110,6 +110,28 @@ TEST_F(PlanCommand, KeepsWhatADefaultTakesThePlaceOf) {
       << "the default, too, when 1 was taken";
 }
 
+// Of a version and of markups the bone that is named is taken, and the other one's tunnel stays.
+TEST_F(PlanCommand, TakesTheBoneThatIsNamedAlone) {
+  using bones::BoneKind;
+  const auto plan = [&] { return cases::load_case(folder_ / "knee.arthro").plan; };
+  const cases::Plan first = plan();
+  EXPECT_EQ(run({"plan", "--keep", "--export", folder_ / "out"}).exit_code, 0);
+  for (const char* bone : {"femur", "tibia"})
+    EXPECT_LE(run({"plan", "--bone", bone, "--default"}).exit_code, 4);
+  const cases::Plan second = plan();
+  const auto off_mm = [](const cases::Plan& a, const cases::Plan& b, BoneKind bone) {
+    return (a.tunnels.at(bone).entry_mm - b.tunnels.at(bone).entry_mm).norm() +
+           (a.tunnels.at(bone).direction - b.tunnels.at(bone).direction).norm();
+  };
+  for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) ASSERT_GT(off_mm(first, second, bone), 0.01);
+  EXPECT_LE(run({"plan", "--bone", "femur", "--take", "1"}).exit_code, 4);
+  EXPECT_LT(off_mm(plan(), first, BoneKind::Femur), 1e-6);
+  EXPECT_LT(off_mm(plan(), second, BoneKind::Tibia), 1e-6);
+  EXPECT_LE(run({"plan", "--bone", "tibia", "--from-markups", folder_ / "out/plan.mrk.json"}).exit_code, 4);
+  EXPECT_LT(off_mm(plan(), first, BoneKind::Tibia), 1e-3);
+  EXPECT_EQ(run({"plan", "--take", "1", "--type", "am"}).exit_code, 2);
+}
+
 // So is what any other command takes the place of: a tunnel placed by numbers, taken from markups, removed, a
 // version taken again.
 TEST_F(PlanCommand, KeepsWhatAnyCommandTakesThePlaceOf) {
