@@ -31,7 +31,8 @@ constexpr const char* kTemporaryExtension = ".part";
 // One image with all its frames: pixels have a length of 32 bits.
 constexpr std::int64_t kLargestImage_bytes = std::int64_t{5} << 30;
 constexpr double kMegabyte = 1e6;
-// A peer may err, and may send again what it was not sure of.
+// A peer may err, and may send again what it was not sure of. One that lists no images can be asked for the
+// whole series alone, and sends all that is here already once more: that is no error of its.
 constexpr int kMostRefused = 100, kMostAgain = 1000;
 
 struct Identity {
@@ -94,6 +95,7 @@ IncomingSeries::IncomingSeries(fs::path folder, std::string series_uid, const Li
   if (fs::exists(folder_)) take_stock(folder_, false);
   create_waiting_room();
   take_stock(waiting_room_, true);
+  had_count_ = static_cast<int>(files_.size());
   // Now, not after the transfer: a folder that nothing can be written into.
   const fs::path probe = begin("0");
   const int descriptor = ::open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
@@ -148,7 +150,7 @@ bool IncomingSeries::admits(const std::string& sop_uid) {
   const std::scoped_lock lock(mutex_);
   const bool is_listed = expected_.class_by_uid.empty() || expected_.class_by_uid.contains(sop_uid);
   if (!is_listed) refuse(sop_uid, "was not asked for");
-  const bool is_again = files_.contains(sop_uid) && ++again_count_ > kMostAgain;
+  const bool is_again = files_.contains(sop_uid) && ++again_count_ > kMostAgain + had_count_;
   if (is_again) refuse(sop_uid, "is sent again and again");
   return is_listed && !is_again;
 }

@@ -94,6 +94,7 @@ class IncomingSeries {
   std::int64_t received_bytes_ = 0;
   unsigned begun_ = 0;
   int refused_count_ = 0, again_count_ = 0;
+  int had_count_ = 0;  // when it began
   std::string refusal_;
 };
 
