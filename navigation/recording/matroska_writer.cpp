@@ -1,5 +1,7 @@
 #include "navigation/recording/matroska_writer.h"
 
+#include <utility>
+
 #include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 
@@ -39,6 +41,7 @@ void MatroskaWriter::begin() {
   const int result = avformat_write_header(container_.get(), &settings);
   av_dict_free(&settings);
   check(result, "cannot write");
+  is_begun_ = true;
 }
 
 void MatroskaWriter::write(AVPacket& packet, AVRational time_base) {
@@ -54,6 +57,9 @@ void MatroskaWriter::write(AVPacket& packet, AVRational time_base) {
 void MatroskaWriter::end_cluster() { check(av_write_frame(container_.get(), nullptr), "cannot write"); }
 
 void MatroskaWriter::finish() {
+  // libavformat lets go of what a trailer is made of also where that failed, and a second one is of what is
+  // gone.
+  if (!std::exchange(is_begun_, false)) return;
   check(av_write_trailer(container_.get()), "cannot write");
   check(avio_closep(&container_->pb), "cannot write");
 }

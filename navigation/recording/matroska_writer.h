@@ -20,6 +20,7 @@ class MatroskaWriter {
   void write(AVPacket& packet, AVRational time_base);
   // What follows begins a new cluster, which can be found by its time.
   void end_cluster();
+  // Once: after a failure, too, there is nothing more to finish, and a second call does nothing.
   void finish();
   // Throws where a function of libav failed.
   void check(int result, const std::string& what) const;
@@ -28,6 +29,7 @@ class MatroskaWriter {
   std::filesystem::path file_;
   sources::LibavOutput container_;
   AVStream* stream_ = nullptr;
+  bool is_begun_ = false;  // and not finished
 };
 
 }  // namespace arthronaut::recording

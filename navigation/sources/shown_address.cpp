@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <cctype>
 
 #include "navigation/sources/frame_source.h"
 
@@ -10,18 +8,15 @@ namespace {
 
 constexpr std::string_view kEndsOfAddress = " \t\"'";
 
-// Who logs in stands before the "@" of the host. A password with a "/" in it is told from a path by what
-// stands where the port would be.
+// Who logs in stands before the "@" of the host. A password may have a "/" in it, and "tower:554/a@b" be one
+// of "554/a": where a colon leaves that open nothing before the last "@" is shown.
 void leave_login_out(std::string& text, std::size_t host) {
   const std::size_t end = std::min(text.find_first_of(kEndsOfAddress, host), text.size());
   const std::size_t path = std::min(text.find_first_of("/?", host), end);
   const std::string_view authority = std::string_view(text).substr(host, path - host);
-  const std::size_t colon = authority.rfind(':');
-  const bool has_port = colon == std::string_view::npos ||
-                        std::all_of(authority.begin() + colon + 1, authority.end(),
-                                    [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; });
   const bool is_login = authority.find('@') != std::string_view::npos;
-  const std::size_t at = text.rfind('@', (is_login || has_port ? path : end) - 1);
+  const bool may_be_login = authority.find(':') != std::string_view::npos;
+  const std::size_t at = text.rfind('@', (is_login || !may_be_login ? path : end) - 1);
   // In "udp://@:5000" nobody is before it: there it stands for every interface.
   if (at != std::string::npos && at > host && at < end) text.erase(host, at + 1 - host);
 }

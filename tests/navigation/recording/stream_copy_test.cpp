@@ -1,14 +1,19 @@
 // Streams kept as they came: what was seen of them, live, comes back to the last bit.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 #include <future>
 #include <map>
 #include <random>
+#include <thread>
+#include <utility>
 
 #include "navigation/recording/picture_writer.h"
 #include "navigation/sources/kept_stream.h"
+#include "planning/geometry/error.h"
 #include "tests/navigation/recording/streams.h"
 #include "tests/temporary_folder.h"
 
@@ -177,6 +182,38 @@ TEST_F(StreamCopyTest, H264ByRtspComesBack) {
   // What lies on the disk is what was sent, and as much.
   EXPECT_LT(std::filesystem::file_size(folder_ / "video.mkv"),
             std::filesystem::file_size(clips / "clip.mkv") * 120 / 250);
+}
+
+// A disk that is full when a part ends is told, and ends no program: what is finished is finished once.
+TEST_F(StreamCopyTest, ADiskThatIsFullAtTheEndIsTold) {
+  const std::string port = stream_port(10);
+  const auto sender = send_by_udp(port, {"-c:v", "mpeg2video", "-g", "10", "-bf", "0"});
+  const auto source = open_when_there("udp://127.0.0.1:" + port);
+  begin(source->info().packets);
+  for (int i = 0; i < 40; ++i) keep(source->next());
+  // What waits in the queue is on its way; then no file grows any more.
+  const std::filesystem::path file = folder_ / "video.mkv";
+  std::uintmax_t size = 0;
+  for (std::uintmax_t before = 1; size != before || size == 0;) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    before = std::exchange(size, std::filesystem::file_size(file));
+  }
+  const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit usual{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &usual), 0);
+  const rlimit full{size, usual.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+  std::string said;
+  try {
+    writer_->finish();
+  } catch (const IoError& error) {
+    said = error.what();
+  }
+  writer_.reset();
+  setrlimit(RLIMIT_FSIZE, &usual);
+  std::signal(SIGXFSZ, ignored);
+  EXPECT_THAT(said, testing::HasSubstr("video.mkv"));
+  EXPECT_EQ(ended_, 1);
 }
 
 // A sender that is killed and comes back is a new part; every picture of both is there.

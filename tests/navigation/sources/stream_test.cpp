@@ -211,6 +211,8 @@ TEST(Stream, AnAddressIsShownWithoutItsPassword) {
   EXPECT_EQ(shown_address("rtsp://user@tower"), "rtsp://tower");
   EXPECT_EQ(shown_address("rtsp://user:sec/ret@tower/scope"), "rtsp://tower/scope");
   EXPECT_EQ(shown_address("rtsp://user:se@cret@tower/scope"), "rtsp://tower/scope");
+  for (const char* password : {"12/ss", "12?x", "554/a@b"})
+    EXPECT_EQ(shown_address("rtsp://user:" + std::string(password) + "@tower/scope"), "rtsp://tower/scope");
   EXPECT_EQ(shown_address("gst:rtspsrc location=\"rtsp://user:secret@tower/a\" user-pw=secret ! appsink"),
             "gst:rtspsrc location=\"rtsp://tower/a\" user-pw=*** ! appsink");
   EXPECT_EQ(shown_address("srt://tower:9000?passphrase=secret&mode=caller"),
