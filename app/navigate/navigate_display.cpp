@@ -47,6 +47,20 @@ GuidanceState cause_of(const operation::OperationState& state) {
   }
 }
 
+// What is said of the guide, whatever it is, makes no drill with a marker of its own wrong.
+bool is_of_guide_alone(GuidanceState state) {
+  switch (state) {
+    case GuidanceState::Valid:
+    case GuidanceState::NoGuide:
+    case GuidanceState::GuideLost:
+    case GuidanceState::GuideNotChecked:
+    case GuidanceState::ErrorUnknown:  // of the bone marker there is no drill
+      return true;
+    default:
+      return false;
+  }
+}
+
 // Rounded up, and no finer than can be read while it changes.
 std::string late_by(double age_s) {
   return age_s < 1 ? widgets::fixed(std::ceil(10 * age_s) / 10, 1) + " s"
@@ -298,9 +312,7 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
       display.overlay_is_valid || (result.tracker_from_world.is_valid && !result.is_frozen && !is_revoked);
   display.tip_is_valid = display.world_is_placed && may_guide && result.tip_is_valid;
   display.guidance_is_valid = display.world_is_placed && may_guide && result.guidance.is_valid();
-  const bool lacks_guide_alone =
-      result.guidance.state == GuidanceState::GuideLost || result.guidance.state == GuidanceState::NoGuide;
-  if (display.guidance_is_valid || (display.world_is_placed && may_guide && lacks_guide_alone))
+  if (display.world_is_placed && may_guide && is_of_guide_alone(result.guidance.state))
     display.drill = result.guidance.drill;
   if (display.guidance_is_valid) {
     display.guidance = result.guidance;

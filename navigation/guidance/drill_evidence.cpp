@@ -87,8 +87,12 @@ DrillEvidence::DrillEvidence(const tunnels::Tunnel& planned, const DrillEvidence
 }
 
 void DrillEvidence::clear() {
-  guide_.clear();
+  forget_guide();
   drill_.clear();
+}
+
+void DrillEvidence::forget_guide() {
+  guide_.clear();
   valid_count_ = deep_enough_count_ = 0;
   nearest_mm_ = 0;
 }

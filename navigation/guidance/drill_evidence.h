@@ -66,6 +66,8 @@ class DrillEvidence {
   void add(const GuidanceNumbers& numbers);
   // For the next hole.
   void clear();
+  // What was seen of the guide; a drill's own poses stay.
+  void forget_guide();
   [[nodiscard]] DrillEvidenceSummary summary() const;
   [[nodiscard]] const tunnels::Tunnel& planned() const { return planned_; }
 

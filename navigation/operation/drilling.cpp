@@ -33,6 +33,11 @@ void Drilling::forget_seen() {
   is_seen_ = false;
 }
 
+void Drilling::forget_guide() {
+  if (evidence_) evidence_->forget_guide();
+  is_seen_ = evidence_ && evidence_->summary().is_usable();
+}
+
 void Drilling::add(const guidance::GuidanceNumbers& guidance, std::int64_t now_ns) {
   if (evidence_) evidence_->add(guidance);
   if (guidance.state == guidance::GuidanceState::WrongMedium) forget_seen();

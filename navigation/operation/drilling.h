@@ -31,6 +31,8 @@ class Drilling {
   void on_marker_placed_anew();
   // What was seen was seen by wrong numbers.
   void forget_seen();
+  // By wrong numbers of the guide alone: what was seen of a drill by its own marker stays.
+  void forget_guide();
 
   // Every frame's guidance, in order of time. Allocates nothing. One through the wrong medium forgets what
   // was seen until then.

@@ -46,8 +46,8 @@ void Operation::Parts::apply(const CheckGuide&) {
            (state.may_guide() ? "" : files::format(", more than %.1f mm", setup.limits.max_guide_error_mm)));
   if (state.may_guide()) return;
   // What was seen of it was seen by wrong numbers.
-  drilling.forget_seen();
-  if (frame.guidance.is_valid()) hide_guidance(guidance::GuidanceState::GuideNotChecked);
+  drilling.forget_guide();
+  if (frame.guidance.is_valid()) hide_guide();
 }
 
 // Where the guide is held: none while the control point itself tells that the marker has moved.

@@ -114,6 +114,7 @@ struct Operation::Parts {
   [[nodiscard]] TimeOut time_out() const { return confirmed.standing(source.get(), ledger.now(), plan); }
   [[nodiscard]] bool is_live() const { return has_source && source->kind == sources::SourceKind::Live; }
   void hide_guidance(guidance::GuidanceState reason);
+  void hide_guide();
   void end_frame();
   [[nodiscard]] RegistrationStatePtr registration_state();
 

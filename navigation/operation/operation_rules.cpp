@@ -110,8 +110,7 @@ void Operation::Parts::take_frame() {
   // A drill with a marker of its own is seen, and said, without the guide.
   if ((frame.guidance.is_valid() || frame.guidance.drill) && time_out() == TimeOut::Due)
     hide_guidance(guidance::GuidanceState::NotConfirmed);
-  if (frame.guidance.is_valid() && !guide_check.state().may_guide())
-    hide_guidance(guidance::GuidanceState::GuideNotChecked);
+  if (frame.guidance.is_valid() && !guide_check.state().may_guide()) hide_guide();
   const double time_s = static_cast<double>(frame.timestamp_ns) * 1e-9;
   guide_check.add(frame);
   tip.add(time_s, frame.tip_is_valid ? std::optional(frame.tip_in_world_mm) : std::nullopt);
@@ -170,6 +169,13 @@ void Operation::Parts::hide_guidance(guidance::GuidanceState reason) {
   frame.guidance = {};
   frame.guidance.timestamp_ns = timestamp_ns;
   frame.guidance.state = reason;
+}
+
+// The guide's numbers alone: no guide makes what is seen of a drill by its own marker wrong.
+void Operation::Parts::hide_guide() {
+  const std::optional<guidance::DrillDepth> drill = frame.guidance.drill;
+  hide_guidance(guidance::GuidanceState::GuideNotChecked);
+  frame.guidance.drill = drill;
 }
 
 // Nothing that was reckoned from the picture stands.

@@ -175,8 +175,8 @@ TEST(NavigateDisplay, NamesTheReasonOfTheMarker) {
   EXPECT_EQ(display.detail, "Glare");
 }
 
-// Over a wire there is no guide: what the drill's own marker tells stays, and goes with all else that may
-// make it wrong.
+// Over a wire there is no guide: what the drill's own marker tells stays, whatever is wrong with the guide
+// (not seen, not checked, at the rim), and goes with all that may make it wrong.
 TEST(NavigateDisplay, Hazard7TheDrillIsToldOfWithoutAGuide) {
   const auto drilled = [](GuidanceState state, const auto& change) {
     return display_after([&](Shown& shown) {
@@ -187,10 +187,12 @@ TEST(NavigateDisplay, Hazard7TheDrillIsToldOfWithoutAGuide) {
     });
   };
   const auto nothing = [](Shown&) {};
-  for (const GuidanceState state : {GuidanceState::Valid, GuidanceState::GuideLost, GuidanceState::NoGuide})
+  for (const GuidanceState state : {GuidanceState::Valid, GuidanceState::GuideLost, GuidanceState::NoGuide,
+                                    GuidanceState::GuideNotChecked, GuidanceState::ErrorUnknown})
     EXPECT_TRUE(breaks_out(drilled(state, nothing))) << to_text(state);
-  for (const GuidanceState state : {GuidanceState::GuideNotChecked, GuidanceState::WorldMarkerLost,
-                                    GuidanceState::LensStale, GuidanceState::NotConfirmed})
+  for (const GuidanceState state :
+       {GuidanceState::WorldMarkerLost, GuidanceState::LensStale, GuidanceState::NotConfirmed,
+        GuidanceState::WrongMedium, GuidanceState::PictureTorn, GuidanceState::RegistrationUnreliable})
     EXPECT_FALSE(drilled(state, nothing).drill) << to_text(state);
   // Its depth stands beside the bullseye: that is brought up by it, as by a guide.
   EXPECT_TRUE(gets_screen(drilled(GuidanceState::GuideLost, nothing), {}));

@@ -187,6 +187,59 @@ TEST(GuideCheck, AGuideThatIsOffLeavesNoEvidence) {
   EXPECT_FALSE(run.state()->drilled.tunnel);
 }
 
+// The guide on its plan, not measured, and a drill with a marker of its own that is so deep.
+void show_drill(PhantomOperation& run, double depth_mm) {
+  const PlannedTunnel plan = test::phantom_plan();
+  pipeline::FrameResult frame = run.frame();
+  frame.tools.back().world_from_tool.is_valid = true;
+  frame.guidance.state = GuidanceState::Valid;
+  frame.guidance.timestamp_ns = frame.timestamp_ns;
+  frame.guidance.drill = guidance::drill_depth(plan.tunnel, plan.length_mm,
+                                               plan.tunnel.entry_mm + depth_mm * plan.tunnel.direction,
+                                               plan.tunnel.direction, 0.3);
+  run.show(frame);
+}
+
+// No guide makes what is seen of a drill by its own marker wrong: that it breaks out is told whether somebody
+// has held the guide on the control point yet or not.
+TEST(GuideCheck, Hazard7TheDrillIsToldOfWhateverTheGuideIs) {
+  PhantomOperation run;
+  bring_to_the_guide(run, nominal_source());
+  for (int i = 0; i < 100; ++i) show_drill(run, 28.5);
+  EXPECT_EQ(run.state()->frame.guidance.state, GuidanceState::GuideNotChecked);
+  ASSERT_TRUE(run.state()->frame.guidance.drill);
+  EXPECT_EQ(run.state()->frame.guidance.drill->breakout, guidance::Breakout::Imminent);
+  EXPECT_TRUE(run.state()->drilled.has_evidence) << "of the drill";
+  hold_guide(run, test::on_bone(trial(), 2));
+  run.apply(CheckGuide{});
+  show_drill(run, 28.5);
+  ASSERT_TRUE(run.state()->frame.guidance.is_valid());
+  hold_guide(run, test::on_bone(trial(), 2) + Eigen::Vector3d(5, 0, 0));
+  run.apply(CheckGuide{});
+  ASSERT_EQ(run.state()->guide_check.standing, GuideStanding::Off);
+  EXPECT_TRUE(run.state()->drilled.has_evidence) << "the drill was seen by no number of the guide";
+  run.apply(TunnelDrilled{});
+  ASSERT_TRUE(run.state()->drilled.tunnel);
+  EXPECT_NEAR(run.state()->drilled.tunnel->depth_mm.value_or(0), 28.5, 1e-9);
+}
+
+// A guide that is found to be off while the drill is in the bone: that picture's warning stays.
+TEST(GuideCheck, Hazard7AGuideThatIsOffTakesNoDrillAway) {
+  PhantomOperation run;
+  bring_to_the_guide(run, nominal_source());
+  run.apply(TrustGuide{});
+  hold_guide(run, test::on_bone(trial(), 2) + Eigen::Vector3d(5, 0, 0));
+  pipeline::FrameResult frame = run.state()->frame;
+  frame.timestamp_ns += 1;
+  frame.guidance.state = GuidanceState::Valid;
+  frame.guidance.drill.emplace().breakout = guidance::Breakout::Imminent;
+  run.show(frame);
+  run.apply(CheckGuide{});
+  ASSERT_EQ(run.state()->guide_check.standing, GuideStanding::Off);
+  EXPECT_EQ(run.state()->frame.guidance.state, GuidanceState::GuideNotChecked);
+  EXPECT_TRUE(run.state()->frame.guidance.drill);
+}
+
 // A guide that was measured, and whatever drills nobody, is not held against anything; nor is a bone whose
 // tools hold no guide.
 TEST(GuideCheck, IsAskedForANominalGuideInALiveSourceAlone) {
