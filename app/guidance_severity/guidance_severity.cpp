@@ -75,6 +75,10 @@ DrillText drill_text(const guidance::DrillDepth& drill) {
   }
 }
 
+std::string drill_name(const tools::ToolSet& tools, const guidance::DrillDepth& drill) {
+  return drill.marker_id && tools.has_several_drills() ? marker_name(tools, *drill.marker_id) : "";
+}
+
 std::string marker_name(const tools::ToolSet& tools, int marker_id) {
   for (const tools::WorldMarker& marker : tools.world_markers)
     if (marker.marker_id == marker_id)

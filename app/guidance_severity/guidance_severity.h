@@ -30,6 +30,9 @@ struct DrillText {
 // records, which do not say where the drill was. Empty: it is at the plan.
 [[nodiscard]] std::string_view drill_doubt(const guidance::DrillDepth& drill);
 
+// Where several drills are declared, which one it is, as marker_name() says it; else empty.
+[[nodiscard]] std::string drill_name(const tools::ToolSet& tools, const guidance::DrillDepth& drill);
+
 // Length of the offset in the plane across the plan.
 [[nodiscard]] double offset_mm(const guidance::GuidanceNumbers& guidance);
 // Its two parts in anatomical words: "1.2 anterior", "0.4 distal". Their squares add up to the length's.

@@ -173,10 +173,11 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
 
 namespace {
 
-// "Offset", under it "1.2" with "mm ± 0.3" beside it, and lines of words; all of it for afar. Returns false,
-// and draws nothing, where there is no room.
+// "Offset", under it "1.2" with "mm ± 0.3" beside it, and lines of words; all of it for afar. `of` stands
+// behind the name, in the letters that fit. Returns false, and draws nothing, where there is no room.
 bool draw_number(const widgets::Ui& ui, widgets::Rect& rest, const std::string& name,
-                 const std::string& value, const std::string& unit, widgets::Severity severity) {
+                 const std::string& value, const std::string& unit, widgets::Severity severity,
+                 const std::string& of = "") {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   ImFont* const font = ui.theme.afar;
   const float height = font->FontSize + ui.theme.number->FontSize;
@@ -190,6 +191,13 @@ bool draw_number(const widgets::Ui& ui, widgets::Rect& rest, const std::string& 
     x += 2.6F * radius;
   }
   draw.AddText(font, font->FontSize, {x, row.y}, widgets::kQuietText, name.c_str());
+  if (!of.empty()) {
+    x += font->CalcTextSizeA(font->FontSize, 1e9F, 0, (name + " ").c_str()).x;
+    const ImVec4 clip{x, row.y, row.x + row.width, row.y + row.height};
+    ImFont* const small = widgets::font_that_fits(ui.theme, clip.z - x, font->FontSize, of);
+    draw.AddText(small, small->FontSize, {x, row.y + (font->FontSize - small->FontSize) * 0.8F},
+                 widgets::kQuietText, of.c_str(), nullptr, 0, &clip);
+  }
   const float top = row.y + font->FontSize * 0.95F;
   const float width = widgets::draw_number(draw, ui.theme.number, {row.x, top}, color, value);
   const float right = row.x + width + ui.theme.px(10);
@@ -212,13 +220,21 @@ bool warns_beside(const guidance::DrillDepth& drill) {
   return drill.is_beside_plan() && guidance_severity::severity_of_drill(drill) != widgets::Severity::Quiet;
 }
 
+// Which of several drills is seen; empty: there is one, or none is seen.
+std::string drill_name(const NavigateScreen& screen) {
+  const auto& drill = screen.display.drill;
+  return drill ? guidance_severity::drill_name(screen.options().tools, *drill) : "";
+}
+
 // For tests.
 std::string drill_state(const NavigateScreen& screen) {
   const auto& drill = screen.display.drill;
   if (!drill) return has_drill(screen) ? "not seen" : "none";
-  if (drill->is_at_plan()) return guidance_severity::drill_text(*drill).name;
-  return warns_beside(*drill) ? "beside the plan, " + guidance_severity::drill_text(*drill).name
-                              : "beside the plan";
+  const std::string which = drill_name(screen);
+  const std::string name = which.empty() ? "" : which + ": ",
+                    text = guidance_severity::drill_text(*drill).name;
+  if (drill->is_at_plan()) return name + text;
+  return name + (warns_beside(*drill) ? "beside the plan, " + text : "beside the plan");
 }
 
 // Nobody has touched a known place by the registration that these numbers are of: said under them, where what
@@ -231,7 +247,7 @@ void draw_unverified(const widgets::Ui& ui, widgets::Rect& rest, const NavigateS
   const auto& drill = screen.display.drill;
   const bool is_deep = drill && drill->is_at_plan(),
              has_stop = screen.live->operation->depth_stop_mm.has_value();
-  const float depth = is_deep ? 2 * number
+  const float depth = is_deep ? 2 * number + (drill_name(screen).empty() ? 0 : line)
                               : (drill || has_drill(screen) ? line : 0) +
                                     (drill && warns_beside(*drill) ? number : 0) + (has_stop ? number : 0);
   const bool is_said = is_skipped && rest.height >= height + depth;
@@ -274,18 +290,29 @@ void draw_depth(const widgets::Ui& ui, widgets::Rect& rest, const NavigateScreen
     const guidance_severity::DrillText text = guidance_severity::drill_text(*drill);
     draw_number(ui, rest, text.name, text.mm, "mm", guidance_severity::severity_of_drill(*drill));
   };
+  const std::string which = drill_name(screen);
   if (drill && drill->is_at_plan()) {
+    // Which of several it is takes the room that the numbers leave, else that behind "Depth".
+    const float number = ui.theme.afar->FontSize + ui.theme.number->FontSize;
+    const float free = rest.height - (rest.height < 2 * number ? number : 2 * number);
+    const bool is_above = !which.empty() && free >= ui.theme.strong->FontSize;
+    if (is_above)
+      (void)rest.cut_top(widgets::draw_afar(ui, {rest.x, rest.y, rest.width, free}, widgets::kText, which));
     draw_exit();
     draw_number(ui, rest, "Depth", widgets::fixed(drill->depth_mm, 1),
-                "mm " + widgets::plus_minus(drill->sigma_mm), widgets::Severity::Quiet);
+                "mm " + widgets::plus_minus(drill->sigma_mm), widgets::Severity::Quiet,
+                is_above ? "" : which);
     return;
   }
   if (drill && warns_beside(*drill)) draw_exit();
   // A number that is gone asks for a reason, also where the depth stop is known.
   if (drill)
-    (void)rest.cut_top(widgets::draw_afar(ui, rest, widgets::kCaution, "Drill beside the plan"));
+    (void)rest.cut_top(widgets::draw_afar(ui, rest, widgets::kCaution,
+                                          (which.empty() ? "Drill" : which) + " beside the plan"));
   else if (has_drill(screen))
-    (void)rest.cut_top(widgets::draw_afar(ui, rest, widgets::kQuietText, "Drill not seen"));
+    (void)rest.cut_top(widgets::draw_afar(
+        ui, rest, widgets::kQuietText,
+        screen.options().tools.has_several_drills() ? "No drill is seen" : "Drill not seen"));
   // The surgeon's reading, not a measurement: nothing is reckoned from it, least of all what remains.
   if (const auto& stop_mm = screen.live->operation->depth_stop_mm)
     draw_number(ui, rest, "Depth stop", widgets::fixed(*stop_mm, 1), "mm, read", widgets::Severity::Quiet);

@@ -121,7 +121,8 @@ void draw_reason(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
   // A drill that is seen is told of whatever else is missing.
   if (display.drill && screen.has_source()) {
     const float number = ui.theme.afar->FontSize + ui.theme.number->FontSize;
-    widgets::Rect depth = inner.cut_bottom(std::min(2 * number, inner.height / 2));
+    const float name = screen.options().tools.has_several_drills() ? ui.theme.afar->FontSize : 0;
+    widgets::Rect depth = inner.cut_bottom(std::min(2 * number + name, inner.height / 2));
     draw_depth(ui, depth, screen);
   }
   // Before there is a picture nothing is wrong.

@@ -1,6 +1,7 @@
 #include "navigation/guidance/drill_depth.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace arthronaut::guidance {
 
@@ -77,6 +78,10 @@ std::optional<double> to_exit_along(const geometry::Surface& bone, const Eigen::
     go_on();
   }
   return std::nullopt;
+}
+
+double from_tunnel_mm(const DrillDepth& drill) {
+  return std::hypot(drill.lateral_mm, std::min(drill.depth_mm, 0.0));
 }
 
 void hold_against(const geometry::Surface& bone, DrillDepth& drill) {

@@ -24,6 +24,7 @@ enum class Breakout {
 [[nodiscard]] Breakout breakout_of(double to_exit_mm, double sigma_mm);
 
 struct DrillDepth {
+  std::optional<int> marker_id;                          // the tool's; empty: older records do not say whose
   Eigen::Vector3d tip_mm = Eigen::Vector3d::Zero();      // bone frame
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  // of drilling, bone frame
   double depth_mm = 0;                                   // of the tip beyond the entry, along the plan
@@ -64,6 +65,8 @@ struct DrillDepth {
 [[nodiscard]] DrillDepth drill_depth(const tunnels::Tunnel& plan, double planned_length_mm,
                                      const Eigen::Vector3d& tip_mm, const Eigen::Vector3d& direction,
                                      double sigma_mm);
+// Of its tip from the planned tunnel's axis, from the entry on: one that is too deep is no farther off.
+[[nodiscard]] double from_tunnel_mm(const DrillDepth& drill);
 // Exit and warning by the bone that the drill is in, wherever the plan is.
 void hold_against(const geometry::Surface& bone, DrillDepth& drill);
 

@@ -110,18 +110,16 @@ AxisErrors predict_errors(const PlacedAxis& axis, const TwistBudget& budget, con
           predicted_error(budget, turn, own_deg * own_deg * across)};
 }
 
-// The drill by its own marker.
-std::optional<DrillDepth> seen_drill(const GuidanceInput& input) {
-  if (input.plan == nullptr || input.drill == nullptr || !input.drill->tip_mm || !input.drill->axis ||
-      missing_world(input) != GuidanceState::Valid ||
-      !input.camera_from_drill.is_usable_at(input.now_ns, input.max_age_ns) ||
-      !input.world_marker_per_camera_error || !input.drill_per_camera_error)
+// A drill by its own marker, as the plan alone has it.
+std::optional<DrillDepth> seen_drill(const GuidanceInput& input, const DrillInput& seen) {
+  if (seen.tool == nullptr || !seen.tool->tip_mm || !seen.tool->axis ||
+      !seen.camera_from_drill.is_usable_at(input.now_ns, input.max_age_ns) || !seen.per_camera_error)
     return std::nullopt;
-  const auto placed = place(input, input.camera_from_drill, *input.drill_per_camera_error);
+  const auto placed = place(input, seen.camera_from_drill, *seen.per_camera_error);
   if (!placed) return std::nullopt;
   const Eigen::Matrix3d turned = placed->bone_from_tool.matrix();
-  const Eigen::Vector3d tip = placed->bone_from_tool * *input.drill->tip_mm;
-  const Eigen::Matrix3d tip_error_mm2 = turned * tools::tip_error_mm2(*input.drill) * turned.transpose();
+  const Eigen::Vector3d tip = placed->bone_from_tool * *seen.tool->tip_mm;
+  const Eigen::Matrix3d tip_error_mm2 = turned * tools::tip_error_mm2(*seen.tool) * turned.transpose();
   const auto sigma_along = [&](const Eigen::Vector3d& along) {  // of the tip, in that one coordinate
     Eigen::Matrix<double, 3, 6> move = Eigen::Matrix<double, 3, 6>::Zero();
     move.row(0) << along.transpose(), -along.transpose() * cross_matrix(tip);
@@ -129,16 +127,30 @@ std::optional<DrillDepth> seen_drill(const GuidanceInput& input) {
     own(0, 0) = along.dot(tip_error_mm2 * along);
     return predicted_error(placed->budget, move, own).total;
   };
-  const PlacedAxis axis{tip, (turned * input.drill->axis->direction).normalized(), tip_error_mm2,
-                        tools::axis_error(*input.drill).direction_sigma_rad};
+  const PlacedAxis axis{tip, (turned * seen.tool->axis->direction).normalized(), tip_error_mm2,
+                        tools::axis_error(*seen.tool).direction_sigma_rad};
   DrillDepth drill =
       drill_depth(*input.plan, input.planned_length_mm, tip, axis.direction,
                   std::max(sigma_along(input.plan->direction.normalized()), sigma_along(axis.direction)));
-  if (input.bone != nullptr) hold_against(*input.bone, drill);
+  drill.marker_id = seen.tool->marker_id;
   const AxisErrors errors = predict_errors(axis, placed->budget, *input.plan);
   drill.sigma_offset_mm = errors.offset_mm.total;
   drill.sigma_angle_deg = errors.angle_deg.total;
   return drill;
+}
+
+// Of several that are seen the one that this tunnel is drilled with.
+std::optional<DrillDepth> nearest_drill(const GuidanceInput& input) {
+  if (input.plan == nullptr || missing_world(input) != GuidanceState::Valid ||
+      !input.world_marker_per_camera_error)
+    return std::nullopt;
+  std::optional<DrillDepth> nearest;
+  for (const DrillInput& seen : input.drills) {
+    const std::optional<DrillDepth> drill = seen_drill(input, seen);
+    if (drill && (!nearest || from_tunnel_mm(*drill) < from_tunnel_mm(*nearest))) nearest = drill;
+  }
+  if (nearest && input.bone != nullptr) hold_against(*input.bone, *nearest);
+  return nearest;
 }
 
 }  // namespace
@@ -202,7 +214,7 @@ Eigen::Vector3d crossing_of(const Eigen::Vector3d& point_mm, const Eigen::Vector
 GuidanceNumbers compute_guidance(const GuidanceInput& input) {
   GuidanceNumbers numbers;
   numbers.timestamp_ns = input.camera_from_guide.timestamp_ns;
-  numbers.drill = seen_drill(input);
+  numbers.drill = nearest_drill(input);
   numbers.state = missing_input(input);
   if (numbers.state != GuidanceState::Valid) return numbers;
   const auto placed = place(input, input.camera_from_guide, *input.guide_per_camera_error);

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "navigation/guidance/drill_depth.h"
 #include "navigation/guidance/error_budget.h"
@@ -36,6 +37,13 @@ enum class GuidanceState {
 inline constexpr GuidanceState kLastGuidanceState = GuidanceState::ErrorUnknown;  // records keep the number
 [[nodiscard]] std::string_view to_text(GuidanceState state);
 
+// A drill with a marker of its own, in this frame.
+struct DrillInput {
+  const tools::Tool* tool = nullptr;  // with a tip and an axis; else nothing is said of it
+  geometry::TrackedPose camera_from_drill;
+  std::optional<TwistPerCameraError> per_camera_error = TwistPerCameraError::Zero();  // as of the guide
+};
+
 struct GuidanceInput {
   const tunnels::Tunnel* plan = nullptr;  // null: NoPlan
   double planned_length_mm = 0;           // inside bone, along the plan
@@ -44,9 +52,9 @@ struct GuidanceInput {
   geometry::TrackedPose camera_from_world_marker;
   geometry::TrackedPose camera_from_guide;
   const tools::ToolAxis* axis = nullptr;  // of the guide, in its marker frame; null: NoGuide
-  // A drill with a marker of its own; without one nothing is said about depth.
-  geometry::TrackedPose camera_from_drill;
-  const tools::Tool* drill = nullptr;
+  // Without one nothing is said about depth; of several it is said of the one that is seen, of more than one
+  // of the one whose tip is nearest to the planned tunnel.
+  std::span<const DrillInput> drills = {};
   const geometry::Surface* bone = nullptr;  // in its frame; null: the drill's exit is the plan's alone
   bool lens_is_stale = false;
   std::int64_t now_ns = 0;
@@ -57,7 +65,6 @@ struct GuidanceInput {
   // Empty: cannot be said, which leaves no number that follows from that pose.
   std::optional<TwistPerCameraError> world_marker_per_camera_error = TwistPerCameraError::Zero();
   std::optional<TwistPerCameraError> guide_per_camera_error = TwistPerCameraError::Zero();
-  std::optional<TwistPerCameraError> drill_per_camera_error = TwistPerCameraError::Zero();
 };
 
 struct GuidanceNumbers {

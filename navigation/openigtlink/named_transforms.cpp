@@ -1,7 +1,5 @@
 #include "navigation/openigtlink/named_transforms.h"
 
-#include <algorithm>
-
 #include "navigation/openigtlink/ras_from_lps.h"
 
 namespace arthronaut::openigtlink {
@@ -18,10 +16,24 @@ const pipeline::ToolPose* pose_of(const operation::OperationState& state, int ma
 
 bool is_drill(const tools::Tool& tool) { return tool.kind == tools::ToolKind::Drill; }
 
+// Which of several drills the depth is of that the screen says: ", depth of tibial drill (Drill2_World)".
+std::string drill_words(const operation::OperationState& state) {
+  const auto& told = state.frame.guidance.drill;
+  if (!told || !told->marker_id || !has_second_drill(state)) return "";
+  int drill = 0;
+  for (const tools::Tool& tool : state.source->pipeline.tools.tools) {
+    drill += is_drill(tool) ? 1 : 0;
+    if (!is_drill(tool) || tool.marker_id != *told->marker_id) continue;
+    const std::string name = drill == 1 ? " (Drill_World)" : drill == 2 ? " (Drill2_World)" : "";
+    return ", depth of " + tool.name + name;
+  }
+  return "";
+}
+
 }  // namespace
 
 bool has_second_drill(const operation::OperationState& state) {
-  return state.source != nullptr && std::ranges::count_if(state.source->pipeline.tools.tools, is_drill) > 1;
+  return state.source != nullptr && state.source->pipeline.tools.has_several_drills();
 }
 
 std::vector<NamedTransform> named_transforms(const operation::OperationState& state) {
@@ -76,8 +88,9 @@ Status status_of(const operation::OperationState& state) {
   const guidance::GuidanceNumbers& guidance = state.frame.guidance;
   // A client does not see the frame about our window that says it.
   const bool is_simulated = state.source != nullptr && state.source->kind == sources::SourceKind::Simulation;
-  if (guidance.is_valid()) return {true, is_simulated ? "OK, simulation" : "OK"};
-  return {false, std::string(guidance::to_text(guidance.state))};
+  const std::string drill = drill_words(state);
+  if (guidance.is_valid()) return {true, (is_simulated ? "OK, simulation" : "OK") + drill};
+  return {false, std::string(guidance::to_text(guidance.state)) + drill};
 }
 
 }  // namespace arthronaut::openigtlink

@@ -3,8 +3,7 @@
 //   WorldFemur, WorldTibia   the world marker in the camera
 //   ProbeTip_World           the probe in the world, origin at its tip, axes of its marker
 //   Guide_World, Drill_World the guide's and the drill's marker frame in the world (tools.json says where
-//                            their axes and tips lie in it); of several drills the first one declared, of
-//                            which the depth is told
+//                            their axes and tips lie in it); of several drills the first one declared
 //   Drill2_World             the second drill that is declared
 //   Bone_World               the registration: the bone's frame in the world, while it may guide
 //   Plan                     POINT: entry and end of the planned tunnel in the bone's frame
@@ -50,7 +49,8 @@ struct NamedPoint {
 };
 [[nodiscard]] std::vector<NamedPoint> plan_points(const operation::OperationState& state);
 
-// Why there is no guidance; "OK" while there is, "OK, simulation" where nobody is operated on.
+// Why there is no guidance; "OK" while there is, "OK, simulation" where nobody is operated on. Where several
+// drills are declared, behind it, which one the depth is told of: "OK, depth of tibial drill (Drill2_World)".
 struct Status {
   bool is_ok = false;
   std::string reason;

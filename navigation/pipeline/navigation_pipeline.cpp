@@ -33,12 +33,12 @@ std::vector<Eigen::Vector3d> corners_of(const markers::Body& body) {
   return corners_mm;
 }
 
-// The drill that has a marker of its own, if there is one.
-std::optional<std::size_t> drill_index(const std::vector<tools::Tool>& tools) {
-  for (std::size_t i = 0; i < tools.size(); ++i) {
-    if (tools[i].kind == tools::ToolKind::Drill) return i;
-  }
-  return std::nullopt;
+// The drills that have a marker of their own.
+std::vector<std::size_t> drill_indices(const std::vector<tools::Tool>& tools) {
+  std::vector<std::size_t> drills;
+  for (std::size_t i = 0; i < tools.size(); ++i)
+    if (tools[i].kind == tools::ToolKind::Drill) drills.push_back(i);
+  return drills;
 }
 
 std::optional<std::size_t> index_of(const std::vector<tools::Tool>& tools, const std::string& name) {
@@ -75,7 +75,8 @@ struct NavigationPipeline::State {
         world(world_marker_index(with)),
         probe(index_of(with.tools.tools, with.probe_name)),
         guide(index_of(with.tools.tools, with.guide_name)),
-        drill(drill_index(with.tools.tools)),
+        drills(drill_indices(with.tools.tools)),
+        drills_in_frame(drills.size()),
         bodies(with.tools),
         axes(with.axes.value_or(landmarks::scanner_axes(with.side))) {
     for (const markers::Body& body : bodies.declared()) corners_mm.push_back(corners_of(body));
@@ -181,7 +182,7 @@ struct NavigationPipeline::State {
         shared.per_camera_error * known_errors.camera * shared.per_camera_error.transpose();
   }
 
-  void guide_the_drill(FrameResult& result) const {
+  void guide_the_drill(FrameResult& result) {
     guidance::GuidanceInput input;
     input.plan = plan ? &*plan : nullptr;
     input.planned_length_mm = planned_length_mm;
@@ -194,12 +195,11 @@ struct NavigationPipeline::State {
       input.axis_error = guide_error;
       input.guide_per_camera_error = camera_error(result, *guide);
     }
-    if (drill) {
-      input.camera_from_drill = pose_of_body(result, body_of_tool(*drill));
-      input.drill = &options.tools.tools[*drill];
-      input.bone = bone.get();
-      input.drill_per_camera_error = camera_error(result, *drill);
-    }
+    for (std::size_t i = 0; i < drills.size(); ++i)
+      drills_in_frame[i] = {&options.tools.tools[drills[i]], pose_of_body(result, body_of_tool(drills[i])),
+                            camera_error(result, drills[i])};
+    input.drills = drills_in_frame;
+    input.bone = bone.get();
     input.known_errors = &known_errors;
     input.world_marker_per_camera_error = camera_error_of_world(result);
     input.lens_is_stale = !is_outside() && !result.intrinsics_are_known;
@@ -216,8 +216,10 @@ struct NavigationPipeline::State {
 
   PipelineOptions options;
   ViewTracker view_tracker;
-  std::size_t world;                               // index of the bone's world marker among the bodies
-  std::optional<std::size_t> probe, guide, drill;  // indices into the tools
+  std::size_t world;                        // index of the bone's world marker among the bodies
+  std::optional<std::size_t> probe, guide;  // indices into the tools
+  std::vector<std::size_t> drills;          // likewise
+  std::vector<guidance::DrillInput> drills_in_frame;
   markers::SeenBodies bodies;
   std::vector<std::vector<Eigen::Vector3d>> corners_mm;  // of each body
   landmarks::AnatomicalAxes axes;

@@ -52,7 +52,7 @@ strokes::PoseRow pose_at(const Statement& row, const RecordedFrame& frame) {
 // remaining_mm stands in column 14, all else from 18 on.
 std::optional<guidance::DrillDepth> drill_at(const Statement& row) {
   // Of before 2026-11-22 none: what they call remaining was the guide's, nobody saw the drill.
-  constexpr int kColumns = 21, kColumnsWithPlace = 30, kColumnsWithExit = 31;
+  constexpr int kColumns = 21, kColumnsWithPlace = 30, kColumnsWithExit = 31, kColumnsWithMarker = 32;
   if (row.column_count() < kColumns || row.is_null(18)) return std::nullopt;
   guidance::DrillDepth drill;
   drill.depth_mm = row.number(18);
@@ -69,6 +69,7 @@ std::optional<guidance::DrillDepth> drill_at(const Statement& row) {
   drill.tip_mm = vector_at(row, 24);
   drill.direction = vector_at(row, 27);
   if (row.column_count() >= kColumnsWithExit) drill.exit_lateral_mm = row.number(30);
+  if (row.column_count() >= kColumnsWithMarker && !row.is_null(31)) drill.marker_id = row.int32(31);
   // The plan's exit, as records kept it that knew no other, is none beside the plan.
   if (drill.is_beside_plan() && drill.to_exit_mm == drill.remaining_mm) {
     drill.to_exit_mm = geometry::kNotKnown;
@@ -129,7 +130,7 @@ FrameInserter::FrameInserter(SessionDatabase& database, const tools::ToolSet& to
       body_(database.prepare("INSERT INTO bodies VALUES(?,?,?,?,?,?,?,?,?)")),
       outside_(database.prepare("INSERT INTO outside VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),
       guidance_(database.prepare("INSERT INTO guidance "
-                                 "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {
+                                 "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {
   const auto add = [&](const auto& body) {
     if (!body.markers.empty()) bodies_of_several_.push_back(body.marker_id);
   };
@@ -178,7 +179,7 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
 
   const guidance::GuidanceNumbers& g = result.guidance;
   guidance_.bind(1, result.frame_index).bind(2, static_cast<int>(g.state));
-  for (int position = 3; position <= 31; ++position) guidance_.bind_null(position);
+  for (int position = 3; position <= 32; ++position) guidance_.bind_null(position);
   if (g.is_valid()) {
     bind_vector(guidance_, 3, g.guide_point_mm);
     bind_vector(guidance_, 6, g.guide_direction);
@@ -195,6 +196,7 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
     bind_vector(guidance_, 25, drill.tip_mm);
     bind_vector(guidance_, 28, drill.direction);
     guidance_.bind(31, drill.exit_lateral_mm);
+    if (drill.marker_id) guidance_.bind(32, *drill.marker_id);
   }
   guidance_.run();
 }

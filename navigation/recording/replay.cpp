@@ -121,6 +121,7 @@ class FrameComparison {
       for (const Number<guidance::DrillDepth>& number : kDrillPlaceNumbers)
         compare_number(number, *then, *now);
       if (std::isfinite(then->exit_lateral_mm)) compare_number(kDrillExit, *then, *now);
+      if (then->marker_id && then->marker_id != now->marker_id) differs("drill", "is another one now");
       compare_axis("drill", then->tip_mm, then->direction, now->tip_mm, now->direction);
     }
   }

@@ -46,7 +46,7 @@ CREATE TABLE guidance(
   offset_lateral_mm REAL, drill_depth_mm REAL, drill_to_exit_mm REAL, drill_sigma_mm REAL,
   drill_lateral_mm REAL, drill_sigma_offset_mm REAL, drill_sigma_angle_deg REAL, drill_x_mm REAL, drill_y_mm REAL,
   drill_z_mm REAL, drill_direction_x REAL, drill_direction_y REAL, drill_direction_z REAL,
-  drill_exit_lateral_mm REAL);
+  drill_exit_lateral_mm REAL, drill_marker_id INTEGER);
 CREATE TABLE events(id INTEGER PRIMARY KEY, after_frame INTEGER, timestamp_ns INTEGER, kind TEXT, text TEXT);
 CREATE TABLE pictures(
   picture INTEGER PRIMARY KEY, frame INTEGER NOT NULL, packet INTEGER NOT NULL, start_packet INTEGER NOT NULL,

@@ -245,6 +245,11 @@ bool ToolSet::has_bodies_of_several() const {
          std::any_of(tools.begin(), tools.end(), has_list);
 }
 
+bool ToolSet::has_several_drills() const {
+  return std::count_if(tools.begin(), tools.end(),
+                       [](const Tool& tool) { return tool.kind == ToolKind::Drill; }) > 1;
+}
+
 NominalParts nominal_parts(const Tool& tool) {
   if (tool.provenance.origin != provenance::Origin::Nominal) return tool.nominal;
   return {tool.tip_mm.has_value(), tool.axis.has_value(), tool.axis.has_value()};

@@ -98,6 +98,8 @@ struct ToolSet {
   [[nodiscard]] const WorldMarker* find_world_marker(bones::BoneKind bone) const;
   // Whether a body has more to it than one marker at its own frame.
   [[nodiscard]] bool has_bodies_of_several() const;
+  // More than one drill with a marker of its own: which of them is meant has to be said.
+  [[nodiscard]] bool has_several_drills() const;
 };
 
 // The standard ids: 0 femur, 1 tibia, 2 probe, 3 femoral guide, 4 tibial guide, with the built-in

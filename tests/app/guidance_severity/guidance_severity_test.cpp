@@ -122,5 +122,25 @@ TEST(GuidanceSeverity, NameTheMarkers) {
   EXPECT_EQ(marker_name(tools, 41), "Marker 41");
 }
 
+// One drill needs no name: "Depth" is its own.
+TEST(GuidanceSeverity, Hazard7OfSeveralDrillsTheNameIsSaid) {
+  tools::ToolSet tools = tools::standard_tools();
+  const auto add = [&](const char* name, int marker_id) {
+    tools::Tool drill;
+    drill.name = name;
+    drill.marker_id = marker_id;
+    drill.kind = tools::ToolKind::Drill;
+    tools.tools.push_back(drill);
+  };
+  guidance::DrillDepth depth;
+  depth.marker_id = 9;
+  add("femoral drill", 8);
+  EXPECT_EQ(drill_name(tools, depth), "");
+  add("tibial drill", 9);
+  EXPECT_EQ(drill_name(tools, depth), "Tibial drill");
+  depth.marker_id.reset();
+  EXPECT_EQ(drill_name(tools, depth), "") << "an older record does not say";
+}
+
 }  // namespace
 }  // namespace arthronaut::guidance_severity

@@ -64,13 +64,12 @@ struct Scene {
     input.camera_from_guide = guide;
     input.axis = has_axis ? &axis : nullptr;
     input.axes = axes;
-    input.camera_from_drill = drill_pose;
-    input.drill = drill ? &*drill : nullptr;
+    const DrillInput seen{drill ? &*drill : nullptr, drill_pose, drill_per_camera_error};
+    input.drills = {&seen, 1};
     input.known_errors = &known;
     input.axis_error = axis_error;
     input.world_marker_per_camera_error = world_per_camera_error;
     input.guide_per_camera_error = guide_per_camera_error;
-    input.drill_per_camera_error = drill_per_camera_error;
     input.lens_is_stale = lens_is_stale;
     input.now_ns = now_ns;
     return compute_guidance(input);

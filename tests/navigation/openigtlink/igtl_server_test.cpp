@@ -217,6 +217,26 @@ TEST(NamedTransforms, TwoDrillsHaveANameEach) {
   EXPECT_EQ(drills(), (Drills{{"Drill_World", 40}, {"Drill2_World", 60}}));
 }
 
+// Which of two drills the depth is told of stands behind the reason; of one alone nothing is added.
+TEST(Status, Hazard7SaysWhichOfTwoDrillsTheDepthIsOf) {
+  operation::OperationState state = made_state();
+  state.frame.guidance.drill.emplace().marker_id = 9;
+  EXPECT_EQ(status_of(state).reason, "drill guide not seen");
+  auto source = std::make_shared<operation::SourceSetup>(*state.source);
+  source->pipeline.tools.tools.push_back(source->pipeline.tools.tools.back());
+  source->pipeline.tools.tools.back().name = "tibial drill";
+  source->pipeline.tools.tools.back().marker_id = 10;
+  state.source = source;
+  EXPECT_EQ(status_of(state).reason, "drill guide not seen, depth of drill (Drill_World)");
+  state.frame.guidance.drill->marker_id = 10;
+  EXPECT_EQ(status_of(state).reason, "drill guide not seen, depth of tibial drill (Drill2_World)");
+  state.frame.guidance.state = guidance::GuidanceState::Valid;
+  EXPECT_TRUE(status_of(state).is_ok);
+  EXPECT_EQ(status_of(state).reason, "OK, depth of tibial drill (Drill2_World)");
+  state.frame.guidance.drill.reset();
+  EXPECT_EQ(status_of(state).reason, "OK");
+}
+
 // Everything until "Arthronaut": "name" of a transform, "name: why" of a status.
 std::vector<std::string> next_state(Client& client) {
   std::vector<std::string> heard;

@@ -51,6 +51,7 @@ inline pipeline::FrameResult frame_result(std::int64_t index) {
   result.guidance.offset_lateral_mm = 0.3 + x / 50;
   if (index % 2 == 0) {
     result.guidance.drill.emplace();
+    result.guidance.drill->marker_id = 5;
     result.guidance.drill->depth_mm = x;
     result.guidance.drill->remaining_mm = 30 - x;
     result.guidance.drill->to_exit_mm = 31 - x;

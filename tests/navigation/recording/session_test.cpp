@@ -78,6 +78,7 @@ TEST_F(Session, ReadsBackExactlyWhatWasRecorded) {
     ASSERT_EQ(frame.guidance.drill.has_value(), wanted.guidance.drill.has_value());
     if (wanted.guidance.drill) {
       const guidance::DrillDepth &drill = *frame.guidance.drill, &shown = *wanted.guidance.drill;
+      EXPECT_EQ(drill.marker_id, shown.marker_id);
       EXPECT_EQ(drill.tip_mm, shown.tip_mm);
       EXPECT_EQ(drill.direction, shown.direction);
       EXPECT_EQ(drill.depth_mm, shown.depth_mm);
