@@ -101,13 +101,15 @@ pipeline::PipelineOptions pipeline_options(const NavigateArguments& arguments, c
 // The newest session alone is asked: what an older one says of the bone may have been overtaken by it.
 constexpr const char* kOlder = "; --registration takes an older session's registration.json";
 
-// A registration that was given by name and is of something else is refused; one of the case is passed over.
+// A registration that was given by name and is of something else is refused; one of the case is passed over,
+// and so is any of it where live pictures are to guide.
 std::optional<operation::GiveRegistration> known_registration(const Context& context,
                                                               const NavigateArguments& arguments,
                                                               const cases::Case& knee,
                                                               const theatre::NavigateOptions& options) {
   const registration::Provenance now = operation::provenance_of(options.operation, options.source);
   const bones::BoneKind bone = options.operation.bone;
+  const bool is_live = now.source == sources::SourceKind::Live;
   if (!arguments.registration.empty()) {
     const auto record = registration::read_registration_record(arguments.registration);
     const auto mismatch = record.of ? registration::mismatch_of(*record.of, now) : std::nullopt;
@@ -118,6 +120,8 @@ std::optional<operation::GiveRegistration> known_registration(const Context& con
       throw InvalidInput(arguments.registration, "mesh",
                          "does not match: the bone that it was found on lies elsewhere than the case's " +
                              std::string(bones::to_text(bone)));
+    if (is_live)
+      context.say("registration: given; that the world marker has not moved since it was found is your word");
     return operation::GiveRegistration{record.registration, record.of.value_or(now)};
   }
   const auto known = recording::find_registration(arguments.case_folder, bone, options.source.pipeline.tools);
@@ -131,6 +135,14 @@ std::optional<operation::GiveRegistration> known_registration(const Context& con
   if (const auto mismatch = known->of ? registration::mismatch_of(*known->of, now) : std::nullopt) {
     context.say("registration: that of session " + session +
                 " is not used: " + registration::in_words(*mismatch, *known->of, now) + kOlder);
+    return std::nullopt;
+  }
+  // Here nobody touches the bone: no hand would show that its marker sits where it sat.
+  if (is_live) {
+    context.say("registration: that of session " + session +
+                " is not used: nobody has seen the world marker since; strokes give a new one, and "
+                "--registration takes " +
+                (known->session_folder / "registration.json").string() + " at your word");
     return std::nullopt;
   }
   context.say("registration: of session " + session);
@@ -338,8 +350,9 @@ void add_navigate_command(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"single", "am", "pl"}));
   command->add_option(
       "--registration", arguments->registration,
-      "registration.json to guide by, as that of an older session. Default: that of the newest session of "
-      "this bone, if it is reliable and of this world marker, camera and medium; strokes give a new one");
+      "registration.json to guide by, as that of an older session; live, by your word that the world marker "
+      "has not moved since. Default: of a live source none, else that of the newest session of this bone, if "
+      "it is reliable and of this world marker, camera and medium; strokes give a new one");
   add_cartilage_option(*command, arguments->cartilage.mesh, "; copied into the case. Default: the case's");
   add_mesh_options(*command, arguments->cartilage.space, arguments->cartilage.unit, "the cartilage's mesh");
   arguments->probe_option =

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "navigation/registration/registration_file.h"
 #include "navigation/strokes/poses_file.h"
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
@@ -273,6 +274,60 @@ TEST_F(VideoCommands, NavigateKeepsWhatALiveSourceGaveUntilCtrlC) {
     EXPECT_NE(file.path().extension(), ".part") << file.path();
   const auto verified = run_program({"verify", knee, "--session", session().filename()});
   EXPECT_EQ(verified.exit_code, 0) << verified.errors;
+}
+
+// Between two sessions nobody sees the marker, and here nobody can touch the bone: live pictures are guided
+// by an earlier session's registration where it is named, and only there. A recording is no patient.
+TEST_F(VideoCommands, Hazard25LiveNoEarlierRegistrationGuidesUnnamed) {
+  const std::string knee = folder_ / "knee.arthro";
+  ASSERT_EQ(run_program({"phantom", "-o", knee}).exit_code, 0);
+  const auto navigate = [&](const std::string& video, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"navigate",     knee,
+                                       "--video",      video,
+                                       "--camera",     folder_ / "camera.json",
+                                       "--tools",      folder_ / "tools.json",
+                                       "--medium",     "air",
+                                       "--fixed-lens", "--duration-s",
+                                       "0.3",          "--no-copy"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto result = run_program(arguments);
+    EXPECT_THAT(result.exit_code, ::testing::AnyOf(0, 4)) << result.errors;
+    const auto sessions = cases::session_folders(knee);
+    EXPECT_FALSE(sessions.empty());
+    return std::pair(result.output + result.errors,
+                     sessions.empty() ? std::filesystem::path() : sessions.back());
+  };
+  const auto stands_in = [](const std::filesystem::path& session) {
+    if (!std::filesystem::exists(session / "registration.json")) return false;
+    return registration::read_registration_record(session / "registration.json").registration.has_pose;
+  };
+  const std::string live =
+      "gst:videotestsrc is-live=true ! video/x-raw,width=640,height=480,framerate=30/1 ! appsink";
+  registration::RegistrationSummary found;
+  found.has_pose = found.reliable = true;
+  found.reasons.clear();
+  found.covariance.setIdentity();
+  registration::Provenance of;
+  of.source = sources::SourceKind::Live;
+  of.world_marker_id = 0;
+  const auto [first_said, first] = navigate(live);
+  const std::string file = first / "registration.json";
+  registration::write_registration_file(file, found, &of);
+
+  const auto [said, session] = navigate(live);
+  EXPECT_THAT(said, HasSubstr("registration: that of session " + first.filename().string() +
+                              " is not used: nobody has seen the world marker since"));
+  EXPECT_FALSE(stands_in(session));
+  const auto [named, by_name] = navigate(live, {"--registration", file});
+  EXPECT_THAT(named, HasSubstr("has not moved since it was found is your word"));
+  EXPECT_TRUE(stands_in(by_name));
+
+  of.source = sources::SourceKind::Recording;
+  for (const std::filesystem::path& folder : {session, by_name})
+    registration::write_registration_file(folder / "registration.json", found, &of);
+  const auto [shown, recording] = navigate(folder_ / "clip.mkv");
+  EXPECT_THAT(shown, HasSubstr("registration: of session " + by_name.filename().string()));
+  EXPECT_TRUE(stands_in(recording));
 }
 
 }  // namespace
