@@ -10,7 +10,7 @@ namespace arthronaut::operation {
 
 namespace {
 
-constexpr double kRest_s = 0.25, kRestRadius_mm = 1;
+constexpr double kRest_s = 0.25, kLeastRest_s = 0.15, kRestRadius_mm = 1;
 constexpr std::size_t kLeastSamples = 3;
 
 }  // namespace
@@ -21,8 +21,13 @@ void SteadyTip::add(double time_s, const std::optional<Eigen::Vector3d>& tip_in_
   std::erase_if(samples_, [&](const Sample& sample) { return sample.time_s < time_s - kRest_s; });
 }
 
+// Many pictures a second are no longer a rest: three of them are 33 ms, in which a moving tip hardly moves.
+bool SteadyTip::was_seen_for_long() const {
+  return samples_.size() >= kLeastSamples && samples_.back().time_s - samples_.front().time_s >= kLeastRest_s;
+}
+
 std::optional<Eigen::Vector3d> SteadyTip::position_mm() const {
-  if (samples_.size() < kLeastSamples) return std::nullopt;
+  if (!was_seen_for_long()) return std::nullopt;
   Eigen::Vector3d middle;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
@@ -36,7 +41,7 @@ std::optional<Eigen::Vector3d> SteadyTip::position_mm() const {
 
 SteadyTip::Reason SteadyTip::why_not() const {
   if (position_mm()) return Reason::None;
-  return samples_.size() < kLeastSamples ? Reason::TipUnknown : Reason::Moves;
+  return was_seen_for_long() ? Reason::Moves : Reason::TipUnknown;
 }
 
 std::string in_words(const TouchAlarm& alarm) {

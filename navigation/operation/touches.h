@@ -33,14 +33,15 @@ class SteadyTip {
   enum class Reason { None, TipUnknown, Moves };
   // nullopt: the tip is not known in this frame.
   void add(double time_s, const std::optional<Eigen::Vector3d>& tip_in_marker_mm);
-  // The median of the last quarter of a second when the tip was seen at least three times and kept within 1
-  // mm; else nullopt.
+  // The median of the last quarter of a second when the tip was seen at least three times in it, from the
+  // first to the last at least 0.15 s, and kept within 1 mm; else nullopt.
   [[nodiscard]] std::optional<Eigen::Vector3d> position_mm() const;
   // Why there is none.
   [[nodiscard]] Reason why_not() const;
   void clear() { samples_.clear(); }
 
  private:
+  [[nodiscard]] bool was_seen_for_long() const;
   struct Sample {
     double time_s;
     Eigen::Vector3d tip_in_marker_mm;

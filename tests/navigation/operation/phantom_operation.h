@@ -111,7 +111,7 @@ class PhantomOperation {
   // The tip rests there for a moment and the pedal asks for a touch.
   void touch(const Eigen::Vector3d& tip_in_marker_mm, const operation::Command& as = operation::TakeTouch{}) {
     wait(1);
-    for (int i = 0; i < 8; ++i) show_tip(tip_in_marker_mm);
+    for (int i = 0; i < 12; ++i) show_tip(tip_in_marker_mm);
     apply(as);
   }
 
