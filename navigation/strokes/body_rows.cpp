@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <string>
+#include <utility>
 
-#include "navigation/markers/body_pose.h"
 #include "navigation/markers/marker_tracker.h"
 #include "navigation/markers/planar_pose.h"
+#include "navigation/markers/seen_bodies.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 
@@ -48,29 +50,72 @@ markers::MarkerObservation observation_of(const PoseRow& row, double size_mm,
   return observation;
 }
 
-// The row of the body in the frame whose rows are these; nullopt where it has no pose.
-std::optional<PoseRow> row_of(const markers::Body& body, const PoseRow* first, const PoseRow* end,
-                              const camera::CameraModel& camera) {
-  std::vector<markers::MarkerObservation> observations(body.markers.size());
-  std::optional<PoseRow> row;
-  double squares_px2 = 0;
-  for (std::size_t i = 0; i < body.markers.size(); ++i) {
-    const PoseRow* seen = std::find_if(
-        first, end, [&](const PoseRow& one) { return one.marker_id == body.markers[i].marker_id; });
-    if (seen == end) continue;
-    observations[i] = observation_of(*seen, body.markers[i].size_mm, camera);
-    if (!row) row = *seen;
+// The rows of one frame after the other.
+class FrameRows {
+ public:
+  explicit FrameRows(const tools::ToolSet& tools)
+      : seen_bodies_(tools), observations_(markers::declared_markers(tools).size()) {
+    const std::size_t worlds = tools.world_markers.size();
+    for (std::size_t i = 0; i < seen_bodies_.declared().size(); ++i) {
+      const auto& listed = i < worlds ? tools.world_markers[i].markers : tools.tools[i - worlds].markers;
+      if (!listed.empty()) of_several_.push_back(i);
+    }
   }
-  if (!row) return std::nullopt;
-  const markers::BodyObservation found = markers::observe_body(body, observations, camera);
-  if (!found.is_tracked()) return std::nullopt;
-  for (std::size_t i = 0; i < observations.size(); ++i)
-    if (found.used & (1U << i)) squares_px2 += observations[i].rms_px * observations[i].rms_px;
-  row->marker_id = body.id;
-  row->camera_from_marker = found.camera_from_body;
-  row->rms_px = std::sqrt(squares_px2 / found.used_count());
-  return row;
-}
+
+  void append(std::span<const PoseRow> rows, std::vector<PoseRow>& result) {
+    for (const PoseRow& row : rows)
+      if (!is_of_several(row)) result.push_back(row);
+    std::fill(observations_.begin(), observations_.end(), markers::MarkerObservation{});
+    for (const std::size_t index : of_several_) {
+      const markers::Body& body = declared(index);
+      for (std::size_t i = 0; i < body.markers.size(); ++i)
+        if (const PoseRow* const row = find(rows, body.markers[i].marker_id))
+          observations_[body.first + i] = observation_of(*row, body.markers[i].size_mm, camera_);
+    }
+    seen_bodies_.observe(observations_, camera_, seen_);
+    for (const std::size_t index : of_several_)
+      if (const auto row = row_of(index, rows)) result.push_back(*row);
+  }
+
+ private:
+  static const PoseRow* find(std::span<const PoseRow> rows, int marker_id) {
+    const auto row = std::ranges::find(rows, marker_id, &PoseRow::marker_id);
+    return row == rows.end() ? nullptr : &*row;
+  }
+  [[nodiscard]] const markers::Body& declared(std::size_t index) const {
+    return seen_bodies_.declared()[index];
+  }
+  [[nodiscard]] bool is_of_several(const PoseRow& row) const {
+    return std::ranges::any_of(of_several_, [&](std::size_t index) {
+      return std::ranges::find(declared(index).markers, row.marker_id, &tools::BodyMarker::marker_id) !=
+             declared(index).markers.end();
+    });
+  }
+  // nullopt where the body has no pose.
+  [[nodiscard]] std::optional<PoseRow> row_of(std::size_t index, std::span<const PoseRow> rows) const {
+    const markers::Body& body = declared(index);
+    const markers::BodyObservation& found = seen_[index];
+    if (!found.is_tracked()) return std::nullopt;
+    PoseRow row;
+    bool is_first = true;
+    double squares_px2 = 0;
+    for (std::size_t i = 0; i < body.markers.size(); ++i) {
+      const PoseRow* const seen = find(rows, body.markers[i].marker_id);
+      if (seen != nullptr && std::exchange(is_first, false)) row = *seen;
+      if (found.used & (1U << i)) squares_px2 += seen->rms_px * seen->rms_px;
+    }
+    row.marker_id = body.id;
+    row.camera_from_marker = found.camera_from_body;
+    row.rms_px = std::sqrt(squares_px2 / found.used_count());
+    return row;
+  }
+
+  const camera::CameraModel camera_ = plain_camera();
+  markers::SeenBodies seen_bodies_;
+  std::vector<std::size_t> of_several_;  // which of the declared bodies
+  std::vector<markers::MarkerObservation> observations_;
+  std::vector<markers::BodyObservation> seen_;
+};
 
 }  // namespace
 
@@ -98,28 +143,13 @@ void require_sizes(const std::vector<PoseRow>& rows, const tools::ToolSet& tools
 
 std::vector<PoseRow> body_rows(const std::vector<PoseRow>& rows, const tools::ToolSet& tools) {
   if (!tools.has_bodies_of_several()) return rows;
-  const camera::CameraModel camera = plain_camera();
-  std::vector<markers::Body> bodies = markers::declared_bodies(tools);
-  std::erase_if(bodies, [&](const markers::Body& body) {
-    const auto is_it = [&](const auto& one) { return one.marker_id == body.id && one.markers.empty(); };
-    return std::any_of(tools.tools.begin(), tools.tools.end(), is_it) ||
-           std::any_of(tools.world_markers.begin(), tools.world_markers.end(), is_it);
-  });
-  const auto is_of_several = [&](const PoseRow& row) {
-    return std::any_of(bodies.begin(), bodies.end(), [&](const markers::Body& body) {
-      return std::any_of(body.markers.begin(), body.markers.end(),
-                         [&](const tools::BodyMarker& marker) { return marker.marker_id == row.marker_id; });
-    });
-  };
+  FrameRows frames(tools);
   std::vector<PoseRow> result;
   result.reserve(rows.size());
   for (std::size_t first = 0; first < rows.size();) {
     std::size_t end = first;
     while (end < rows.size() && rows[end].frame == rows[first].frame) ++end;
-    for (std::size_t i = first; i < end; ++i)
-      if (!is_of_several(rows[i])) result.push_back(rows[i]);
-    for (const markers::Body& body : bodies)
-      if (auto row = row_of(body, rows.data() + first, rows.data() + end, camera)) result.push_back(*row);
+    frames.append(std::span(rows).subspan(first, end - first), result);
     first = end;
   }
   return result;

@@ -15,7 +15,8 @@ namespace arthronaut::strokes {
 // all seen equally well, by a lens without distortion, which gives all but the same pose as the frame itself
 // did. Where a body's markers disagree (markers/body_pose.h) by more than corners off by 0.15 px at a focal
 // length of 600 px can, it has no row in that frame; it may have had a pose there while the frame was at
-// hand, or none.
+// hand, or none. One of them that did not lie where the others had it makes no row alone in a later frame,
+// until it agrees with another again (markers/seen_bodies.h). Rows in order of frames.
 [[nodiscard]] std::vector<PoseRow> body_rows(const std::vector<PoseRow>& rows, const tools::ToolSet& tools);
 
 // Throws InvalidInput (file, line, reason) where a pose was found of a marker of another size than the tools
