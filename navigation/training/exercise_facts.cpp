@@ -122,7 +122,9 @@ void Examiner::follow_alarm(const operation::OperationState& state, double drill
 
 void Examiner::follow_guide(const operation::OperationState& state, const simulator::HandTruth& truth) {
   const std::optional<double> error_mm = error_at_entry_mm(state, truth);
-  facts_.tunnel_error_mm = error_mm;
+  // What the program refuses to guide by is no registration, exact or not.
+  const bool stands = state.registration->in_force.standing == operation::Standing::Stands;
+  facts_.tunnel_error_mm = stands ? error_mm : std::nullopt;
   const bool is_wrong = error_mm && *error_mm > kWrong_mm;
   const bool guides_rightly = state.frame.guidance.is_valid() && !is_wrong;
   if (truth.hand.held != simulator::Held::Guide) {

@@ -19,7 +19,7 @@ struct ExerciseFacts {
   long frames = 0;
   std::optional<double> entry_offset_mm, angle_deg;  // true
   std::optional<double> depth_error_mm;              // signed: above 0 too deep
-  std::optional<double> tunnel_error_mm;             // of the registration that was in force at the end
+  std::optional<double> tunnel_error_mm;             // of the registration that stood at the end
   std::optional<double> tip_error_mm;
   std::string tip_trouble;  // why the pivot found no tip
   // Of a camera that the program would adopt; why there is none. See board_run.h.

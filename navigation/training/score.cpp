@@ -145,7 +145,7 @@ std::string never_came_to_that(Measure measure, const ExerciseFacts& facts) {
     case Measure::DepthError:
       return "No tunnel was drilled and no guide was held";
     case Measure::TunnelError:
-      return "No registration was in force at the end";
+      return "No registration stood at the end";
     case Measure::TipError:
       return "No tip was found: " + facts.tip_trouble;
     case Measure::CameraError:

@@ -101,6 +101,29 @@ TEST_F(ExaminerTest, CountsWhatIsDrilledByAWrongRegistration) {
   EXPECT_TRUE(facts.marker_was_bumped);
 }
 
+// A registration that the program refuses earns nothing, however exact it is; that it was wrong is still held
+// against who drills by it.
+TEST_F(ExaminerTest, ARegistrationThatDoesNotStandIsNone) {
+  go_on(2);
+  ASSERT_TRUE(examiner_.facts().tunnel_error_mm.has_value());
+  for (const operation::Standing standing : {operation::Standing::NotReliable, operation::Standing::Void,
+                                             operation::Standing::InDoubt, operation::Standing::Alarm}) {
+    auto refused = std::make_shared<operation::RegistrationState>(*state_.registration);
+    refused->in_force.standing = standing;
+    state_.registration = refused;
+    go_on(1);
+    EXPECT_FALSE(examiner_.facts().tunnel_error_mm.has_value());
+  }
+  state_.frame.guidance.state = guidance::GuidanceState::RegistrationUnreliable;
+  truth_.marker_from_bone.translation_mm = {2.5, 0, 0};
+  go_on(3, 1);
+  EXPECT_NEAR(examiner_.facts().bad_data_mm, 3, 1e-9);
+  EXPECT_NEAR(examiner_.facts().worst_bad_error_mm, 2.5, 1e-9);
+  guide_by({});
+  go_on(1);
+  EXPECT_TRUE(examiner_.facts().tunnel_error_mm.has_value());
+}
+
 // An alarm that is drilled through is ignored once, however long; one that ends with another registration is
 // heeded; one that is waved away though the marker had moved is ignored.
 TEST_F(ExaminerTest, TellsHeededAlarmsFromIgnoredOnes) {
