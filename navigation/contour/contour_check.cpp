@@ -80,7 +80,9 @@ const ContourVerdict& ContourCheck::look(const camera::GrayView& luma, const cam
                                          const std::optional<geometry::RigidTransform>& camera_from_world,
                                          std::span<const Covered> covered, std::int64_t timestamp_ns) {
   const double elapsed_s =
-      time_before_ns_ != 0 ? 1e-9 * static_cast<double>(timestamp_ns - time_before_ns_) : 0;
+      time_before_ns_ != 0
+          ? std::clamp(1e-9 * static_cast<double>(timestamp_ns - time_before_ns_), 0.0, kLongestGap_s)
+          : 0;
   const bool is_first = time_before_ns_ == 0;
   time_before_ns_ = timestamp_ns;
   verdict_.timestamp_ns = timestamp_ns;

@@ -37,7 +37,7 @@ struct ContourOptions {
   DriftTestOptions outline = {.lead_pieces = 3, .lead_share = 0.3, .holds_s = 0.5};
   DriftTestOptions surface;
   KnockOptions knock;
-  double settle_s = 1.0;  // with pictures that show enough
+  double settle_s = 1.0;  // with pictures that show enough; a gap between two is not looked at
   // A surface that shows this share of drifts, and none, is believed before the outline: it is compared with
   // itself.
   double belies_from_share = 0.5;

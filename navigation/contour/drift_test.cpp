@@ -10,7 +10,6 @@ namespace {
 constexpr int kGrid = 7;  // steps to each side
 constexpr int kSide = 2 * kGrid + 1;
 constexpr double kGridStep_mm = 0.25;
-constexpr double kLongestGap_s = 0.2;
 constexpr double kShell_mm = 0.15;    // displacements this near to 1 mm stand for it
 constexpr double kLeastWeight = 0.3;  // of the memory that has to be filled
 

@@ -14,6 +14,10 @@
 
 namespace arthronaut::contour {
 
+// A picture counts for no longer than this, however long after the one before it comes: in between nobody
+// looked.
+inline constexpr double kLongestGap_s = 0.2;
+
 struct DriftTestOptions {
   double memory_s = 0.5;
   double null_radius_mm = 0.4;   // about the reference: the registration's own error, and the search's

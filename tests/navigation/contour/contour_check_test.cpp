@@ -16,6 +16,24 @@ TEST(ContourCheck, HoldsWhileTheBoneLiesWhereItLay) {
   for (int i = 0; i < 90; ++i) EXPECT_EQ(watched.look().state, ContourState::Holds) << i;
 }
 
+// Where it lies is learned from pictures, and not from the time between two of them.
+TEST(ContourCheck, AGapInThePicturesTeachesNothing) {
+  WatchedBall watched;
+  const geometry::RigidTransform camera_from_world = before_the_lens();
+  const camera::GrayView luma = watched.picture().draw(camera_from_world);
+  const auto look_at = [&](double time_s) {
+    return watched.check().look(luma, watched.picture().camera(), camera_from_world, {},
+                                static_cast<std::int64_t>(1e9 * time_s));
+  };
+  for (const double time_s : {1.0, 3.0, 5.0}) {
+    const ContourVerdict seen = look_at(time_s);
+    EXPECT_EQ(seen.state, ContourState::NotChecked) << time_s;
+    EXPECT_EQ(seen.reason, NotCheckedReason::Settling) << time_s;
+  }
+  for (int i = 1; i <= 60; ++i) (void)look_at(5 + i / 15.0);
+  EXPECT_EQ(watched.check().verdict().state, ContourState::Holds);
+}
+
 // A registration that was never exact is no drift either.
 TEST(ContourCheck, HoldsForARegistrationThatIsOffFromTheBeginning) {
   WatchedBall watched(geometry::exp((geometry::Vector6d() << 0.4, -0.3, 0.2, 0.01, -0.01, 0.01).finished()));
