@@ -31,6 +31,7 @@ constexpr std::size_t kMovingTriangles = 6000;
 PlanModel::PlanModel(cases::Case knee, const std::stop_token& stop,
                      const std::function<void(double done)>& tell)
     : knee_(std::move(knee)) {
+  knee_surroundings_.is_of_two_frames = knee_.is_of_two_frames;
   // Of each bone: drawn, its surface, its landmarks.
   const auto pieces =
       3 * std::ranges::count_if(knee_.bones, [](const auto& b) { return !b.second.mesh.empty(); });

@@ -56,6 +56,9 @@ struct Case {
   std::string plan_version = {};       // see plan_version(); of the moment when the case was loaded
   // Which landmarks are proposals; one that is not in it is confirmed (landmarks/landmarks.h).
   std::map<bones::BoneKind, landmarks::LandmarkStates> landmark_states = {};
+  // Femur and tibia were made in images of two frames of reference (study.h), of the moment when the case was
+  // loaded: where the one lies says nothing of where the other does.
+  bool is_of_two_frames = false;
 };
 
 // Throws IoError or InvalidInput (file, place, reason): not a case, newer version, broken file, missing mesh.

@@ -5,6 +5,7 @@
 #include "planning/cases/case.h"
 #include "planning/cases/case_outline.h"
 #include "planning/cases/plan_file.h"
+#include "planning/cases/study.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/json_document.h"
 #include "planning/files/private_folder.h"
@@ -144,6 +145,7 @@ Case load_case(const fs::path& folder) {
     for (const auto& node : root.objects("images")) result.images.push_back(image_from(node));
   }
   read_plan(folder, result);
+  result.is_of_two_frames = result.bones.size() == 2 && are_of_two_frames(load_studies(folder));
   return result;
 }
 

@@ -33,6 +33,14 @@ constexpr std::array<Text, 11> kTexts{{{"study_uid", &DicomOrigin::study_uid},
 
 }  // namespace
 
+bool are_of_two_frames(const Studies& studies) {
+  const auto femur = studies.find(bones::BoneKind::Femur), tibia = studies.find(bones::BoneKind::Tibia);
+  if (femur == studies.end() || tibia == studies.end()) return false;
+  const std::string& of_femur = femur->second.frame_of_reference_uid;
+  const std::string& of_tibia = tibia->second.frame_of_reference_uid;
+  return !of_femur.empty() && !of_tibia.empty() && of_femur != of_tibia;
+}
+
 fs::path study_file(const fs::path& case_folder) { return case_folder / "study.json"; }
 
 Studies load_studies(const fs::path& case_folder) {

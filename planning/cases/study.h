@@ -16,6 +16,10 @@ namespace arthronaut::cases {
 // By bone, as bones may come from different series; only those that came from DICOM images.
 using Studies = std::map<bones::BoneKind, images::DicomOrigin>;
 
+// Whether both bones are known to be of images whose frames of reference differ. A frame that nobody says may
+// be either.
+[[nodiscard]] bool are_of_two_frames(const Studies& studies);
+
 [[nodiscard]] std::filesystem::path study_file(const std::filesystem::path& case_folder);
 
 // Empty when the case has no study.json. Throws IoError or InvalidInput (file, place, reason).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <set>
 
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/same_patient.h"
@@ -164,6 +165,17 @@ void save_studies_of(const fs::path& folder, const BoneImport& import, cases::St
   cases::save_studies(folder, studies);
 }
 
+// Whether femur and tibia will be of two frames of reference once the import's bones are in the case.
+bool makes_two_frames(const cases::Case& target, const BoneImport& import, cases::Studies studies) {
+  std::set<bones::BoneKind> kinds;
+  for (const auto& [kind, bone] : target.bones) kinds.insert(kind);
+  for (const ImportedBone& imported : import.bones) {
+    kinds.insert(imported.bone.kind);
+    studies[imported.bone.kind] = import.origin;
+  }
+  return kinds.size() == 2 && cases::are_of_two_frames(studies);
+}
+
 // Those of the bones that were added take the place of what was said of the bones before them.
 void save_doubts_of(const fs::path& folder, const BoneImport& import, bones::Side side,
                     cases::BoneDoubts doubts) {
@@ -260,12 +272,17 @@ void refuse_missing_side(const fs::path& folder, const fs::path& source, const B
 std::vector<std::string> replaced_in_words(const fs::path& folder, const BoneImport& import) {
   if (!fs::exists(folder / "case.json")) return {};
   const cases::Case target = cases::load_case(folder);
+  const cases::Studies studies = cases::load_studies(folder);
+  std::vector<std::string> words;
   std::string bones;
   for (const bones::BoneKind kind : replaced_bones(target, import))
     bones += (bones.empty() ? "its " : " and its ") + std::string(bones::to_text(kind));
-  if (bones.empty()) return {};
-  std::vector<std::string> words{"replaced in the case: " + bones};
-  if (!replaces_images(target, import, cases::load_studies(folder)) || image_there(folder, target, import))
+  if (!bones.empty()) words.push_back("replaced in the case: " + bones);
+  if (makes_two_frames(target, import, studies))
+    words.emplace_back(
+        "femur and tibia are of images of different frames of reference: each can be planned on, nothing is "
+        "checked of both together");
+  if (bones.empty() || !replaces_images(target, import, studies) || image_there(folder, target, import))
     return words;
   for (const cases::CaseImage& image : target.images)
     words.push_back(image.file + ", of the bones before, is no image of the case any more; its file stays");
@@ -283,6 +300,7 @@ cases::Case add_to_case(const fs::path& folder, const BoneImport& import, const 
     put_bones(target, import);
     save_new(folder, target, import);
   }
+  target.is_of_two_frames = target.bones.size() == 2 && cases::are_of_two_frames(cases::load_studies(folder));
   return target;
 }
 

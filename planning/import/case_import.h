@@ -20,7 +20,9 @@ void refuse_missing_side(const std::filesystem::path& folder, const std::filesys
                          const BoneImportOptions& options);
 
 // What add_to_case() will take the place of in the case that is in `folder`, one sentence each; asked for
-// before it: "its femur and its tibia are replaced". Empty where it replaces nothing. Throws as load_case().
+// before it: "replaced in the case: its femur and its tibia". And that femur and tibia are then of images of
+// two frames of reference, also where nothing is replaced. Empty where there is neither. Throws as
+// load_case() and load_studies().
 [[nodiscard]] std::vector<std::string> replaced_in_words(const std::filesystem::path& folder,
                                                          const BoneImport& import);
 

@@ -27,9 +27,9 @@ ReviewedBone review_bone(const geometry::TriangleMesh& mesh, BoneKind kind, bone
 
 void put_bone(tunnels::KneeSurroundings& knee, BoneKind kind, const ReviewedBone& bone) {
   if (kind == BoneKind::Femur) {
-    auto insertions_mm = std::move(knee.insertions_mm);
-    knee = tunnels::knee_surroundings_of(bone.surface->mesh(), bone.surroundings);
-    knee.insertions_mm = std::move(insertions_mm);
+    tunnels::put_femur(knee, bone.surface->mesh(), bone.surroundings);
+  } else {
+    tunnels::put_tibia(knee, bone.surroundings);
   }
   std::erase_if(knee.insertions_mm, [&](const auto& one) { return one.first.bone == kind; });
   for (const auto& [bundle, footprint] : bone.footprints)
@@ -81,6 +81,7 @@ std::vector<tunnels::PlanCheck> checks_of(const tunnels::TunnelKey& key, const M
 }
 
 CaseReview::CaseReview(const cases::Case& knee) {
+  knee_.is_of_two_frames = knee.is_of_two_frames;
   for (const auto& [kind, bone] : knee.bones) {
     if (bone.mesh.empty()) continue;
     const auto marks = knee.landmarks.find(kind);

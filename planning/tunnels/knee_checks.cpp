@@ -5,6 +5,7 @@
 #include "planning/files/format.h"
 #include "planning/graft/graft_course.h"
 #include "planning/graft/roof_clearance.h"
+#include "planning/tunnels/knee_pose.h"
 #include "planning/tunnels/place_checks.h"
 #include "planning/tunnels/tunnel_pair.h"
 
@@ -170,20 +171,64 @@ PlanCheck check_roof(const KneePlan& plan, const KneeSurroundings& surroundings,
   return check;
 }
 
+// Of a graft between two frames no length, no angle and no clearance is one of this knee.
+std::vector<PlanCheck> none_checked(bool is_femur, const char* bend, const std::string& why) {
+  std::vector<PlanCheck> checks;
+  for (const char* name :
+       is_femur ? std::vector{"Graft length", "Length over flexion", "Against the insertions", bend}
+                : std::vector{"Roof", bend})
+    checks.push_back({.verdict = Verdict::NotChecked,
+                      .name = name,
+                      .text = "not checked: femur and tibia do not lie in one frame",
+                      .source = why});
+  return checks;
+}
+
 }  // namespace
 
 KneeSurroundings knee_surroundings_of(const geometry::TriangleMesh& femur, const PlanSurroundings& of_femur) {
   KneeSurroundings knee;
+  put_femur(knee, femur, of_femur);
+  return knee;
+}
+
+void put_femur(KneeSurroundings& knee, const geometry::TriangleMesh& femur,
+               const PlanSurroundings& of_femur) {
   knee.femur_axes = of_femur.axes;
   knee.femur_landmarks = of_femur.landmarks;
-  if (of_femur.axes) knee.axis = graft::flexion_axis(of_femur.landmarks, femur, *of_femur.axes);
-  return knee;
+  knee.axis = of_femur.axes ? graft::flexion_axis(of_femur.landmarks, femur, *of_femur.axes) : std::nullopt;
+}
+
+void put_tibia(KneeSurroundings& knee, const PlanSurroundings& of_tibia) {
+  using Origin = landmarks::AnatomicalAxes::Origin;
+  knee.plateau_middle_mm.reset();
+  knee.tibia_axes.reset();
+  if (!of_tibia.axes) return;
+  const landmarks::AnatomicalAxes& axes = *of_tibia.axes;
+  if (axes.origin == Origin::FromLandmarks) knee.tibia_axes = axes;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int known = 0;
+  for (const char* edge : {"plateau_medial", "plateau_lateral", "plateau_anterior", "plateau_posterior"}) {
+    const auto found = of_tibia.landmarks.find(edge);
+    if (found == of_tibia.landmarks.end()) continue;
+    sum += found->second;
+    ++known;
+  }
+  const BoneExtents& extents = of_tibia.extents;
+  if (known == 4) {
+    knee.plateau_middle_mm = sum / 4;
+  } else if (extents.width_mm() > 0) {
+    knee.plateau_middle_mm = extents.highest_mm * axes.proximal +
+                             0.5 * (extents.medial_mm + extents.lateral_mm) * axes.lateral +
+                             0.5 * (extents.posterior_mm + extents.anterior_mm) * axes.anterior;
+  }
 }
 
 std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,
                                   const KneeSurroundings& surroundings, const PlanNorms& norms) {
   const bool is_femur = bone == bones::BoneKind::Femur;
   const char* bend = is_femur ? "Bend at the femur" : "Bend at the tibia";
+  if (const std::string why = why_apart(surroundings); !why.empty()) return none_checked(is_femur, bend, why);
   const std::string missing = missing_tunnel(plan);
   std::vector<PlanCheck> checks;
   if (!is_femur) checks.push_back(check_roof(plan, surroundings, norms));

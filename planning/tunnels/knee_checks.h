@@ -1,6 +1,6 @@
 // What a plan of both bones is asked: the graft between the two tunnels. Femur and tibia lie in the same
 // frame of the case (LPS), as they were imaged, which is taken for the knee in extension; planning/graft says
-// by what models.
+// by what models. Where they do not, nothing is asked (knee_pose.h).
 #pragma once
 
 #include <map>
@@ -17,13 +17,20 @@ struct KneeSurroundings {
   std::optional<graft::FlexionAxis> axis = {};
   std::optional<landmarks::AnatomicalAxes> femur_axes = {};
   landmarks::Landmarks femur_landmarks = {};
+  // By landmarks, else by shape; and which way is lateral, where landmarks tell it.
+  std::optional<Eigen::Vector3d> plateau_middle_mm = {};
+  std::optional<landmarks::AnatomicalAxes> tibia_axes = {};
+  bool is_of_two_frames = false;  // of reference, as the bones' images say themselves (cases::Case)
   // Where the ligament and its bundles were attached, middles, as imaged: what a graft is compared with over
   // flexion. A missing one is unknown.
   std::map<TunnelKey, Eigen::Vector3d> insertions_mm = {};
 };
-// Without insertions, which come from norms.
+// What the femur says of it. Without insertions, which come from norms.
 [[nodiscard]] KneeSurroundings knee_surroundings_of(const geometry::TriangleMesh& femur,
                                                     const PlanSurroundings& of_femur);
+// In place of what was said of the bone before; the insertions are left as they are.
+void put_femur(KneeSurroundings& knee, const geometry::TriangleMesh& femur, const PlanSurroundings& of_femur);
+void put_tibia(KneeSurroundings& knee, const PlanSurroundings& of_tibia);
 
 // One graft and its two tunnels, as measured; null where there is none.
 struct KneePlan {
@@ -38,7 +45,7 @@ struct KneePlan {
 // between the insertions' middles, its bend at the femur. The change is judged by its customary limit only
 // where those insertions keep it themselves in the same model; else it is a note. Tibia:
 // the roof in extension, which asks for the tibial tunnel alone, the bend at the tibia. What lacks a tunnel,
-// an axis or Blumensaat's line is said to be not checked.
+// an axis or Blumensaat's line is said to be not checked; of bones that do not lie in one frame all of it is.
 [[nodiscard]] std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,
                                                 const KneeSurroundings& surroundings,
                                                 const PlanNorms& norms = {});

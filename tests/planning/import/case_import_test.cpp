@@ -368,6 +368,28 @@ TEST(CaseImport, AnImageOfTheSameFrameOfReferenceStays) {
   EXPECT_EQ(cases::load_case(folder / "a").images.size(), 2U);
 }
 
+// One bone of another scan lies where the patient lay then: it is said, and the case knows it when it is
+// loaded.
+TEST(CaseImport, Hazard51BonesOfTwoFramesOfReferenceAreSaid) {
+  const TemporaryFolder folder;
+  BoneImport tibia = imported(BoneKind::Tibia), femur = imported(BoneKind::Femur);
+  tibia.origin.study_uid = femur.origin.study_uid = "1.2";
+  tibia.origin.frame_of_reference_uid = femur.origin.frame_of_reference_uid = "1.2.7";
+  add_to_case(folder / "a", tibia, "", "ct");
+  EXPECT_THAT(replaced_in_words(folder / "a", femur), IsEmpty());
+  EXPECT_FALSE(add_to_case(folder / "a", femur, "", "ct").is_of_two_frames);
+  EXPECT_FALSE(cases::load_case(folder / "a").is_of_two_frames);
+
+  femur.origin.frame_of_reference_uid = "1.2.8";
+  EXPECT_THAT(replaced_in_words(folder / "a", femur),
+              ElementsAre("replaced in the case: its femur", HasSubstr("different frames of reference")));
+  EXPECT_TRUE(add_to_case(folder / "a", femur, "", "ct").is_of_two_frames);
+  EXPECT_TRUE(cases::load_case(folder / "a").is_of_two_frames);
+
+  add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");  // nobody knows of which
+  EXPECT_FALSE(cases::load_case(folder / "a").is_of_two_frames);
+}
+
 // A bone that is planned on is not exchanged under its tunnel.
 TEST(CaseImport, ABoneThatIsPlannedOnStays) {
   const TemporaryFolder folder;

@@ -101,6 +101,87 @@ TEST_F(PlanReview, TheOpeningIsTheCylindersEllipse) {
   }
 }
 
+// What is asked of both bones together: none is made where they do not lie in one frame.
+std::vector<tunnels::PlanCheck> of_both_bones(const cases::Case& knee) {
+  const CaseReview review(knee);
+  std::vector<tunnels::PlanCheck> found;
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia})
+    for (const auto& check : review.checks(kind))
+      for (const char* name : {"Graft length", "Length over flexion", "Against the insertions",
+                               "Bend at the femur", "Roof", "Bend at the tibia"})
+        if (check.name == name) found.push_back(check);
+  return found;
+}
+
+cases::Case with_moved_tibia(cases::Case knee, const geometry::RigidTransform& moved) {
+  for (auto& point : knee.bones.at(BoneKind::Tibia).mesh.vertices_mm) point = moved * point;
+  for (auto& [name, point] : knee.landmarks[BoneKind::Tibia]) point = moved * point;
+  tunnels::Tunnel& tunnel = knee.plan.tunnels.at(BoneKind::Tibia);
+  tunnel.entry_mm = moved * tunnel.entry_mm;
+  tunnel.direction = moved.rotation * tunnel.direction;
+  return knee;
+}
+
+void expect_apart(const cases::Case& knee) {
+  const auto checks = of_both_bones(knee);
+  EXPECT_EQ(checks.size(), 6U);
+  for (const auto& check : checks) {
+    EXPECT_EQ(check.verdict, Verdict::NotChecked) << check.name << ": " << check.text;
+    EXPECT_FALSE(check.value) << check.name;
+    EXPECT_NE(check.text.find("do not lie in one frame"), std::string::npos) << check.text;
+    EXPECT_FALSE(check.source.empty());
+  }
+}
+
+// Hazard 51: two meshes of different origins, or a bone of another scan.
+TEST_F(PlanReview, Hazard51OfBonesThatLieApartNothingIsAskedTogether) {
+  for (const Eigen::Vector3d& off_mm :
+       {Eigen::Vector3d(200, 60, -300), Eigen::Vector3d(0, 100, 0), Eigen::Vector3d(0, 0, 40),
+        Eigen::Vector3d(0, 0, -40), Eigen::Vector3d(30, 30, 20), Eigen::Vector3d(-30, 0, 0)}) {
+    SCOPED_TRACE(off_mm.transpose());
+    cases::Case apart = with_moved_tibia(knee_, {Eigen::Quaterniond::Identity(), off_mm});
+    expect_apart(apart);
+    apart.landmarks.erase(BoneKind::Tibia);  // the shape tells it, too
+    expect_apart(apart);
+  }
+  // In the other axes (RAS) it stands the other way round, however near.
+  const Eigen::Quaterniond about_z(Eigen::AngleAxisd(std::acos(-1.0), Eigen::Vector3d::UnitZ()));
+  expect_apart(with_moved_tibia(knee_, {about_z, Eigen::Vector3d::Zero()}));
+}
+
+// Two frames of reference say nothing of each other, however near the numbers are.
+TEST_F(PlanReview, Hazard51OfBonesOfTwoFramesNothingIsAskedTogether) {
+  knee_.is_of_two_frames = true;
+  expect_apart(knee_);
+}
+
+// However a knee was bent in the scanner, and however large it is, its bones lie in one frame.
+TEST_F(PlanReview, BonesOfABentKneeLieInOneFrame) {
+  for (const std::uint64_t seed : {1, 4, 7}) {
+    const auto side = seed == 4 ? bones::Side::Left : bones::Side::Right;
+    const cases::Case knee = phantom::case_of(
+        phantom::make_phantom_knee({.side = side, .seed = seed, .edge_length_mm = 4}), "test");
+    const CaseReview review(knee);
+    const auto axis = tunnels::knee_surroundings_of(knee.bones.at(BoneKind::Femur).mesh,
+                                                    review.bone(BoneKind::Femur).surroundings)
+                          .axis;
+    ASSERT_TRUE(axis);
+    for (const double flexion_deg : {-10, 0, 30, 60, 90}) {
+      const auto turn = graft::femur_from_tibia(*axis, geometry::rad_from_deg(flexion_deg));
+      const Eigen::Quaterniond rotated(
+          Eigen::AngleAxisd(geometry::rad_from_deg(flexion_deg / 4), Eigen::Vector3d::UnitZ()));
+      cases::Case bent = with_moved_tibia(with_moved_tibia(knee, {rotated, Eigen::Vector3d::Zero()}), turn);
+      for (const bool has_landmarks : {true, false}) {
+        if (!has_landmarks && flexion_deg > 60) continue;  // by its shape alone it is taken to stand upright
+        if (!has_landmarks) bent.landmarks.erase(BoneKind::Tibia);
+        for (const auto& check : of_both_bones(bent))
+          EXPECT_EQ(check.text.find("one frame"), std::string::npos)
+              << seed << ", " << flexion_deg << " deg: " << check.source;
+      }
+    }
+  }
+}
+
 // What a bone's shape alone does not tell is said to be unchecked; it is no tick.
 TEST_F(PlanReview, WithoutLandmarksSaysWhatItCouldNotCheck) {
   knee_.landmarks.clear();
