@@ -37,7 +37,8 @@ class Parting {
  public:
   Parting(const Volume& volume, const BoneSolid& solid)
       : volume_(volume), solid_(solid), depths_mm_(images::depths_mm(solid.mask, volume.spacing_mm())) {
-    volume_.lps_from_index.linear().row(2).cwiseAbs().maxCoeff(&axis_);
+    // Of the directions, whatever the steps along them are.
+    volume_.lps_from_index.linear().colwise().normalized().row(2).cwiseAbs().maxCoeff(&axis_);
     rises_ = volume_.lps_from_index.linear()(2, axis_) > 0;
     step_mm_ = volume_.spacing_mm()[axis_];
     const Eigen::Vector3d spacing = volume_.spacing_mm();

@@ -13,9 +13,9 @@
 #include "planning/geometry/error.h"
 #include "planning/geometry/rigid_transform.h"
 #include "planning/geometry/surface.h"
-#include "planning/phantom/phantom_knee.h"
 #include "planning/segmentation/anatomy_check.h"
 #include "tests/message_of.h"
+#include "tests/planning/segmentation/known_bones.h"
 #include "tests/planning/segmentation/known_ct.h"
 
 namespace arthronaut::segmentation {
@@ -25,83 +25,8 @@ using bones::BoneKind;
 using geometry::TriangleMesh;
 using testing::HasSubstr;
 
-const std::vector<TriangleMesh>& knee() {
-  static const auto phantom = phantom::make_phantom_knee();
-  static const std::vector<TriangleMesh> meshes{phantom.femur.mesh, phantom.tibia.mesh};
-  return meshes;
-}
-
-// A rod beside the tibia, on the patient's left.
-TriangleMesh fibula_of(const TriangleMesh& tibia) {
-  TriangleMesh rod;
-  const geometry::Bounds bounds = geometry::bounds_of(tibia);
-  constexpr int kSides = 24;
-  const Eigen::Vector3d foot(bounds.max_mm.x() + 10, bounds.center_mm().y(), bounds.min_mm.z() + 1);
-  const double height = bounds.size_mm().z() - 14;
-  for (const double z : {0.0, height}) {
-    for (int i = 0; i < kSides; ++i) {
-      const double angle = 2 * M_PI * i / kSides;
-      rod.vertices_mm.push_back(foot + Eigen::Vector3d(6 * std::cos(angle), 6 * std::sin(angle), z));
-    }
-    rod.vertices_mm.push_back(foot + Eigen::Vector3d(0, 0, z));
-  }
-  for (int i = 0; i < kSides; ++i) {
-    const int next = (i + 1) % kSides, above = kSides + 1;
-    rod.triangles.push_back({i, next, above + i});
-    rod.triangles.push_back({next, above + next, above + i});
-    rod.triangles.push_back({kSides, next, i});
-    rod.triangles.push_back({above + kSides, above + i, above + next});
-  }
-  return rod;
-}
-
-// One whose head lies against the tibia, below its outer half, over a face of two centimetres: it follows the
-// tibia's surface at a tenth of a millimetre.
-TriangleMesh fibula_against(const TriangleMesh& tibia) {
-  const geometry::Bounds bounds = geometry::bounds_of(tibia);
-  const double head_mm = bounds.max_mm.z() - 22, foot_mm = bounds.min_mm.z() + 1;
-  constexpr double kHead_mm = 12, kShaft_mm = 6.5, kOverlap_mm = 5, kBetween_mm = 0.1;
-  Eigen::Vector3d outermost = bounds.min_mm;
-  for (const Eigen::Vector3d& p : tibia.vertices_mm)
-    if (std::abs(p.z() - head_mm) < 3 && p.x() > outermost.x()) outermost = p;
-  const Eigen::Vector2d axis(outermost.x() + kHead_mm - kOverlap_mm, outermost.y());
-  const geometry::Surface surface(tibia);
-  constexpr int kSides = 64, kLevels = 120;
-  TriangleMesh mesh;
-  for (int level = 0; level <= kLevels; ++level) {
-    const double z = foot_mm + (head_mm + kHead_mm - foot_mm) * level / kLevels, above = z - head_mm;
-    const double ball = std::abs(above) < kHead_mm ? std::sqrt(kHead_mm * kHead_mm - above * above) : 0;
-    const double radius = above > 0 ? std::max(ball, 0.01) : std::max(ball, kShaft_mm);
-    for (int i = 0; i < kSides; ++i) {
-      const double angle = 2 * M_PI * i / kSides;
-      Eigen::Vector3d p(axis.x() + radius * std::cos(angle), axis.y() + radius * std::sin(angle), z);
-      const auto closest = surface.closest_point(p);
-      if ((p - closest.point_mm).dot(closest.normal) < kBetween_mm)
-        p = closest.point_mm + kBetween_mm * closest.normal;
-      mesh.vertices_mm.push_back(p);
-    }
-  }
-  for (int level = 0; level < kLevels; ++level)
-    for (int i = 0; i < kSides; ++i) {
-      const int a = level * kSides + i, b = level * kSides + (i + 1) % kSides;
-      mesh.triangles.push_back({a, b, a + kSides});
-      mesh.triangles.push_back({b, b + kSides, a + kSides});
-    }
-  for (const bool is_top : {false, true}) {
-    const int ring = is_top ? kLevels * kSides : 0, middle = static_cast<int>(mesh.vertices_mm.size());
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (int i = 0; i < kSides; ++i) sum += mesh.vertices_mm[static_cast<std::size_t>(ring + i)];
-    mesh.vertices_mm.push_back(sum / kSides);
-    for (int i = 0; i < kSides; ++i) {
-      const int a = ring + i, b = ring + (i + 1) % kSides;
-      if (is_top)
-        mesh.triangles.push_back({a, b, middle});
-      else
-        mesh.triangles.push_back({b, a, middle});
-    }
-  }
-  return mesh;
-}
+using test::fibula_of;
+using test::knee;
 
 // Both bones at once, between voxels: what was asked for is a median of 0.12 mm and 0.35 mm for 95 %. The
 // flat ends, a twentieth of each bone, lie where a layer of voxels is about as bright as the threshold.
@@ -206,33 +131,6 @@ TEST(CtBones, BonesThatPressOnEachOtherKeepTheirMarrow) {
     const double truth_mm3 = geometry::signed_volume_mm3(truth[i]);
     EXPECT_NEAR(std::abs(geometry::signed_volume_mm3(bones::mend_mesh(found.bones[i].mesh).mesh)), truth_mm3,
                 0.03 * truth_mm3);
-  }
-}
-
-// However broadly it touches, the fibula is no part of the tibia, and tells the side.
-TEST(CtBones, AFibulaThatTouchesBroadlyIsTakenOff) {
-  const TriangleMesh &femur = knee()[0], &tibia = knee()[1];
-  const TriangleMesh fibula = fibula_against(tibia);
-  ASSERT_GT(geometry::signed_volume_mm3(fibula), 8'000);
-  for (const double slice_mm : {0.625, 1.25}) {
-    test::KnownCtOptions options;
-    options.spacing_mm = {0.5, 0.5, slice_mm};
-    const CtBones found = bones_of_ct(test::known_ct({femur, tibia, fibula}, options));
-    ASSERT_EQ(found.bones.size(), 2U);
-    EXPECT_EQ(found.side_by_fibula, bones::Side::Left) << slice_mm;
-    const CtBone& made = found.bones[1];
-    EXPECT_TRUE(made.doubts.empty());
-    EXPECT_THAT(made.notes, testing::Contains(HasSubstr("fibula, which touches, was taken off")));
-    const auto mended = bones::mend_mesh(made.mesh);
-    // The fibula reaches 24 mm further than the tibia, and has an eighth of its volume.
-    const auto distances = test::distances_to(tibia, mended.mesh, 0);
-    EXPECT_LT(distances[distances.size() / 2], 0.12) << slice_mm;
-    EXPECT_LT(distances[distances.size() * 95 / 100], std::max(0.35, slice_mm / 2)) << slice_mm;
-    EXPECT_LT(distances.back(), 3.2) << "a stub of it stays, which is less than three slices of 1.25 mm deep";
-    const double truth_mm3 = geometry::signed_volume_mm3(tibia);
-    EXPECT_NEAR(std::abs(geometry::signed_volume_mm3(mended.mesh)), truth_mm3, 0.015 * truth_mm3) << slice_mm;
-    // What is said of the volume is said of the tibia alone.
-    EXPECT_THAT(made.notes.front(), HasSubstr(std::to_string(std::lround(truth_mm3 / 1000)).substr(0, 2)));
   }
 }
 
