@@ -38,6 +38,10 @@ constexpr double kSureJoint_mm2 = 700, kLeastPart_mm3 = 8000;
 constexpr double kBetweenKnees_mm = 70;
 // Between the middles of tibia and fibula, level. Rails of the table are as slender, and lie further off.
 constexpr double kFurthestFibula_mm = 60;
+// And no nearer to the middle, from side to side. What is less tall may be anything.
+constexpr double kLeastAside_mm = 8, kLeastFibula_mm = 25;
+// A fibula goes on as far as the shaft does, to so much.
+constexpr double kFibulaEnds_mm = 15;
 
 struct Candidate {
   BoneSolid solid;
@@ -52,7 +56,7 @@ struct Candidate {
 
 struct Slender {
   Eigen::Vector3d center_mm;
-  double height_mm = 0;
+  double height_mm = 0, low_mm = 0;
 };
 
 struct Found {
@@ -85,8 +89,8 @@ Found found_pieces(const Volume& volume, const CtBonesOptions& options) {
       if (close_marrow(volume, whole).widest_mm > 0) candidate.profile = profile_of(volume, whole);
     }
     if (candidate.profile.largest_mm2() < kLeastSection_mm2) {
-      found.slender.push_back(
-          {candidate.profile.center_mm, candidate.profile.high_mm() - candidate.profile.low_mm});
+      const SectionProfile& p = candidate.profile;
+      found.slender.push_back({p.center_mm, p.high_mm() - p.low_mm, p.low_mm});
     } else {
       found.candidates.push_back(std::move(candidate));
     }
@@ -194,8 +198,19 @@ Chosen chosen_of(Found& found) {
 // What hung on a bone and is no part of it.
 struct Appendage {
   std::vector<Eigen::Vector3d> taken_mm;
-  bool stays = false;  // it is seen, and could not be parted
+  bool is_fibula = false;  // runs beside the shaft to its end, as no outgrowth does
+  bool stays = false;      // it is seen, and could not be parted
 };
+
+Slender slender_of(const std::vector<Eigen::Vector3d>& points_mm) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), low = points_mm.front(), high = low;
+  for (const Eigen::Vector3d& p : points_mm) {
+    sum += p;
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return {sum / static_cast<double>(points_mm.size()), high.z() - low.z(), low.z()};
+}
 
 Appendage take_off(const Volume& volume, BoneKind kind, Candidate& candidate, const VoxelMask& marrow) {
   Appendage appendage;
@@ -204,11 +219,47 @@ Appendage take_off(const Volume& volume, BoneKind kind, Candidate& candidate, co
     PartedFibula parted = part_fibula(volume, candidate.solid);
     appendage.taken_mm = std::move(parted.taken_mm);
     is_seen = parted.outcome == PartedFibula::Outcome::NotParted;
+    appendage.is_fibula = !appendage.taken_mm.empty() &&
+                          slender_of(appendage.taken_mm).low_mm < candidate.profile.low_mm + kFibulaEnds_mm;
   }
   if (appendage.taken_mm.empty()) appendage.taken_mm = take_off_appendage(volume, candidate.solid, marrow);
   appendage.stays = is_seen && appendage.taken_mm.empty();
   if (!appendage.taken_mm.empty()) candidate.profile = profile_of(volume, candidate.solid);
   return appendage;
+}
+
+// Which side of the tibia a fibula's piece lies on; nullopt where it lies where none is.
+std::optional<Side> side_of(const Slender& piece, const SectionProfile& tibia) {
+  const Eigen::Vector3d from_tibia = piece.center_mm - tibia.center_mm;
+  if (piece.center_mm.z() > tibia.high_mm() || std::abs(from_tibia.x()) < kLeastAside_mm ||
+      from_tibia.head<2>().norm() > kFurthestFibula_mm)
+    return std::nullopt;
+  return from_tibia.x() > 0 ? Side::Left : Side::Right;
+}
+
+// Lateral is where the fibula is: a slender piece that stands free beside the tibia, or what was parted from
+// it along its shaft. What hung on the tibia by a neck may be its head, or an outgrowth: it is asked only
+// where there is neither.
+struct FibulaSide {
+  std::optional<Side> side;
+  bool is_contradicted = false;  // one on either side
+};
+FibulaSide side_by_fibula(const std::vector<Slender>& free, const Appendage& appendage,
+                          const SectionProfile& tibia) {
+  FibulaSide told;
+  const auto say = [&](const Slender& piece) {
+    const auto side = side_of(piece, tibia);
+    if (side && told.side && *side != *told.side) told.is_contradicted = true;
+    if (side) told.side = side;
+  };
+  for (const Slender& piece : free)
+    if (piece.height_mm > kLeastFibula_mm) say(piece);
+  if (!appendage.taken_mm.empty()) {
+    const Slender taken = slender_of(appendage.taken_mm);
+    if (appendage.is_fibula || (!told.side && taken.height_mm > kLeastFibula_mm)) say(taken);
+  }
+  if (told.is_contradicted) told.side.reset();
+  return told;
 }
 
 CtBone surface_of(const Volume& volume, BoneKind kind, const Candidate& candidate, const Candidate* other,
@@ -242,8 +293,10 @@ CtBone surface_of(const Volume& volume, BoneKind kind, const Candidate& candidat
   if (appendage.stays)
     bone.doubts.push_back("the fibula hangs on it and could not be parted from it: look at its outer side");
   if (!appendage.taken_mm.empty())
-    bone.notes.push_back(kind == BoneKind::Tibia ? "the fibula, which touches, was taken off"
-                                                 : "a bone that touches (the patella) was taken off");
+    bone.notes.push_back(kind == BoneKind::Femur ? "a bone that touches (the patella) was taken off"
+                         : appendage.is_fibula
+                             ? "the fibula, which touches, was taken off"
+                             : "what hangs on it (the fibula's head, or an outgrowth) was taken off");
   return bone;
 }
 
@@ -317,33 +370,19 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
     if (is_joined)
       bone.doubts.push_back("femur and tibia seem to touch, and no joint space is seen between them");
   }
-  // Lateral is where the fibula is: the tallest slender piece beside the tibia, or what hung on it.
   if (chosen.tibia) {
-    const SectionProfile& tibia = chosen.tibia->profile;
-    bool hangs_on_it = false;
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      const std::vector<Eigen::Vector3d>& taken = appendages[i].taken_mm;
-      if (wanted[i].first != BoneKind::Tibia) continue;
-      hangs_on_it = appendages[i].stays;
-      if (taken.empty()) continue;
-      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-      for (const Eigen::Vector3d& p : taken) sum += p;
-      found.slender.push_back({sum / static_cast<double>(taken.size()), 1e3});
+    Appendage of_tibia;
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      if (wanted[i].first == BoneKind::Tibia) of_tibia = std::move(appendages[i]);
+    const FibulaSide told = side_by_fibula(found.slender, of_tibia, chosen.tibia->profile);
+    result.side_by_fibula = told.side;
+    for (CtBone& bone : result.bones) {
+      if (bone.kind != BoneKind::Tibia || told.side || of_tibia.stays) continue;
+      bone.notes.push_back(
+          told.is_contradicted
+              ? "what may be the fibula lies on both sides of it: it tells no side"
+              : "no fibula is seen apart from it: it lies outside of the images, or is a part of this bone");
     }
-    double tallest = 25;
-    for (const Slender& s : found.slender) {
-      const Eigen::Vector3d from_tibia = s.center_mm - tibia.center_mm;
-      const double aside = from_tibia.x();
-      if (s.height_mm < tallest || s.center_mm.z() > tibia.high_mm() || std::abs(aside) < 8 ||
-          from_tibia.head<2>().norm() > kFurthestFibula_mm)
-        continue;
-      tallest = s.height_mm;
-      result.side_by_fibula = aside > 0 ? Side::Left : Side::Right;
-    }
-    for (CtBone& bone : result.bones)
-      if (bone.kind == BoneKind::Tibia && !result.side_by_fibula && !hangs_on_it)
-        bone.notes.push_back(
-            "no fibula is seen apart from it: it lies outside of the images, or is a part of this bone");
   }
   tell(options, 1);
   return result;

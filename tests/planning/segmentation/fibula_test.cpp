@@ -21,6 +21,7 @@ using bones::Side;
 using geometry::TriangleMesh;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 // However broadly it touches, the fibula is no part of the tibia, and tells the side.
 TEST(Fibula, AFibulaThatTouchesBroadlyIsTakenOff) {
@@ -72,6 +73,60 @@ TEST(Fibula, ThatTouchesIsTakenOffInThickSlicesThatLean) {
     EXPECT_LT(distances[distances.size() / 2], 0.4);
     EXPECT_LT(distances[distances.size() * 95 / 100], 1.5) << "less than a slice";
     EXPECT_LT(distances.back(), 8) << "a stub of it stays, four slices deep at most";
+  }
+}
+
+// A ball that hangs by a stalk on the tibia's inner side, as an osteochondroma does. LPS, a right knee.
+struct Outgrowth {
+  Eigen::Vector3d foot_mm;
+  double radius_mm;
+  void operator()(images::Volume& volume) const {
+    constexpr double kStalk_mm = 2.6, kShell_mm = 1.5;
+    const Eigen::Vector3d center = foot_mm + Eigen::Vector3d(radius_mm + 3, 0, 0);
+    for (int k = 0; k < volume.size.z(); ++k)
+      for (int j = 0; j < volume.size.y(); ++j)
+        for (int i = 0; i < volume.size.x(); ++i) {
+          const Eigen::Vector3d p = volume.lps_from_index * Eigen::Vector3d(i, j, k);
+          const double off_mm = (p - center).norm();
+          const bool is_stalk =
+              p.x() > foot_mm.x() - 4 && p.x() < center.x() && (p - center).tail<2>().norm() < kStalk_mm;
+          if (off_mm > radius_mm && !is_stalk) continue;
+          float& hu = volume.values[volume.index(i, j, k)];
+          hu = std::max(hu, off_mm < radius_mm - kShell_mm ? 400.0F : 1100.0F);
+        }
+  }
+};
+Outgrowth medial_outgrowth(double radius_mm) {
+  const TriangleMesh& tibia = test::knee()[1];
+  const geometry::Bounds bounds = geometry::bounds_of(tibia);
+  Outgrowth outgrowth{bounds.min_mm, radius_mm};
+  for (const Eigen::Vector3d& p : tibia.vertices_mm)
+    if (std::abs(p.z() - (bounds.max_mm.z() - 22)) < 2 && p.x() > outgrowth.foot_mm.x())
+      outgrowth.foot_mm = p;
+  return outgrowth;
+}
+
+// What hangs on the tibia's inner side does not outvote the fibula that stands free on the other, and is not
+// called one: the other side's landmarks and tunnels would follow.
+TEST(Fibula, Hazard52AnOutgrowthIsNoFibula) {
+  const TriangleMesh& tibia = test::knee()[1];
+  TriangleMesh fibula = test::fibula_of(tibia);  // to the right, where it is in a right knee
+  const geometry::Bounds bounds = geometry::bounds_of(tibia);
+  for (Eigen::Vector3d& p : fibula.vertices_mm) p.x() += bounds.min_mm.x() - bounds.max_mm.x() - 20;
+  for (const double radius_mm : {9.0, 12.0}) {
+    for (const bool has_fibula : {true, false}) {
+      SCOPED_TRACE(radius_mm);
+      test::KnownCtOptions options;
+      options.spacing_mm = {0.8, 0.8, 1.0};
+      options.margin_mm = 14;
+      options.operate = medial_outgrowth(radius_mm);
+      std::vector<TriangleMesh> bones = test::knee();
+      if (has_fibula) bones.push_back(fibula);
+      const CtBones found = bones_of_ct(test::known_ct(bones, options));
+      ASSERT_EQ(found.bones.size(), 2U);
+      EXPECT_NE(found.side_by_fibula, Side::Left) << has_fibula;
+      EXPECT_THAT(found.bones[1].notes, Not(Contains(HasSubstr("the fibula, which touches"))));
+    }
   }
 }
 
