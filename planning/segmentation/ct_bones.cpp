@@ -102,24 +102,24 @@ Found found_pieces(const Volume& volume, const CtBonesOptions& options) {
   return found;
 }
 
-// Of a volume with both knees the one that was asked for.
-void keep_one_knee(Found& found, const CtBonesOptions& options) {
+// Of a volume with both knees the one that was asked for: the outermost on its side, whatever lies between
+// them.
+void keep_one_knee(Found& found, const CtBonesOptions& options, CtBones& result) {
   auto& all = found.candidates;
   std::vector<double> across;
   for (const Candidate& c : all) across.push_back(c.profile.center_mm.x());
   std::sort(across.begin(), across.end());
-  double middle = 0;
-  bool are_two = false;
-  for (std::size_t i = 0; i + 1 < across.size(); ++i) {
-    if (across[i + 1] - across[i] < kBetweenKnees_mm) continue;
-    are_two = true;
-    middle = 0.5 * (across[i] + across[i + 1]);
-  }
-  if (!are_two) return;
+  std::vector<double> gaps;
+  for (std::size_t i = 0; i + 1 < across.size(); ++i)
+    if (across[i + 1] - across[i] >= kBetweenKnees_mm) gaps.push_back(0.5 * (across[i] + across[i + 1]));
+  if (gaps.empty()) return;
   if (!options.side) throw ShowsBothKnees("shows both knees: add --side left or --side right");
   const bool is_left = *options.side == Side::Left;
-  std::erase_if(all, [&](const Candidate& c) { return (c.profile.center_mm.x() > middle) != is_left; });
-  std::erase_if(found.slender, [&](const Slender& s) { return (s.center_mm.x() > middle) != is_left; });
+  const auto is_other = [&](double x) { return is_left ? x < gaps.back() : x > gaps.front(); };
+  std::erase_if(all, [&](const Candidate& c) { return is_other(c.profile.center_mm.x()); });
+  std::erase_if(found.slender, [&](const Slender& s) { return is_other(s.center_mm.x()); });
+  result.notes.push_back("more than one knee is seen: the bones farthest on the patient's " +
+                         std::string(bones::to_text(*options.side)) + " were taken");
 }
 
 // Whether a whole bone lies above it already: then it is no femur, however high its plateau reaches above its
@@ -314,7 +314,7 @@ double CtBonesOptions::threshold_for(const Volume& volume) const {
 CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
   CtBones result;
   Found found = found_pieces(volume, options);
-  keep_one_knee(found, options);
+  keep_one_knee(found, options, result);
   if (found.candidates.empty()) {
     throw InvalidInput(files::format("holds no femur and no tibia above the threshold of %.0f HU: ",
                                      options.threshold_for(volume)) +

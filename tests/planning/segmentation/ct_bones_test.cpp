@@ -281,6 +281,39 @@ TEST(CtBones, BothKneesAreAskedAbout) {
     EXPECT_GT(geometry::bounds_of(bone.mesh).min_mm.x(), 80);
 }
 
+// What lies between two knees, as a hand or a support, is part of neither: each side gives the outermost.
+TEST(CtBones, WhatLiesBetweenTwoKneesIsOfNeither) {
+  auto two = knee();
+  for (auto mesh : knee()) {
+    for (auto& p : mesh.vertices_mm) p.x() += 220;
+    two.push_back(mesh);
+  }
+  test::KnownCtOptions options;
+  options.spacing_mm = {1.2, 1.2, 1.2};
+  options.samples = 1;
+  options.operate = [](images::Volume& volume) {
+    for (int k = 0; k < volume.size.z(); ++k)
+      for (int j = 0; j < volume.size.y(); ++j)
+        for (int i = 0; i < volume.size.x(); ++i) {
+          const Eigen::Vector3d p = volume.lps_from_index * Eigen::Vector3d(i, j, k);
+          if (std::abs(p.x() - 110) < 25 && std::abs(p.y()) < 25 && p.z() > 20 && p.z() < 75)
+            volume.values[volume.index(i, j, k)] = 500;
+        }
+  };
+  const images::Volume volume = test::known_ct(two, options);
+  for (const bones::Side side : {bones::Side::Right, bones::Side::Left}) {
+    CtBonesOptions asked;
+    asked.side = side;
+    const CtBones found = bones_of_ct(volume, asked);
+    ASSERT_EQ(found.bones.size(), 2U);
+    for (const CtBone& bone : found.bones)
+      EXPECT_NEAR(geometry::bounds_of(bone.mesh).center_mm().x(), side == bones::Side::Right ? 0 : 220, 15)
+          << bones::to_text(bone.kind) << " of the " << bones::to_text(side) << " knee";
+    EXPECT_THAT(found.notes, testing::Contains(HasSubstr("farthest on the patient's " +
+                                                         std::string(bones::to_text(side)))));
+  }
+}
+
 TEST(CtBones, NothingAboveTheThresholdIsSaid) {
   test::KnownCtOptions coarse;
   coarse.spacing_mm = {2, 2, 2};
