@@ -42,27 +42,38 @@ std::optional<Vector3d> middle(const std::optional<Vector3d>& a, const std::opti
   return Vector3d((*a + *b) / 2);
 }
 
-// The longest principal axis of the surface, towards the head.
-std::optional<Vector3d> shaft_of(const geometry::TriangleMesh& mesh) {
-  double total = 0;
+// Of the surface's area, so that it does not matter how finely a part of it is triangulated.
+struct Moments {
+  double area = 0;
   Vector3d mean = Vector3d::Zero();
-  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();  // about the origin, by area
+};
+std::optional<Moments> moments_of(const geometry::TriangleMesh& mesh) {
+  Moments of;
   for (const auto& triangle : mesh.triangles) {
     const auto corner = [&](std::size_t k) -> const Vector3d& {
       return mesh.vertices_mm[static_cast<std::size_t>(triangle[k])];
     };
     const double area = 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
     const Vector3d center = (corner(0) + corner(1) + corner(2)) / 3;
-    total += area;
-    mean += area * center;
+    of.area += area;
+    of.mean += area * center;
     // The second moment of a triangle: its corners' and nine times its centre's, over twelve.
-    moment += area / 12 *
-              (corner(0) * corner(0).transpose() + corner(1) * corner(1).transpose() +
-               corner(2) * corner(2).transpose() + 9 * center * center.transpose());
+    of.second += area / 12 *
+                 (corner(0) * corner(0).transpose() + corner(1) * corner(1).transpose() +
+                  corner(2) * corner(2).transpose() + 9 * center * center.transpose());
   }
-  if (!(total > 0)) return std::nullopt;
-  mean /= total;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(moment / total - mean * mean.transpose());
+  if (!(of.area > 0)) return std::nullopt;
+  of.mean /= of.area;
+  of.second /= of.area;
+  return of;
+}
+
+// The longest principal axis of the surface, towards the head.
+std::optional<Vector3d> shaft_of(const std::optional<Moments>& surface) {
+  if (!surface) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(surface->second -
+                                                                 surface->mean * surface->mean.transpose());
   if (!(principal.eigenvalues()[2] > kLeastElongation * principal.eigenvalues()[1])) return std::nullopt;
   const Vector3d longest = principal.eigenvectors().col(2);
   return longest.z() < 0 ? Vector3d(-longest) : longest;
@@ -159,8 +170,8 @@ std::optional<AnatomicalAxes> from_landmarks(bones::BoneKind bone, bones::Side s
 // Mixed-up landmarks turn a bone over: then most of it lies on the wrong side of its joint. Without a mesh,
 // only the scanner is left to compare with.
 bool is_upright(const AnatomicalAxes& axes, bones::BoneKind bone, bones::Side side,
-                const Landmarks& landmarks, const geometry::TriangleMesh& mesh) {
-  if (mesh.vertices_mm.empty()) return agrees(axes, scanner_axes(side));
+                const Landmarks& landmarks, const std::optional<Moments>& surface) {
+  if (!surface) return agrees(axes, scanner_axes(side));
   const bool is_femur = bone == bones::BoneKind::Femur;
   std::optional<Vector3d> joint;
   for (const char* part : {"condyle_posterior", "condyle_center", "epicondyle"}) {
@@ -171,9 +182,7 @@ bool is_upright(const AnatomicalAxes& axes, bones::BoneKind bone, bones::Side si
   }
   if (!is_femur) joint = middle(find(landmarks, "plateau_medial"), find(landmarks, "plateau_lateral"));
   if (!joint) return agrees(axes, scanner_axes(side));
-  Vector3d mean = Vector3d::Zero();
-  for (const Vector3d& v : mesh.vertices_mm) mean += v / static_cast<double>(mesh.vertices_mm.size());
-  return (is_femur ? 1 : -1) * (mean - *joint).dot(axes.proximal) > 0;
+  return (is_femur ? 1 : -1) * (surface->mean - *joint).dot(axes.proximal) > 0;
 }
 
 }  // namespace
@@ -203,9 +212,10 @@ AnatomicalAxes scanner_axes(bones::Side side) {
 AnatomicalAxes anatomical_axes(bones::BoneKind bone, bones::Side side, const Landmarks& landmarks,
                                const geometry::TriangleMesh& mesh) {
   const AnatomicalAxes scanner = scanner_axes(side);
-  const std::optional<Vector3d> shaft = shaft_of(mesh);
+  const std::optional<Moments> surface = moments_of(mesh);
+  const std::optional<Vector3d> shaft = shaft_of(surface);
   const std::optional<AnatomicalAxes> named = from_landmarks(bone, side, landmarks, shaft);
-  if (named && is_upright(*named, bone, side, landmarks, mesh)) return *named;
+  if (named && is_upright(*named, bone, side, landmarks, surface)) return *named;
   if (!shaft) return scanner;
   const std::optional<Vector3d> lateral = laid_across(scanner.lateral, *shaft);
   if (!lateral) return scanner;

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <random>
+#include <tuple>
+#include <vector>
 
 namespace arthronaut::landmarks {
 namespace {
@@ -39,6 +42,48 @@ void expect_axes(const AnatomicalAxes& axes, const Vector3d& anterior, const Vec
   EXPECT_LT((axes.anterior - anterior).norm(), 1e-9);
   EXPECT_LT((axes.proximal - proximal).norm(), 1e-9);
   EXPECT_LT((axes.lateral - lateral).norm(), 1e-9);
+}
+
+// Each of these triangles in four, `times` over.
+void refine(geometry::TriangleMesh& mesh, const std::vector<std::size_t>& triangles, int times) {
+  std::vector<std::array<int, 3>> coarse;
+  for (const std::size_t i : triangles) coarse.push_back(mesh.triangles[i]);
+  for (std::size_t n = triangles.size(); n-- > 0;)
+    mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(triangles[n]));
+  for (; times > 0; --times) {
+    std::vector<std::array<int, 3>> fine;
+    for (const auto& t : coarse) {
+      std::array<int, 3> middles{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        middles[k] = static_cast<int>(mesh.vertices_mm.size());
+        mesh.vertices_mm.push_back(0.5 * (mesh.vertices_mm[static_cast<std::size_t>(t[k])] +
+                                          mesh.vertices_mm[static_cast<std::size_t>(t[(k + 1) % 3])]));
+      }
+      fine.push_back({t[0], middles[0], middles[2]});
+      fine.push_back({t[1], middles[1], middles[0]});
+      fine.push_back({t[2], middles[2], middles[1]});
+      fine.push_back(middles);
+    }
+    coarse = fine;
+  }
+  mesh.triangles.insert(mesh.triangles.end(), coarse.begin(), coarse.end());
+}
+
+// A short stump, the most of it above the joint: neither its end nor its cut face outweighs the rest by being
+// made of more triangles.
+TEST(AnatomicalAxes, DoNotHangOnHowFinelyAPartIsTriangulated) {
+  const std::vector<std::size_t> below{0, 1}, above{2, 3};
+  for (const auto& [face, lowest_mm, upright] :
+       {std::tuple{below, -20.0, true}, std::tuple{above, -26.0, false}}) {
+    for (const int times : {0, 4}) {
+      geometry::TriangleMesh stump = box({40, 30, 23}, Eigen::Matrix3d::Identity());
+      for (Vector3d& v : stump.vertices_mm) v.z() += 23 + lowest_mm;
+      refine(stump, face, times);
+      const auto axes = anatomical_axes(bones::BoneKind::Femur, bones::Side::Right,
+                                        femur_landmarks(Eigen::Matrix3d::Identity()), stump);
+      EXPECT_EQ(axes.origin == Origin::FromLandmarks, upright) << lowest_mm << ", " << times;
+    }
+  }
 }
 
 // The bone's own landmarks are followed wherever the patient lies.
