@@ -46,7 +46,9 @@ Stretch HalfPlane::stretch_at(double from, double to) const {
       inwards = cut;
     }
   }
-  const bool in_bone = outwards ? outwards->comes_out : !inwards || !inwards->comes_out;
+  // With nothing between them the side lies where the axis does, which is in bone from mouth to mouth.
+  const bool axis_in_bone = middle > 0 && middle < length_mm_;
+  const bool in_bone = outwards ? outwards->comes_out : inwards ? !inwards->comes_out : axis_in_bone;
   return {from, to, in_bone, in_bone ? outwards : inwards};
 }
 
