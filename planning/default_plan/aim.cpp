@@ -11,6 +11,7 @@
 #include "planning/geometry/rigid_transform.h"
 #include "planning/tunnels/knee_checks.h"
 #include "planning/tunnels/plan_norms.h"
+#include "planning/tunnels/portal.h"
 
 namespace arthronaut::default_plan {
 
@@ -19,8 +20,6 @@ namespace {
 using Eigen::Vector3d;
 using geometry::rad_from_deg;
 
-// Of the portal from the flexion axis, in the tibia's axes.
-constexpr double kPortalMedial_mm = 24, kPortalAnterior_mm = 35, kPortalDistal_mm = 15;
 constexpr double kLeastFacing = 0.25;  // of the exit's normal along where it should look
 // How far inside of its limit a number should stay: what is about as good is a mean of several directions,
 // and another scan shows all of them a little otherwise.
@@ -39,16 +38,14 @@ struct Candidate {
 std::vector<Candidate> through_portal(const tunnels::Tunnel& at, const Joint& joint, const Options& options) {
   std::vector<Candidate> candidates;
   const auto& axes = joint.axes;
+  const Vector3d usual = tunnels::anteromedial_portal(joint.hinge, axes).at_mm;  // of the extended knee
   for (const double more : {0.0, -5.0, 5.0, -10.0, 10.0, 15.0, -15.0}) {
+    const auto flexed = graft::femur_from_tibia(
+        joint.hinge, rad_from_deg(std::clamp(options.flexion_deg + more, 100.0, 130.0)));
     for (const double medial : {0.0, -5.0, 5.0, 8.0}) {
       for (const double distal : {0.0, -5.0, 5.0}) {
-        const double flexion = rad_from_deg(std::clamp(options.flexion_deg + more, 100.0, 130.0));
-        // The tibia's front turns to the femur's end, its long axis backwards.
-        const Vector3d front = std::cos(flexion) * axes.anterior - std::sin(flexion) * axes.proximal;
-        const Vector3d above = std::sin(flexion) * axes.anterior + std::cos(flexion) * axes.proximal;
-        const Vector3d portal = joint.center_mm - (kPortalMedial_mm + medial) * joint.scale * axes.lateral +
-                                joint.scale * kPortalAnterior_mm * front -
-                                (kPortalDistal_mm + distal) * joint.scale * above;
+        const Vector3d portal =
+            flexed * Vector3d(usual - joint.hinge.scale() * (medial * axes.lateral + distal * axes.proximal));
         candidates.push_back({(at.entry_mm - portal).normalized(),
                               std::abs(more) / 5 + std::abs(medial) / 5 + std::abs(distal) / 5});
       }

@@ -27,8 +27,6 @@ using norms::Bundle;
 using tunnels::Tunnel;
 using Outcome = DefaultTunnel::Outcome;
 
-constexpr double kUsualCondyles_mm = 48, kCondyleRadius_mm = 21;
-
 Bundle other_bundle(Bundle bundle) {
   return bundle == Bundle::Anteromedial ? Bundle::Posterolateral : Bundle::Anteromedial;
 }
@@ -49,16 +47,10 @@ std::optional<Joint> joint_of(const BoneInput& input, const Landmarks& marks, bo
   if (joint.axes.origin != landmarks::AnatomicalAxes::Origin::FromLandmarks) return std::nullopt;
   const bool is_femur = input.bone->kind == bones::BoneKind::Femur;
   if (!is_femur) return joint;
-  for (const std::string part : {"center", "posterior"}) {
-    const auto lateral = marks.find("lateral_condyle_" + part), medial = marks.find("medial_condyle_" + part);
-    if (lateral == marks.end() || medial == marks.end()) continue;
-    joint.center_mm = (lateral->second + medial->second) / 2;
-    joint.scale = (lateral->second - medial->second).norm() / kUsualCondyles_mm;
-    // The axis of flexion lies a condyle's radius in front of its hindmost point.
-    if (part == "posterior") joint.center_mm += kCondyleRadius_mm * joint.scale * joint.axes.anterior;
-    return joint;
-  }
-  return std::nullopt;
+  const auto hinge = graft::flexion_axis(marks, input.bone->mesh, joint.axes);
+  if (!hinge) return std::nullopt;
+  joint.hinge = *hinge;
+  return joint;
 }
 
 // A bundle's norm, its mean moved on the line through both bundles' means away from the other one, by a share
