@@ -19,6 +19,7 @@
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
 #include "planning/landmarks/grid_landmarks.h"
+#include "planning/landmarks/insertion_grids.h"
 #include "planning/landmarks/propose.h"
 #include "planning/plan_export/markups_file.h"
 #include "planning/plan_export/plan_export.h"
@@ -84,23 +85,22 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
   return tunnel;
 }
 
-// By norms and landmarks. Those that the case lacks are proposed, and become the case's: whoever reads it, as
-// a report, has the grid that was planned by. Throws InvalidInput where there is no default; `verdict` says
-// how far it may be relied on.
+// By norms and landmarks. Where those of the case give no grid, the proposed ones become the case's: whoever
+// reads it, as a report, has the grid that was planned by. Throws InvalidInput where there is no default;
+// `verdict` says how far it may be relied on.
 tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee, bones::BoneKind kind,
                                const geometry::Surface& surface, PlanVerdict& verdict) {
   const Progress progress("Making the default plan", 0);
   landmarks::Landmarks& marks = knee.landmarks[kind];
   landmarks::LandmarkStates& states = knee.landmark_states[kind];
-  default_plan::BoneInput input{
-      .bone = &knee.bones.at(kind), .surface = &surface, .landmarks = marks, .states = states};
+  const bones::Bone& bone = knee.bones.at(kind);
   landmarks::Proposal proposal;
   if (!landmarks::is_grid_confirmed(kind, marks, states)) {
-    proposal = landmarks::propose(input.bone->mesh, kind, {.side = knee.side});
-    input.proposal = &proposal;
-    for (const auto& [name, at_mm] : proposal.landmarks)
-      if (marks.try_emplace(name, at_mm).second) states[name] = landmarks::LandmarkState::Proposed;
+    proposal = landmarks::propose(bone.mesh, kind, {.side = knee.side});
+    if (!landmarks::has_grid(bone.mesh, kind, knee.side, marks)) take_proposal(proposal, marks, states);
   }
+  default_plan::BoneInput input{.bone = &bone, .surface = &surface, .landmarks = marks, .states = states};
+  if (proposal.outcome != landmarks::Proposal::Outcome::NotRun) input.proposal = &proposal;
   const norms::Bundle bundle = norms::bundle_from_text(arguments.type);
   input.beside = default_plan::beside({kind, bundle}, knee.plan.tunnels);
   const auto planned =

@@ -12,6 +12,7 @@
 #include "planning/geometry/error.h"
 #include "planning/landmarks/anatomical_axes.h"
 #include "planning/landmarks/grid_landmarks.h"
+#include "planning/landmarks/insertion_grids.h"
 #include "planning/norms/footprint.h"
 #include "planning/tunnels/diameter_range.h"
 #include "planning/tunnels/plan_norms.h"
@@ -298,8 +299,11 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
       made = landmarks::propose(input.bone->mesh, kind, {.side = side, .stop = options.stop});
       proposal = &made;
     }
-    // What is there was proposed as its owner wished (Blumensaat's line has two ways), and is what is shown.
-    marks.insert(proposal->landmarks.begin(), proposal->landmarks.end());
+    // A grid that is there was proposed as its owner wished (Blumensaat's line has two ways), and is what is
+    // shown and checked by: nothing of another proposal is mixed into it.
+    if (landmarks::LandmarkStates states = input.states;
+        !landmarks::has_grid(input.bone->mesh, kind, side, marks) || !joint_of(input, marks, side))
+      landmarks::take_proposal(*proposal, marks, states);
     std::string names;
     for (const std::string& name : landmarks::grid_landmarks(kind, marks)) {
       if (!is_confirmed(name)) names += (names.empty() ? "" : ", ") + name;

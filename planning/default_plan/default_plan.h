@@ -36,7 +36,8 @@ struct Options {
   void check() const;
 };
 
-// A bone as the caller has it at hand. `landmarks` and `states` as in the case; what they lack is proposed.
+// A bone as the caller has it at hand. `landmarks` and `states` as in the case; where they give no grid or no
+// axes, what is proposed takes the place of all of them that nobody confirmed (landmarks::take_proposal).
 struct BoneInput {
   const bones::Bone* bone = nullptr;
   const geometry::Surface* surface = nullptr;  // of that mesh

@@ -141,4 +141,10 @@ std::optional<TibialGrid> tibial_grid(const Landmarks& landmarks) {
   return grid;
 }
 
+bool has_grid(const geometry::TriangleMesh& mesh, bones::BoneKind bone, bones::Side side,
+              const Landmarks& landmarks) {
+  return bone == bones::BoneKind::Femur ? femoral_quadrant(mesh, landmarks, side).has_value()
+                                        : tibial_grid(landmarks).has_value();
+}
+
 }  // namespace arthronaut::landmarks

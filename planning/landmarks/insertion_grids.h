@@ -63,4 +63,9 @@ struct TibialGrid {
 // either by the patient's z. nullopt when one is missing or two opposite ones lie closer than 5 mm.
 [[nodiscard]] std::optional<TibialGrid> tibial_grid(const Landmarks& landmarks);
 
+// Whether the landmarks give the bone's grid: then nothing that is proposed is mixed in with them, since axes
+// and grids are never of two proposals (take_proposal).
+[[nodiscard]] bool has_grid(const geometry::TriangleMesh& mesh, bones::BoneKind bone, bones::Side side,
+                            const Landmarks& landmarks);
+
 }  // namespace arthronaut::landmarks

@@ -10,10 +10,7 @@ namespace arthronaut::plan_review {
 namespace {
 
 bool has_grid(const cases::Case& knee, bones::BoneKind kind) {
-  const landmarks::Landmarks& marks = knee.landmarks.at(kind);
-  return kind == bones::BoneKind::Femur
-             ? landmarks::femoral_quadrant(knee.bones.at(kind).mesh, marks, knee.side).has_value()
-             : landmarks::tibial_grid(marks).has_value();
+  return landmarks::has_grid(knee.bones.at(kind).mesh, kind, knee.side, knee.landmarks.at(kind));
 }
 
 }  // namespace

@@ -192,6 +192,34 @@ TEST(DefaultPlan, SaysThatNobodyHasConfirmedItsLandmarks) {
   }
 }
 
+// Landmarks that were proposed otherwise, as by an older version that proposed fewer, are planned by as they
+// are: they are what is shown and checked by. Where they give no grid all of them give way.
+TEST(DefaultPlan, IsNeverOfTwoProposals) {
+  const Knee& knee = knee_of(Side::Right);
+  landmarks::Proposal own = landmarks::propose(knee.made.femur.mesh, BoneKind::Femur, {.side = Side::Right});
+  ASSERT_TRUE(own.is_usable());
+  landmarks::Proposal other = own;
+  for (auto& [name, at_mm] : other.landmarks) at_mm += Vector3d(2, 0, 0);
+  other.landmarks.at("lateral_condyle_center") += Vector3d(0, 8, 0);
+  for (const char* name : {"lateral_condyle_center", "medial_condyle_center"}) own.landmarks.erase(name);
+  BoneInput input{.bone = &knee.made.femur, .surface = &knee.femur, .landmarks = {}, .states = {}};
+  landmarks::take_proposal(own, input.landmarks, input.states);
+  const auto expect_same = [](const DefaultTunnel& made, const DefaultTunnel& expected) {
+    ASSERT_TRUE(made.is_usable() && expected.is_usable());
+    EXPECT_LT((made.tunnel.entry_mm - expected.tunnel.entry_mm).norm(), 1e-9);
+    EXPECT_LT((made.tunnel.direction - expected.tunnel.direction).norm(), 1e-9);
+  };
+  BoneInput beside_other = input;
+  input.proposal = &own;
+  beside_other.proposal = &other;
+  expect_same(plan_bone(beside_other, Side::Right), plan_bone(input, Side::Right));
+
+  BoneInput without_grid = beside_other, none = beside_other;
+  without_grid.landmarks.erase("blumensaat_posterior");
+  none.landmarks.clear();
+  expect_same(plan_bone(without_grid, Side::Right), plan_bone(none, Side::Right));
+}
+
 // The extents of the quadrant, where they are known, are what depth and height of the entry follow from.
 TEST(DefaultPlan, DoubtsProposedExtentsOfTheQuadrant) {
   const Knee& knee = knee_of(Side::Right);
@@ -205,7 +233,7 @@ TEST(DefaultPlan, DoubtsProposedExtentsOfTheQuadrant) {
   femur.states["lateral_condyle_low"] = landmarks::LandmarkState::Proposed;
   const auto doubted = plan_bone(femur, Side::Right);
   ASSERT_FALSE(doubted.doubts.empty());
-  EXPECT_TRUE(doubted.doubts[0].ends_with(", lateral_condyle_low")) << doubted.doubts[0];
+  EXPECT_TRUE(doubted.doubts[0].ends_with(": lateral_condyle_low")) << doubted.doubts[0];
   EXPECT_EQ(doubted.doubts[0].find("lateral_condyle_deep"), std::string::npos) << "that one is confirmed";
 }
 
