@@ -100,9 +100,17 @@ struct Site {
   }
   // The plan's checks that this tunnel alone fails; not of its diameter, which was asked for.
   [[nodiscard]] std::vector<tunnels::PlanCheck> failed_by(const Tunnel& tunnel) const {
+    auto failed = all_failed_by(tunnel);
+    std::erase_if(failed, is_of_diameter);
+    return failed;
+  }
+  [[nodiscard]] bool fails_by_diameter(const Tunnel& tunnel) const {
+    return std::ranges::any_of(all_failed_by(tunnel), is_of_diameter);
+  }
+  static bool is_of_diameter(const tunnels::PlanCheck& check) { return check.name == "Diameter"; }
+  [[nodiscard]] std::vector<tunnels::PlanCheck> all_failed_by(const Tunnel& tunnel) const {
     auto checks = tunnels::check_plan(tunnel, tunnels::measure(tunnel, *input.surface), joint.surroundings);
-    std::erase_if(checks,
-                  [](const auto& check) { return !tunnels::is_failed(check) || check.name == "Diameter"; });
+    std::erase_if(checks, [](const auto& check) { return !tunnels::is_failed(check); });
     return checks;
   }
   // Infinite where one of them misses the bone.
@@ -264,8 +272,9 @@ void look_around(const Site& site, const Tunnel& at_norm, DefaultTunnel& result)
   const Vector3d way_mm = *result.passing_entry_mm - at_norm.entry_mm;
   result.place += files::format(
       "; with this aim a tunnel %.1f mm from that entry (%s), still within the norm's spread, passes every "
-      "check",
-      way_mm.norm(), way_in_words(way_mm, site.joint.axes).c_str());
+      "check%s",
+      way_mm.norm(), way_in_words(way_mm, site.joint.axes).c_str(),
+      site.fails_by_diameter(at_norm) ? " but that of its diameter, which was asked for" : "");
 }
 
 DefaultTunnel stopped() {

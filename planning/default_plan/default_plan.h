@@ -72,6 +72,7 @@ struct DefaultTunnel {
   std::string place;
   std::vector<std::string> doubts;  // why the plan is not reliable: proposed landmarks, doubts of the shape
   // The plan's checks of this tunnel alone (check_plan) that no direction passes which was tried from there.
+  // Not that of its diameter, which was asked for: the plan's own checks say that.
   std::vector<tunnels::PlanCheck> failed;
   // A tibia's single tunnel of which some fail: the entry nearest to the norm's place and within its spread
   // from which one of the same aim passes them all. `place` says where it lies. The surgeon may move there.

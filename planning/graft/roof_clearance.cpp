@@ -28,8 +28,7 @@ std::optional<RoofClearance> roof_clearance(const RoofQuery& query) {
   const double radius_mm = 0.5 * query.diameter_mm;
   RoofClearance clearance;
   clearance.outlet_mm = (outlet - opening).dot(forwards_of(up_tunnel)) - radius_mm;
-  // The opening's anterior border: where the tunnel's border meets the level of the plateau, across the
-  // tunnel.
+  // The tunnel's anterior border at its opening: straight across the tunnel, whatever slope the plateau has.
   const Vector2d border = opening + radius_mm * forwards_of(up_tunnel);
   clearance.opening_mm = (outlet - border).dot(forwards_of(up_roof));
   return clearance;

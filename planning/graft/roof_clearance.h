@@ -27,8 +27,10 @@ struct RoofClearance {
   // Across the tunnel, in the lateral view, from its anterior border to the roof's anterior end: negative
   // where the roof's outlet stands within the prolonged tunnel or behind it.
   double outlet_mm = 0;
-  // Across Blumensaat's line, from the anterior border of the opening to the line prolonged to the plateau:
-  // negative where a part of the opening lies in front of it.
+  // Across Blumensaat's line, from the tunnel's anterior border to the line prolonged to the plateau:
+  // negative where a part of the opening lies in front of it. The border is taken straight across the tunnel
+  // from the opening's middle; on a plateau that the tunnel meets at a slant the opening's own border lies on
+  // the same line along the tunnel, some mm further up or down.
   double opening_mm = 0;
 };
 // nullopt where Blumensaat's line is shorter than 5 mm in the lateral view, or the tunnel stands along the

@@ -152,6 +152,10 @@ TEST(DefaultPlan, SaysWhereWithinTheNormsSpreadATibiaPassesEveryCheck) {
     tunnels::Tunnel moved = made.tunnel;
     moved.entry_mm = *made.passing_entry_mm;
     EXPECT_GE(tunnels::measure(moved, surface).wall_mm, 1);  // what the tibia's check asks for
+    const auto narrow = plan_bone(input, Side::Right, {.diameter_mm = 7.8});
+    ASSERT_TRUE(narrow.passing_entry_mm) << narrow.place;
+    EXPECT_THAT(narrow.place, EndsWith("passes every check but that of its diameter, which was asked for"));
+    EXPECT_THAT(made.place, EndsWith("passes every check"));
   }
 }
 
