@@ -13,9 +13,9 @@
 //
 // Use it for CT. What it does not tell: a tunnel whose graft is as dense as the marrow and that has no denser
 // rim, or that lies in marrow of fat (not found); which of two tunnels is the planned one where one is
-// planned (the nearer, unreliable); a bore that is bent, or one of two diameters beyond the first of them. A
-// loose screw alone in a tunnel says nothing of the tunnel. Slices of 2 mm and more may be refused: they make
-// a bone look longer.
+// planned (the nearer, though the other may be seen better; unreliable); a bore that is bent, or one of two
+// diameters beyond the first of them. A loose screw alone in a tunnel says nothing of the tunnel. Slices of 2
+// mm and more may be refused: they make a bone look longer.
 //
 // Frames: everything is in the plan's LPS, mm, unless its name says otherwise. Angles in rad.
 #pragma once

@@ -257,6 +257,18 @@ bool is_same(const Candidate& a, const Candidate& b) {
   return (a.passage.entry_mm - b.passage.entry_mm).norm() < a.fit.radius_mm + b.fit.radius_mm;
 }
 
+// Of each bore the candidate without doubts, else the one that is seen best.
+std::vector<Candidate> distinct(std::vector<Candidate> candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.doubts.empty() != b.doubts.empty() ? a.doubts.empty() : a.merit() > b.merit();
+  });
+  std::vector<Candidate> bores;
+  for (Candidate& candidate : candidates)
+    if (std::none_of(bores.begin(), bores.end(), [&](const Candidate& b) { return is_same(candidate, b); }))
+      bores.push_back(std::move(candidate));
+  return bores;
+}
+
 DrilledTunnel told(const Candidate& candidate, const tunnels::Tunnel& plan) {
   DrilledTunnel drilled;
   drilled.is_found = true;
@@ -290,8 +302,6 @@ DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTr
   for (const Bore& bore : search_bores(finder.grid(), plan)) {
     if (auto candidate = finder.measured(bore)) candidates.push_back(std::move(*candidate));
   }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.merit() > b.merit(); });
   DrilledTunnel none;
   if (candidates.empty()) {
     none.reasons = {
@@ -301,29 +311,28 @@ DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTr
                       kSearched_mm, kSearched_deg)};
     return none;
   }
-  // Of several that stand, the one nearest to the plan; that there are others is told.
-  const Candidate* chosen = &candidates.front();
   const auto off_plan = [&](const Candidate& c) { return (c.passage.entry_mm - plan.entry_mm).norm(); };
-  const auto planned_nearer = [&](const Candidate& c) -> const tunnels::Tunnel* {
+  const auto planned_nearer = [&](const Vector3d& entry_mm) -> const tunnels::Tunnel* {
     for (const tunnels::Tunnel& other : others)
-      if ((c.passage.entry_mm - other.entry_mm).norm() < off_plan(c)) return &other;
+      if ((entry_mm - other.entry_mm).norm() < (entry_mm - plan.entry_mm).norm()) return &other;
     return nullptr;
   };
-  for (const Candidate& candidate : candidates) {
-    if (!candidate.doubts.empty()) continue;
-    if (is_same(candidate, *chosen) && chosen->doubts.empty()) continue;
-    if (!chosen->doubts.empty() || off_plan(candidate) < off_plan(*chosen)) chosen = &candidate;
-  }
-  DrilledTunnel drilled = told(*chosen, plan);
-  for (const Candidate& other : candidates) {
-    if (other.seen_share < kLeastSeen || is_same(other, *chosen)) continue;
-    if (planned_nearer(other) != nullptr) continue;  // that one was to be expected
-    drilled.reasons.push_back(files::format(
-        "another tunnel opens %.1f mm beside it: this one is the nearer to the plan, or the better seen",
-        (other.passage.entry_mm - chosen->passage.entry_mm).norm()));
+  // The one nearest to the plan, doubtful or not: a neighbour that is seen better is another tunnel. What
+  // lies nearer to the other planned one is that, as long as anything else is there.
+  const std::vector<Candidate> bores = distinct(std::move(candidates));
+  const Candidate& chosen = *std::min_element(bores.begin(), bores.end(), [&](const auto& a, const auto& b) {
+    return std::pair(planned_nearer(a.passage.entry_mm) != nullptr, off_plan(a)) <
+           std::pair(planned_nearer(b.passage.entry_mm) != nullptr, off_plan(b));
+  });
+  DrilledTunnel drilled = told(chosen, plan);
+  for (const Candidate& other : bores) {
+    if (other.seen_share < kLeastSeen || &other == &chosen) continue;
+    if (planned_nearer(other.passage.entry_mm) != nullptr) continue;  // that one was to be expected
+    drilled.reasons.push_back(files::format("another tunnel opens %.1f mm beside it, farther from the plan",
+                                            (other.passage.entry_mm - chosen.passage.entry_mm).norm()));
     break;
   }
-  if (const tunnels::Tunnel* nearer = planned_nearer(*chosen); nearer != nullptr)
+  if (const tunnels::Tunnel* nearer = planned_nearer(chosen.passage.entry_mm); nearer != nullptr)
     drilled.reasons.push_back("it lies nearer to the planned tunnel " + tunnels::name_of(nearer->key()) +
                               " than to this one: which of the two it is cannot be told");
   drilled.reliable = drilled.reasons.empty();

@@ -322,6 +322,29 @@ TEST_F(Achieved, OfTwoPlannedTunnelsEachIsFoundForItsOwn) {
   EXPECT_THAT(missing.reasons, Contains(HasSubstr("nearer to the planned tunnel femur AM")));
 }
 
+// Beside a tunnel that its screw fills the other bundle's is seen better: that one was told for both.
+TEST_F(Achieved, ATunnelSeenBetterIsNotTakenForTheNearerOne) {
+  Tunnel am = plan(BoneKind::Femur), pl = moved(BoneKind::Femur, {8, -8}, {4, 0});
+  am.bundle = norms::Bundle::Anteromedial;
+  pl.bundle = norms::Bundle::Posterolateral;
+  am.diameter_mm = pl.diameter_mm = 7;
+  Tunnel truth_am = moved(BoneKind::Femur, {0.8, 0.6}, {2, 1}),
+         truth_pl = moved(BoneKind::Femur, {8, -7}, {4, 1});
+  truth_am.diameter_mm = truth_pl.diameter_mm = 7;
+  const auto volume = ct(BoneKind::Femur,
+                         {{.tunnel = truth_am, .screw_diameter_mm = 7, .screw_from_mm = 0, .screw_to_mm = 60},
+                          {.tunnel = truth_pl}},
+                         test::half_fine());
+  const PostopImages images(volume);
+  for (const auto& others : {std::vector<Tunnel>{pl}, std::vector<Tunnel>{}}) {
+    SCOPED_TRACE(others.size());
+    const auto found = images.compare(mesh(BoneKind::Femur), am, others).tunnel;
+    ASSERT_TRUE(found.is_found);
+    EXPECT_LT((found.tunnel.entry_mm - truth_am.entry_mm).norm(), 1);
+    EXPECT_FALSE(found.reliable);
+  }
+}
+
 // A tunnel found in a bone that is another's: told, and not relied on.
 TEST_F(Achieved, ATunnelInAnotherPatientsBoneIsNotReliable) {
   const auto other = phantom::make_phantom_knee({.seed = 2, .edge_length_mm = 2});
