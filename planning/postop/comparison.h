@@ -12,10 +12,11 @@
 //      it. It ends where it comes out in the same way, or where the grey of its middle steps up.
 //
 // Use it for CT. What it does not tell: a tunnel whose graft is as dense as the marrow and that has no denser
-// rim, or that lies in marrow of fat (not found); which of two tunnels is the planned one where one is
-// planned (the nearer, though the other may be seen better; unreliable); a bore that is bent, or one of two
-// diameters beyond the first of them. A loose screw alone in a tunnel says nothing of the tunnel. Slices of 2
-// mm and more may be refused: they make a bone look longer.
+// rim, or that lies in marrow of fat (not found; what lies beside it is unreliable then, where the missing
+// cortex of the hidden one's mouth is seen, or it is more than 12 mm off); which of two tunnels is the
+// planned one where one is planned (the nearer, though the other may be seen better; unreliable); a bore that
+// is bent, or one of two diameters beyond the first of them. A loose screw alone in a tunnel says nothing of
+// the tunnel. Slices of 2 mm and more may be refused: they make a bone look longer.
 //
 // Frames: everything is in the plan's LPS, mm, unless its name says otherwise. Angles in rad.
 #pragma once

@@ -295,6 +295,32 @@ TEST_F(Achieved, ASecondTunnelIsTold) {
   EXPECT_THAT(found.reasons, Contains(HasSubstr("another tunnel opens")));
 }
 
+// A graft nearly as dense as the marrow hides the new tunnel, and the old one beside it is seen: it was told
+// as the planned one, reliably.
+TEST_F(Achieved, AnOldTunnelIsNotReliableWhereTheNewOneIsHidden) {
+  for (const Eigen::Vector2d& beside_mm : {Eigen::Vector2d(8, -8), Eigen::Vector2d(6, -6)}) {
+    SCOPED_TRACE(beside_mm.x());
+    const Tunnel tunnel = moved(BoneKind::Femur, {0.8, 0.6}, {2, 1}),
+                 old = moved(BoneKind::Femur, beside_mm + Eigen::Vector2d(0.8, 0.6), {6, 1});
+    const auto found = compared(BoneKind::Femur,
+                                ct(BoneKind::Femur, {{.tunnel = tunnel, .content_hu = 190}, {.tunnel = old}},
+                                   test::half_fine()))
+                           .tunnel;
+    expect_near(found, old);
+    EXPECT_FALSE(found.reliable);
+    EXPECT_THAT(found.reasons, Contains(HasSubstr("of an operation before")));
+  }
+}
+
+// Farther from the plan than drilling errs: it is seldom the planned one, though nothing else is seen.
+TEST_F(Achieved, ATunnelFarFromThePlanMayBeAnotherOne) {
+  const Tunnel far = moved(BoneKind::Femur, {11, -11}, {4, 0});
+  const auto found =
+      compared(BoneKind::Femur, ct(BoneKind::Femur, {{.tunnel = far}}, test::half_fine())).tunnel;
+  EXPECT_FALSE(found.reliable);
+  EXPECT_THAT(found.reasons, Contains(HasSubstr("farther than drilling errs")));
+}
+
 // Two planned, two drilled: each is found for its own plan, and the other one is no doubt. One drilled: it is
 // not told for both.
 TEST_F(Achieved, OfTwoPlannedTunnelsEachIsFoundForItsOwn) {
