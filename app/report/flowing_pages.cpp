@@ -7,6 +7,7 @@ namespace arthronaut::report {
 namespace {
 
 constexpr TextStyle kTitle{.size_pt = 16, .bold = true, .ink = kAccent};
+constexpr double kTopMm = 28, kAboveMm = 4;  // of a page; above a sentence
 constexpr TextStyle kFoot{.size_pt = 7.5, .bold = false, .ink = kGray};
 
 }  // namespace
@@ -25,7 +26,7 @@ void FlowingPages::begin_page(const std::string& title) {
       " \u00B7 page " + std::to_string(page_) + " \u00B7 research software, not a medical device";
   pdf_.text(left_mm(), line_mm + 4,
             pdf_.cut_to(foot_, kWidthMm - pdf_.text_width_mm(number, kFoot), kFoot) + number, kFoot);
-  y_mm_ = 28;
+  y_mm_ = kTopMm;
 }
 
 void FlowingPages::need(double height_mm) {
@@ -43,22 +44,37 @@ void FlowingPages::heading(const std::string& text, double with_mm) {
 }
 
 void FlowingPages::sentence(const std::string& text, const TextStyle& style) {
-  need(4 + pdf_.paragraph_height_mm(kWidthMm, text, style));
-  y_mm_ = pdf_.paragraph(left_mm(), y_mm_ + 4, kWidthMm, text, style) - 3;
+  const double line_mm = PdfDocument::line_height_mm(style);
+  const auto lines = pdf_.lines_of(text, kWidthMm, style);
+  const double height_mm = kAboveMm + line_mm * static_cast<double>(lines.size());
+  if (height_mm <= bottom_mm() - kTopMm) need(height_mm);
+  y_mm_ += kAboveMm;
+  for (const std::string& line : lines) {
+    need(line_mm);
+    if (!line.empty()) pdf_.text(left_mm(), y_mm_, line, style);
+    y_mm_ += line_mm;
+  }
+  y_mm_ -= kAboveMm - 1;
 }
 
-void FlowingPages::table(const std::vector<double>& widths_mm,
-                         const std::vector<std::vector<std::string>>& rows) {
+void FlowingPages::table(const std::vector<double>& widths_mm, std::vector<std::vector<std::string>> rows) {
+  const double heading_mm = pdf_.row_height_mm(widths_mm, rows.front(), true);
   std::size_t done = 0;
   while (done < rows.size()) {
     std::vector<std::vector<std::string>> part{rows.front()};
-    double height_mm = pdf_.row_height_mm(widths_mm, rows.front(), true);
-    done = std::max<std::size_t>(done, 1);
-    const std::size_t first = done;
-    for (; done < rows.size(); ++done) {
-      height_mm += pdf_.row_height_mm(widths_mm, rows[done], false);
-      if (y_mm_ + height_mm > bottom_mm() && (done > first || y_mm_ > 40)) break;
-      part.push_back(rows[done]);
+    double height_mm = heading_mm;
+    for (done = std::max<std::size_t>(done, 1); done < rows.size(); ++done) {
+      const double row_mm = pdf_.row_height_mm(widths_mm, rows[done], false);
+      if (y_mm_ + height_mm + row_mm <= bottom_mm()) {
+        height_mm += row_mm;
+        part.push_back(rows[done]);
+        continue;
+      }
+      if (kTopMm + heading_mm + row_mm > bottom_mm())
+        if (auto begun = pdf_.take_lines(widths_mm, rows[done], bottom_mm() - y_mm_ - height_mm);
+            !begun.empty())
+          part.push_back(std::move(begun));
+      break;
     }
     if (part.size() > 1 || rows.size() == 1) y_mm_ = pdf_.table(left_mm(), y_mm_, widths_mm, part);
     if (done < rows.size()) need(bottom_mm());

@@ -23,9 +23,10 @@ class FlowingPages {
   void need(double height_mm);
   void continue_as(const std::string& title) { next_title_ = title; }
   void heading(const std::string& text, double with_mm = 20);  // stays with so much of what follows it
+  // What is higher than a page goes on on the next one, here and in a row of a table.
   void sentence(const std::string& text, const TextStyle& style = {});
   // The first row is the heading and stands above every page's part.
-  void table(const std::vector<double>& widths_mm, const std::vector<std::vector<std::string>>& rows);
+  void table(const std::vector<double>& widths_mm, std::vector<std::vector<std::string>> rows);
   void skip(double height_mm) { y_mm_ += height_mm; }
 
   [[nodiscard]] PdfDocument& pdf() { return pdf_; }

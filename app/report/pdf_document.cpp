@@ -3,6 +3,7 @@
 #include <hpdf.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "app/report/pdf_text_map.h"
@@ -75,8 +76,6 @@ namespace {
 
 HPDF_REAL points(double mm) { return static_cast<HPDF_REAL>(mm * kPointsPerMm); }
 
-double line_height_mm(const TextStyle& style) { return 1.35 * style.size_pt / kPointsPerMm; }
-
 // Where the letter after the one at `at` begins, in UTF-8.
 std::size_t next_letter(const std::string& text, std::size_t at) {
   do ++at;
@@ -84,10 +83,16 @@ std::size_t next_letter(const std::string& text, std::size_t at) {
   return at;
 }
 
-constexpr double kCellPadMm = 1.5;
+constexpr double kCellPadMm = 1.5, kRowGap = 0.35;  // the gap in lines
 
 TextStyle cell_style(bool is_heading) {
   return {.size_pt = 8.8, .bold = is_heading, .ink = is_heading ? kAccent : kBlack};
+}
+
+std::string joined(std::span<const std::string> lines) {
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : " ") + line;
+  return text;
 }
 
 }  // namespace
@@ -119,7 +124,10 @@ double PdfDocument::text_width_mm(std::string_view text, const TextStyle& style)
   return HPDF_Page_TextWidth(pdf_->page, std::string(text).c_str()) / kPointsPerMm;
 }
 
-std::vector<std::string> PdfDocument::broken(std::string_view text, double width_mm, const TextStyle& style) {
+double PdfDocument::line_height_mm(const TextStyle& style) { return 1.35 * style.size_pt / kPointsPerMm; }
+
+std::vector<std::string> PdfDocument::lines_of(std::string_view text, double width_mm,
+                                               const TextStyle& style) {
   std::vector<std::string> lines;
   std::string line;
   const auto fits = [&](const std::string& words) { return text_width_mm(words, style) <= width_mm; };
@@ -148,7 +156,7 @@ std::vector<std::string> PdfDocument::broken(std::string_view text, double width
 
 double PdfDocument::paragraph(double x_mm, double y_mm, double width_mm, std::string_view text,
                               const TextStyle& style) {
-  for (const std::string& line : broken(text, width_mm, style)) {
+  for (const std::string& line : lines_of(text, width_mm, style)) {
     if (!line.empty()) this->text(x_mm, y_mm, line, style);
     y_mm += line_height_mm(style);
   }
@@ -156,7 +164,7 @@ double PdfDocument::paragraph(double x_mm, double y_mm, double width_mm, std::st
 }
 
 double PdfDocument::paragraph_height_mm(double width_mm, std::string_view text, const TextStyle& style) {
-  return static_cast<double>(broken(text, width_mm, style).size()) * line_height_mm(style);
+  return static_cast<double>(lines_of(text, width_mm, style).size()) * line_height_mm(style);
 }
 
 std::string PdfDocument::cut_to(std::string_view text, double width_mm, const TextStyle& style) {
@@ -209,7 +217,23 @@ double PdfDocument::row_height_mm(const std::vector<double>& widths_mm, const st
   double height_mm = line_height_mm(style);
   for (std::size_t c = 0; c < cells.size() && c < widths_mm.size(); ++c)
     height_mm = std::max(height_mm, paragraph_height_mm(widths_mm[c] - 2 * kCellPadMm, cells[c], style));
-  return height_mm + 0.35 * line_height_mm(style);
+  return height_mm + kRowGap * line_height_mm(style);
+}
+
+std::vector<std::string> PdfDocument::take_lines(const std::vector<double>& widths_mm,
+                                                 std::vector<std::string>& cells, double height_mm) {
+  const TextStyle style = cell_style(false);
+  const double room = height_mm / line_height_mm(style) - kRowGap;
+  if (!(room >= 1)) return {};
+  std::vector<std::string> taken(cells.size());
+  for (std::size_t c = 0; c < cells.size() && c < widths_mm.size(); ++c) {
+    const std::vector<std::string> lines = lines_of(cells[c], widths_mm[c] - 2 * kCellPadMm, style);
+    const std::span<const std::string> all(lines);
+    const std::size_t count = std::min(lines.size(), static_cast<std::size_t>(room));
+    taken[c] = joined(all.first(count));
+    cells[c] = joined(all.subspan(count));
+  }
+  return taken;
 }
 
 double PdfDocument::table(double x_mm, double y_mm, const std::vector<double>& widths_mm,

@@ -45,6 +45,10 @@ class PdfDocument {
   [[nodiscard]] double text_width_mm(std::string_view text, const TextStyle& style = {});
   [[nodiscard]] double paragraph_height_mm(double width_mm, std::string_view text,
                                            const TextStyle& style = {});
+  // The lines that paragraph() breaks it into. Joined by spaces they are broken in the same places.
+  [[nodiscard]] std::vector<std::string> lines_of(std::string_view text, double width_mm,
+                                                  const TextStyle& style = {});
+  [[nodiscard]] static double line_height_mm(const TextStyle& style);
   // The text, or as much of its beginning as is no wider, and an ellipsis.
   [[nodiscard]] std::string cut_to(std::string_view text, double width_mm, const TextStyle& style = {});
   void line(double x0_mm, double y0_mm, double x1_mm, double y1_mm, double width_mm = 0.2,
@@ -59,6 +63,10 @@ class PdfDocument {
                const std::vector<std::vector<std::string>>& rows);
   [[nodiscard]] double row_height_mm(const std::vector<double>& widths_mm,
                                      const std::vector<std::string>& cells, bool is_heading);
+  // Takes the beginning off a row, as many lines of each cell as make it no higher than this; empty, and the
+  // row as it was, where there is not room for one line.
+  [[nodiscard]] std::vector<std::string> take_lines(const std::vector<double>& widths_mm,
+                                                    std::vector<std::string>& cells, double height_mm);
 
   // Atomic. Throws IoError.
   void save(const std::filesystem::path& file);
@@ -66,9 +74,6 @@ class PdfDocument {
   [[nodiscard]] std::string bytes();
 
  private:
-  [[nodiscard]] std::vector<std::string> broken(std::string_view text, double width_mm,
-                                                const TextStyle& style);
-
   struct Pdf;
   std::unique_ptr<Pdf> pdf_;
 };

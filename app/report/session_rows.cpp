@@ -67,11 +67,33 @@ std::optional<registration::RegistrationSummary> registration_that_counts(
   return session.registration_of(of_file);
 }
 
+namespace {
+
+// Each text once, in the order of the first of its kind: an alarm comes and goes many times.
+std::string alarms_in_words(const recording::RecordedSession& session) {
+  std::vector<std::pair<std::string, int>> alarms;
+  for (const recording::SessionEvent& event : session.events()) {
+    if (event.kind != recording::kAlarmEvent && event.kind != recording::kVoidEvent) continue;
+    const std::string text = event.text.empty() ? "over" : event.text;
+    const auto told = std::ranges::find(alarms, text, &std::pair<std::string, int>::first);
+    if (told == alarms.end())
+      alarms.emplace_back(text, 1);
+    else
+      ++told->second;
+  }
+  std::string words;
+  for (const auto& [text, count] : alarms)
+    words += (words.empty() ? "" : "; ") + text + (count > 1 ? files::format(" (%d times)", count) : "");
+  return words.empty() ? "none" : words;
+}
+
+}  // namespace
+
 std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session,
                                                   const std::string& cut_short) {
   bool is_verified = false, is_lost = false, was_verified = false, was_skipped = false, is_confirmed = false;
   recording::CountingRegistration registration;
-  std::string alarms, guide;
+  std::string guide;
   for (const recording::SessionEvent& event : session.events()) {
     const bool ends = event.kind == recording::kRegistrationEvent ||
                       event.kind == recording::kGivenRegistrationEvent ||
@@ -83,8 +105,6 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
     was_skipped = was_skipped || event.kind == recording::kVerificationSkippedEvent;
     is_confirmed = is_confirmed || event.kind == recording::kTimeOutConfirmedEvent;
     if (event.kind == recording::kGuideCheckedEvent) guide = event.text;
-    if (event.kind == recording::kAlarmEvent || event.kind == recording::kVoidEvent)
-      alarms += (alarms.empty() ? "" : "; ") + (event.text.empty() ? "over" : event.text);
   }
   is_verified = registration.counts().was_verified;
   const std::string verified =
@@ -102,7 +122,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
                        : kind.empty() ? "not recorded"
                                       : "not asked: no live source"},
           {"Check of a nominal guide", guide.empty() ? "none in this session" : guide},
-          {"Alarms, void registrations", alarms.empty() ? "none" : alarms}};
+          {"Alarms, void registrations", alarms_in_words(session)}};
 }
 
 SessionFigures figures_of(const recording::RecordedSession& session) {

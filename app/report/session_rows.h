@@ -25,7 +25,8 @@ namespace arthronaut::report {
 // A registration of it by its event.
 [[nodiscard]] recording::ReadRegistration registrations_of(const recording::RecordedSession& session);
 // What was asked before the guide was followed, and what spoke against it, as the session's events say it: a
-// name and a text each. cut_short: why the record is not whole; empty: it is.
+// name and a text each; alarms alike once, with how many there were. cut_short: why the record is not whole;
+// empty: it is.
 [[nodiscard]] std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session,
                                                                 const std::string& cut_short);
 

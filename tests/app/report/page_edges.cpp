@@ -56,6 +56,7 @@ std::vector<Page> pages_of(const std::filesystem::path& pdf) {
       continue;
     Page& last = pages.back();
     ++last.words;
+    last.above_bottom_mm.push_back(kMm_per_pt * (last.height_pt - y1));
     const double distance_mm = kMm_per_pt * std::min({x0, y0, last.width_pt - x1, last.height_pt - y1});
     if (distance_mm < last.least_distance_mm) {
       last.least_distance_mm = distance_mm;

@@ -14,7 +14,8 @@ struct Page {
   // The least distance of a word from an edge, negative beyond it, and the word that has it.
   double least_distance_mm = std::numeric_limits<double>::infinity();
   std::string outermost;
-  bool has_empty_edge = false;  // 5 mm from each edge, and beyond, no line, picture or letter
+  std::vector<double> above_bottom_mm = {};  // of each word's lower side
+  bool has_empty_edge = false;               // 5 mm from each edge, and beyond, no line, picture or letter
 
   [[nodiscard]] bool words_lie_within(double margin_mm) const { return least_distance_mm >= margin_mm; }
 };

@@ -58,6 +58,22 @@ TEST(SessionRows, ATunnelIsToldOfByTheRegistrationThatItWasDrilledBy) {
   EXPECT_EQ(steps.back().words, "nothing is registered any more");
 }
 
+// An alarm that comes and goes filled a page with the same words.
+TEST(SessionRows, AlarmsAlikeAreToldOnceWithTheirNumber) {
+  const test::TemporaryFolder folder;
+  {
+    recording::SessionRecorder recorder(folder.path(), {}, options());
+    for (std::int64_t i = 0; i < 3; ++i) {
+      recorder.add_event({2 * i, std::string(recording::kAlarmEvent), "the control point has moved", -1});
+      recorder.add_event({2 * i + 1, std::string(recording::kAlarmEvent), "", -1});
+    }
+    recorder.add_event({7, std::string(recording::kVoidEvent), "another camera", -1});
+    recorder.finish();
+  }
+  EXPECT_EQ(safety_rows(recording::RecordedSession(folder.path()), "").back().at(1),
+            "the control point has moved (3 times); over (3 times); another camera");
+}
+
 // Hazard 27: that nothing stood since the markers looked as in another medium is told of the session
 // afterwards.
 TEST(SessionRows, Hazard27AMediumThatWasContradictedIsToldOf) {
