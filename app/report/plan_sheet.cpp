@@ -43,8 +43,24 @@ struct PlanePicture {
     return {x_mm + (pixel.x() + 0.5) * width_mm / size_px.x(),
             y_mm + (pixel.y() + 0.5) * height_mm / size_px.y()};
   }
-  [[nodiscard]] bool holds(const Eigen::Vector2d& p) const {
-    return p.x() >= x_mm && p.x() <= x_mm + width_mm && p.y() >= y_mm && p.y() <= y_mm + height_mm;
+  // What of a line on the page lies in the picture (Liang and Barsky 1984, ACM Trans. Graphics 3, 1);
+  // nullopt: nothing.
+  [[nodiscard]] std::optional<std::pair<Eigen::Vector2d, Eigen::Vector2d>> within(
+      const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
+    const Eigen::Vector2d least(x_mm, y_mm), most(x_mm + width_mm, y_mm + height_mm), way = to - from;
+    double enters = 0, leaves = 1;
+    for (int axis = 0; axis < 2; ++axis) {
+      if (way[axis] == 0) {
+        if (from[axis] < least[axis] || from[axis] > most[axis]) return std::nullopt;
+        continue;
+      }
+      const auto [first, last] =
+          std::minmax({(least[axis] - from[axis]) / way[axis], (most[axis] - from[axis]) / way[axis]});
+      enters = std::max(enters, first);
+      leaves = std::min(leaves, last);
+    }
+    if (!(enters < leaves)) return std::nullopt;
+    return std::pair{Eigen::Vector2d(from + enters * way), Eigen::Vector2d(from + leaves * way)};
   }
 };
 
@@ -68,7 +84,7 @@ class Sheet {
   // Where it ends, whether it is drawn or not.
   double checks(BoneKind kind, double x_mm, double y_mm, double width_mm, double size_pt, bool is_drawn);
   void put_grey(const PlanePicture& picture, const std::vector<std::uint8_t>& grey);
-  // Where both ends lie in the picture.
+  // As far as it lies in the picture.
   void line(const PlanePicture& picture, const Vector3d& from, const Vector3d& to, double width_mm,
             const Ink& ink);
   // Every tunnel of the bone.
@@ -116,8 +132,9 @@ void Sheet::put_grey(const PlanePicture& picture, const std::vector<std::uint8_t
 
 void Sheet::line(const PlanePicture& picture, const Vector3d& from, const Vector3d& to, double width_mm,
                  const Ink& ink) {
-  const Eigen::Vector2d a = picture.on_page(from), b = picture.on_page(to);
-  if (picture.holds(a) && picture.holds(b)) pdf_.line(a.x(), a.y(), b.x(), b.y(), width_mm, ink);
+  const auto seen = picture.within(picture.on_page(from), picture.on_page(to));
+  if (!seen) return;
+  pdf_.line(seen->first.x(), seen->first.y(), seen->second.x(), seen->second.y(), width_mm, ink);
 }
 
 double Sheet::lateral(double x_mm, double y_mm, double width_mm) {
