@@ -77,8 +77,10 @@ class Sheet {
   void draw();
 
  private:
+  // The heights of the two pictures above the slices, with their captions; of the lateral one also without
+  // its bone.
   double lateral(double x_mm, double y_mm, double width_mm);
-  void plateau(double x_mm, double y_mm, double width_mm);
+  double plateau(double x_mm, double y_mm, double width_mm);
   void slices(double y_mm);
   void slice(const PlanePicture& picture, BoneKind kind, const std::optional<images::Volume>& volume);
   // Where it ends, whether it is drawn or not.
@@ -168,13 +170,11 @@ double Sheet::lateral(double x_mm, double y_mm, double width_mm) {
                                percent.deep_shallow, percent.high_low);
     }
   }
-  return picture.height_mm +
-         pdf_.paragraph(x_mm, y_mm + picture.height_mm + 3.5, width_mm, caption, kCaption) -
-         (y_mm + picture.height_mm);
+  return pdf_.paragraph(x_mm, y_mm + picture.height_mm + 3.5, width_mm, caption, kCaption) - y_mm;
 }
 
-void Sheet::plateau(double x_mm, double y_mm, double width_mm) {
-  if (!review_.has_bone(BoneKind::Tibia)) return;
+double Sheet::plateau(double x_mm, double y_mm, double width_mm) {
+  if (!review_.has_bone(BoneKind::Tibia)) return 0;
   scene::PictureRequest request;
   request.knee = &knee_;
   request.view = scene::ViewDirection::Plateau;
@@ -190,7 +190,7 @@ void Sheet::plateau(double x_mm, double y_mm, double width_mm) {
     caption += files::format(". Entry at %.1f %% from anterior, %.1f %% from medial",
                              percent.anterior_posterior, percent.medial_lateral);
   }
-  pdf_.paragraph(x_mm, y_mm + height + 3.5, width_mm, caption, kCaption);
+  return pdf_.paragraph(x_mm, y_mm + height + 3.5, width_mm, caption, kCaption) - y_mm;
 }
 
 // A tunnel's two sides, its mouth and its end, as they lie in the picture's plane; thin what is not the
@@ -298,8 +298,8 @@ double Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm, d
 void Sheet::draw() {
   const double half_mm = (frame_.width_mm - 6) / 2, right_mm = frame_.left_mm + half_mm + 6;
   double y_mm = frame_.top_mm;
-  plateau(right_mm, y_mm, half_mm);
-  y_mm += lateral(frame_.left_mm, y_mm, half_mm) + 3;
+  const double plateau_mm = plateau(right_mm, y_mm, half_mm);
+  y_mm += std::max(lateral(frame_.left_mm, y_mm, half_mm), plateau_mm) + 3;
   slices(y_mm);
   y_mm += (frame_.width_mm - 9) / 4 + 11;
   constexpr double kLeast_pt = 5;

@@ -90,5 +90,19 @@ TEST_F(PlanSheet, ATunnelLongerThanItsSliceIsDrawnToTheBorder) {
   for (const cv::Point2d& place : places) EXPECT_GT(plan_height_mm(place), 31);
 }
 
+// The caption of the plateau lay under the slices where no lateral view with a longer one stands beside it.
+TEST_F(PlanSheet, SlicesBeginBelowThePlateausCaption) {
+  std::erase_if(knee_.bones, [](const auto& bone) { return bone.first == bones::BoneKind::Femur; });
+  std::erase_if(knee_.plan.tunnels,
+                [](const auto& tunnel) { return tunnel.first == bones::BoneKind::Femur; });
+  std::filesystem::remove_all(knee_folder());
+  write_sheet();
+  const auto places = slices("tibia,");
+  ASSERT_EQ(places.size(), 2U);
+  const auto last = std::ranges::find(words_, "medial", &Word::text);
+  ASSERT_NE(last, words_.end());
+  EXPECT_LT(last->bottom_mm, places.front().y);
+}
+
 }  // namespace
 }  // namespace arthronaut::report
