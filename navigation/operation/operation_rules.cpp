@@ -277,7 +277,9 @@ void Operation::Parts::apply(const OfferPlan& offer) {
   offered.reset();
   resumed_plan_waits = false;
   if (offer.plan == plan) return;
-  if (has_source)
+  // An operation that was gone on with is under way before its next source begins, too.
+  resumed_plan_waits = !has_source && resumed != nullptr;
+  if (has_source || resumed_plan_waits)
     offered = offer;
   else
     set_plan(offer.plan, offer.moves_target);

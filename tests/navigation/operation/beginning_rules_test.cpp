@@ -245,6 +245,9 @@ TEST(Resumed, TheCasesPlanWaitsWhenItIsAnotherOneByNow) {
   resume.plan->tunnel.entry_mm.x() += 1;
   run.apply(resume);
   EXPECT_EQ(run.state()->plan, resume.plan);
+  // Told once more, as when a landmark of it was confirmed meanwhile: nobody has taken it over by that.
+  run.apply(OfferPlan{test::phantom_plan()});
+  EXPECT_EQ(run.state()->plan, resume.plan);
   run.start(source);
   EXPECT_EQ(run.state()->plan, resume.plan);
   EXPECT_TRUE(run.state()->plan_was_edited);
