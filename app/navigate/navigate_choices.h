@@ -16,6 +16,9 @@
 
 namespace arthronaut::navigate {
 
+// What is asked on a card of its own, in the place of the numbers.
+enum class Question { None, Resume, TimeOut, Finish };
+
 struct NavigateChoices {
   bones::BoneKind bone = bones::BoneKind::Femur;
   bool saline = true;                         // of the next video or camera
@@ -39,6 +42,7 @@ struct NavigateChoices {
   std::optional<operation::Step> looked_at;  // the surgeon went back to it; empty: the one of now
   std::string next;                          // what is asked of the surgeon now
   double next_since_s = 0;                   // and since when
+  Question asked = Question::None;           // on a card that stands on the screen
   SteadyWords missing;                       // what that waits for
   std::size_t offered_tunnel = 0;   // of two that nobody has chosen from: the one that a press would choose
   bool goes_to_other_bone = false;  // once the source has ended
@@ -59,6 +63,10 @@ struct NavigateChoices {
     std::erase_if(drilled, is_of_it);
     std::erase_if(measured, is_of_it);
     std::erase_if(verified, [&](const auto& one) { return one.first == kind && one.second.bone == bone; });
+  }
+  // A question begins to be read when its card is there, not while the menu lies over it.
+  void note_asked(Question question, double now_s) {
+    if (std::exchange(asked, question) != question && question != Question::None) next_since_s = now_s;
   }
   void note_next(const std::string& words, double now_s) {
     if (words == next) return;

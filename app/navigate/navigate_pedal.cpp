@@ -155,6 +155,11 @@ void NavigateView::take_next_step() {
     return;
   }
   if (resume_.is_looking()) return;
+  // What nobody has seen nobody answers: the menu lies over its card.
+  if (choices_.shows_menu && question() != Question::None) {
+    choices_.shows_menu = false;
+    return;
+  }
   if (left_behind() != nullptr) return resume();
   if (!lent_step().empty()) return;
   if (choices_.looked_at) {
@@ -223,6 +228,7 @@ void NavigateView::find_anew() {
 bool NavigateView::pedal_acts() {
   if (model_ == nullptr || resume_.is_looking() || choices_.goes_to_other_bone) return false;
   if (cameras_.is_open()) return cameras_.chosen().has_value();
+  if (choices_.shows_menu && question() != Question::None) return true;  // it shows the question
   if (left_behind() != nullptr) return true;
   if (!lent_step().empty()) return false;
   if (choices_.looked_at) return !stays_there() && repeat_of(*choices_.looked_at) != Repeat::NothingNow;

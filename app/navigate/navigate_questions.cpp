@@ -25,27 +25,42 @@ std::string NavigateView::notice() const {
   return is_read_there ? "" : notice_;
 }
 
+Question NavigateView::question() {
+  if (cameras_.is_open()) return Question::None;
+  if (left_behind() != nullptr) return Question::Resume;
+  const operation::OperationState& state = *live_->operation;
+  if (state.has_source && !is_of_source_before(*live_) && state.time_out == operation::TimeOut::Due &&
+      state.next_action == operation::NextAction::ConfirmTimeOut && !choices_.looked_at && !finishes() &&
+      !waits_for_take_over())
+    return Question::TimeOut;
+  const bool looks_at_finish =
+      choices_.looked_at.value_or(operation::Step::Finish) == operation::Step::Finish;
+  return finishes() && looks_at_finish && !depth_.is_open() ? Question::Finish : Question::None;
+}
+
 bool NavigateView::draw_questions(const widgets::Ui& ui, const TheatreLayout& layout) {
   const widgets::Rect& area = layout.block;
   // What is read out has the states' line, too: until it is confirmed nothing guides by them.
   const widgets::Rect sheet{area.x, area.y, area.width, layout.states.y + layout.states.height - area.y};
-  const operation::OperationState& state = *live_->operation;
-  bool asks = true;
-  if (const LeftBehind* const left = left_behind(); left != nullptr && !cameras_.is_open()) {
-    // With the tunnel that was guided to: resuming it is to choose it.
-    const auto& was = left->found.operation.plan;
-    const auto plan = was ? bones_.planned(was->tunnel.key()) : bones_.plan_of(choices_.bone);
-    draw_card(ui, area, resume_card(*left, plan, std::chrono::system_clock::now()));
-  } else if (state.has_source && !is_of_source_before(*live_) && state.time_out == operation::TimeOut::Due &&
-             state.next_action == operation::NextAction::ConfirmTimeOut && !choices_.looked_at &&
-             !finishes() && !waits_for_take_over() && !cameras_.is_open()) {
-    draw_card(ui, sheet, time_out_card(state, patient_));
-  } else if (finishes() && choices_.looked_at.value_or(operation::Step::Finish) == operation::Step::Finish &&
-             !cameras_.is_open() && !depth_.is_open()) {
-    draw_card(ui, area, {"navigate.finish", "Finish", finish_list(finished_bones()).lines, ""});
-  } else {
-    asks = cameras_.is_open() || depth_.is_open();
+  switch (choices_.asked) {
+    case Question::None:
+      break;
+    case Question::Resume: {
+      // With the tunnel that was guided to: resuming it is to choose it.
+      const LeftBehind& left = *left_behind();
+      const auto& was = left.found.operation.plan;
+      const auto plan = was ? bones_.planned(was->tunnel.key()) : bones_.plan_of(choices_.bone);
+      draw_card(ui, area, resume_card(left, plan, std::chrono::system_clock::now()));
+      break;
+    }
+    case Question::TimeOut:
+      draw_card(ui, sheet, time_out_card(*live_->operation, patient_));
+      break;
+    case Question::Finish:
+      draw_card(ui, area, {"navigate.finish", "Finish", finish_list(finished_bones()).lines, ""});
+      break;
   }
+  const bool asks = choices_.asked != Question::None || cameras_.is_open() || depth_.is_open();
   if (const auto pictures = cameras_.draw(ui, area)) start_live(*pictures);
   if (const auto depth_mm = depth_.draw(ui, area)) ask(operation::ReadDepthStop{*depth_mm});
   return asks;

@@ -368,6 +368,7 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_rail(ui, layout.rail, screen);
   draw_words(ui, layout.words, screen);
   draw_states(ui, layout.states, screen);
+  choices_.note_asked(choices_.shows_menu ? Question::None : question(), now);
   const bool is_covered = choices_.shows_menu || draw_questions(ui, layout);
   if (choices_.shows_menu) draw_menu(ui, layout.block, screen);
   // Where nothing is registered there is nobody to coach.

@@ -87,6 +87,7 @@ class NavigateView : public mode::Mode {
   // One pedal: carries out what is a command, and starts nothing but the kind of source that was chosen.
   void take_next_step();
   [[nodiscard]] bool was_read();
+  [[nodiscard]] Question question();  // due now, shown or not
   // What the operation asks for, or pictures where it cannot be done without.
   [[nodiscard]] operation::NextAction action_now() const;
   void finish_step(FinishAction action);

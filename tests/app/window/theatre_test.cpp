@@ -148,6 +148,14 @@ TEST_F(Theatre, AStreamIsNamedInTheWindowAndIsLive) {
     EXPECT_EQ(app.state("pedal"), "waits");
     app.press("space");
     EXPECT_FALSE(app.wait_for_state("time_out", "confirmed", 0.5));
+    // Nor does one that was given while the menu lay over the sheet, however long: it shows the sheet.
+    app.press("Return");
+    ASSERT_TRUE(app.wait_for_state("menu", "open"));
+    EXPECT_FALSE(app.wait_for_state("menu", "closed", 2.5));
+    app.press("space");
+    EXPECT_TRUE(app.wait_for_state("menu", "closed"));
+    EXPECT_EQ(app.state("time_out"), "due");
+    ASSERT_TRUE(app.wait_for_state("pedal", "waits", 2));
     ASSERT_TRUE(app.wait_for_state("pedal", "acts", 20));
     app.press("space");
     EXPECT_TRUE(app.wait_for_state("time_out", "confirmed"));
