@@ -72,8 +72,15 @@ void FluidStation::keep_verdict() {
                   daily.text};
 }
 
+void FluidStation::show() {
+  // What was found through the camera before says nothing of the one of now.
+  if (run_ != nullptr && camera_sha256_ != open_case::camera_fingerprint(case_folder_)) stop();
+  read_standing();
+}
+
 void FluidStation::start(const FeedSource& source) {
   stop();
+  camera_sha256_ = open_case::camera_fingerprint(case_folder_);
   run_ = std::make_unique<Run>(
       source,
       [source, folder = case_folder_, index = refractive_index_] {

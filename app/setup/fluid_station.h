@@ -18,7 +18,7 @@ class FluidStation : public Station {
       : wake_(std::move(wake)), ending_(ending) {}
 
   void open(const std::filesystem::path& case_folder) override;
-  void show() override { read_standing(); }
+  void show() override;
   void start(const FeedSource& source) override;
   void stop() override;
   void release_source() override;
@@ -44,11 +44,12 @@ class FluidStation : public Station {
   sources::BackgroundEnd& ending_;
   double refractive_index_ = 1;
   std::unique_ptr<Run> run_;
-  FluidRunStatus status_;  // of this frame
-  FluidDisplay display_;   // of this frame
-  std::string standing_;   // the same in a sentence
-  Row checked_;            // what the case's last verdict says of this medium
-  Row daily_check_;        // what became of the day's check of accuracy; no name: nothing yet
+  std::string camera_sha256_;  // of the camera.json when the run began
+  FluidRunStatus status_;      // of this frame
+  FluidDisplay display_;       // of this frame
+  std::string standing_;       // the same in a sentence
+  Row checked_;                // what the case's last verdict says of this medium
+  Row daily_check_;            // what became of the day's check of accuracy; no name: nothing yet
   std::shared_ptr<const calibration::FluidCheckSummary> kept_;  // that was looked at last
   widgets::VideoTexture picture_;
 };

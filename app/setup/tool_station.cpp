@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/case/case_calibration.h"
+#include "app/case/case_fluid.h"
 #include "navigation/camera/medium.h"
 #include "planning/cases/case.h"
 #include "planning/files/utc_clock.h"
@@ -66,8 +67,17 @@ void ToolStation::read_adopted() {
 
 ToolChoice ToolStation::choice() const { return choices_.empty() ? ToolChoice{"probe"} : choices_[chosen_]; }
 
+bool ToolStation::is_of_camera_before() const {
+  return run_ != nullptr && camera_sha256_ != open_case::camera_fingerprint(case_folder_);
+}
+
+void ToolStation::show() {
+  if (is_of_camera_before()) stop();
+}
+
 void ToolStation::start(const FeedSource& source) {
   stop();
+  camera_sha256_ = open_case::camera_fingerprint(case_folder_);
   // Real pictures that a simulated camera measures give nothing real.
   finds_simulated_ = source.is_simulated || !open_case::has_real_camera(case_folder_);
   kept_because_ = open_case::tools_are_kept(finds_simulated_, case_folder_);
@@ -105,6 +115,11 @@ bool ToolStation::is_busy() const {
 
 void ToolStation::adopt() {
   const std::shared_ptr<const ToolResult> result = status_.job.result;
+  if (is_of_camera_before()) {
+    adopted_ = {widgets::Severity::Bad, "Tools",
+                "not saved: camera.json is another one by now; start again (R) and measure through it"};
+    return;
+  }
   try {  // a disk that is full, a file that somebody broke: states of the screen
     const std::filesystem::path file = cases::tools_file(case_folder_);
     const tools::ToolSet known =
@@ -185,6 +200,7 @@ void ToolStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_band(ui, verdict, display_.verdict.headline.empty() ? none : display_.verdict);
   draw_rows(ui, "setup.numbers", right, name_of(choice()), display_.numbers);
   ui.log.note_state("setup_tool", name_of(choice()));
+  ui.log.note_state("setup_adopted", adopted_.text);
   ui.log.note_state("setup_band", run_ != nullptr ? display_.band.headline : "no source");
   ui.log.note_state("setup_verdict", display_.verdict.headline);
 }

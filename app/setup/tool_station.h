@@ -18,6 +18,7 @@ class ToolStation : public Station {
       : wake_(std::move(wake)), ending_(ending) {}
 
   void open(const std::filesystem::path& case_folder) override;
+  void show() override;
   void start(const FeedSource& source) override;
   void stop() override;
   void release_source() override;
@@ -35,6 +36,7 @@ class ToolStation : public Station {
 
   void read_adopted();
   void adopt();
+  [[nodiscard]] bool is_of_camera_before() const;
   [[nodiscard]] ToolChoice choice() const;
   void draw_picture_with_markers(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_motion(const widgets::Ui& ui, const widgets::Rect& area);
@@ -52,6 +54,8 @@ class ToolStation : public Station {
   Row adopted_;
   bool finds_simulated_ = false;  // what this run finds is of the simulator
   std::string kept_because_;      // see open_case::tools_are_kept()
+  // Of the camera.json that this run measures through: through another one its result is another.
+  std::string camera_sha256_;
   widgets::VideoTexture picture_;
 };
 

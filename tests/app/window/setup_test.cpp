@@ -8,6 +8,7 @@
 #include "navigation/camera/camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "navigation/tools/tool_set.h"
+#include "planning/files/atomic_file.h"
 #include "tests/app/window/display.h"
 #include "tests/temporary_folder.h"
 
@@ -57,6 +58,15 @@ TEST(SettingUp, LeadsToAnAdoptedCameraAndTip) {
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("setup_verdict", "Fit for guidance", 240)) << app.state("setup_band");
   ASSERT_TRUE(app.wait_for_widget("setup.motion"));
+  // Through another camera another tip would have been found.
+  const std::string measured_through = files::read_text(folder / "camera.json");
+  files::write_atomically(folder / "camera.json", measured_through + "\n");
+  app.press("space");
+  EXPECT_TRUE(becomes(
+      [&] { return app.state("setup_adopted").starts_with("not saved: camera.json is another"); }, 20))
+      << app.state("setup_adopted");
+  EXPECT_FALSE(std::filesystem::exists(folder / "tools.json"));
+  files::write_atomically(folder / "camera.json", measured_through);
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("setup_verdict", "Adopted"));
   const tools::ToolSet adopted = tools::read_tools_file(folder / "tools.json");
