@@ -306,8 +306,8 @@ void navigate(Context& context, const NavigateArguments& arguments,
   session.keep();  // whole, whatever cannot be written beside it
   say_navigation(context, summary);
   context.say("session: " + session.folder().string());
-  camera.write(context);
-  tools.write(context);
+  adopt(context, {camera, options.source.camera_is_simulated},
+        {tools, has_simulated(options.source.pipeline.tools)}, arguments.case_folder);
   if (!arguments.cartilage.mesh.empty()) cases::save_cartilage(arguments.case_folder, kind, *cartilage);
   std::vector<std::string> reasons = std::move(doubts);
   reasons.insert(reasons.end(), summary.reasons.begin(), summary.reasons.end());

@@ -89,6 +89,15 @@ TEST_F(VideoCommands, Hazard26TheSimulatorsCameraIsSaidAndNotReliableLive) {
       navigate("gst:videotestsrc is-live=true ! video/x-raw,width=640,height=480,framerate=30/1 ! appsink");
   EXPECT_EQ(live.exit_code, 4) << live.errors;
   EXPECT_THAT(live.errors, HasSubstr("calibrated on the simulator, and live pictures are of another"));
+  // A real scope's calibration, once the case has it, is not replaced by the simulator's.
+  test::write_file(folder_ / "camera.json", test::clip_camera_json());
+  EXPECT_THAT(navigate(folder_ / "clip.mkv").errors, Not(HasSubstr("of the simulated arthroscope")));
+  const std::string real = files::read_text(knee + "/camera.json");
+  EXPECT_EQ(real, test::clip_camera_json());
+  test::write_file(folder_ / "camera.json", camera);
+  const auto simulated = navigate(folder_ / "clip.mkv");
+  EXPECT_THAT(simulated.output + simulated.errors, HasSubstr("camera.json stays as it is"));
+  EXPECT_EQ(files::read_text(knee + "/camera.json"), real);
 }
 
 // A dump holds of every frame a picture and what was seen in it; in the first one, where both markers had to

@@ -9,7 +9,7 @@
 #include "navigation/simulator/simulated_operation.h"
 #include "navigation/tools/tool_set.h"
 #include "planning/files/atomic_file.h"
-#include "tests/app/window/display.h"
+#include "tests/app/window/theatre.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::test {
