@@ -90,12 +90,15 @@ std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction ac
 
 namespace {
 constexpr const char* kLooksOtherwise = "bone looks otherwise: ";
-}
+constexpr const char* kWasOutOfSight = "marker was out of sight: ";
+}  // namespace
 
 std::string words_of_verifying(const operation::OperationState& state) {
-  if (state.control_point_due == operation::ControlPointDue::CannotCheckLooks)
-    return kLooksOtherwise + ("touch places that you know, " + std::to_string(state.places_in_doubt)) +
-           " to go";
+  if (asks_for_places(state.control_point_due)) {
+    const bool looks = state.control_point_due == operation::ControlPointDue::CannotCheckLooks;
+    return (looks ? kLooksOtherwise : kWasOutOfSight) +
+           ("touch places that you know, " + std::to_string(state.places_in_doubt)) + " to go";
+  }
   const std::string words = words_of(NextAction::VerifyByTouch);
   const int missing = state.registration->touches.places_to_verify();
   const bool counts = state.verification != operation::Verification::ByTouches && missing > 0;
@@ -114,7 +117,7 @@ std::string words_of_checking(const operation::OperationState& state) {
     case ControlPointDue::CheckBeforeDrilling:
       return "before drilling: " + words;
     case ControlPointDue::CheckAfterLoss:
-      return "marker was out of sight: " + words;
+      return kWasOutOfSight + words;
     case ControlPointDue::CheckLooks:
       return kLooksOtherwise + words;
     case ControlPointDue::CheckShift:
@@ -122,6 +125,7 @@ std::string words_of_checking(const operation::OperationState& state) {
     case ControlPointDue::None:
     case ControlPointDue::Set:
     case ControlPointDue::CannotCheckLooks:
+    case ControlPointDue::CannotCheckLoss:
       return words;
   }
   return words;

@@ -1,7 +1,5 @@
 #include "navigation/operation/bone_watch.h"
 
-#include <algorithm>
-
 namespace arthronaut::operation {
 
 BoneWatch::BoneWatch(const geometry::Surface* surface) {
@@ -19,7 +17,7 @@ void BoneWatch::on_source_end() {
   if (check_) check_->end();
   drift_.reset();
   looks_.reset();
-  is_in_doubt_ = false;
+  doubt_.end();
 }
 
 void BoneWatch::on_registration(const RegistrationInForce& in_force) {
@@ -31,18 +29,13 @@ void BoneWatch::on_registration(const RegistrationInForce& in_force) {
   if (stands && marker_from_bone_ && is_there(in_force.registration->marker_from_bone)) return;
   marker_from_bone_.reset();
   if (stands) marker_from_bone_ = in_force.registration->marker_from_bone;
-  is_in_doubt_ = false;
+  doubt_.end();
   begins_anew_ = true;
-}
-
-void BoneWatch::on_touches(const Touches& touches) {
-  if (!touches.has_control_point()) doubt_has_control_point_ = false;
-  touches_before_doubt_ = std::min(touches_before_doubt_, touches.count());
 }
 
 void BoneWatch::look_anew() {
   looks_.reset();
-  is_in_doubt_ = false;
+  doubt_.end();
   begins_anew_ = true;
 }
 
@@ -81,7 +74,7 @@ void BoneWatch::look(const camera::Frame& picture, const pipeline::FrameResult& 
   if (verdict.state == contour::ContourState::Drifted) drift_ = {verdict.drift_mm, verdict.held_until_ns};
   // Where nothing is checked, a doubt stays.
   const bool looks_otherwise = verdict.state == contour::ContourState::LooksOtherwise;
-  if ((looks_otherwise || verdict.state == contour::ContourState::Holds) && looks_otherwise != is_in_doubt_)
+  if ((looks_otherwise || verdict.state == contour::ContourState::Holds) && looks_otherwise != doubt_.holds())
     looks_ = {looks_otherwise, verdict.held_until_ns};
 }
 
@@ -91,17 +84,7 @@ void BoneWatch::tell(const SeenDrift& drift) {
 
 std::optional<SeenLooks> BoneWatch::take_looks() {
   auto looks = std::exchange(looks_, std::nullopt);
-  return looks && looks->otherwise != is_in_doubt_ ? looks : std::nullopt;
-}
-
-void BoneWatch::doubt(bool is_in_doubt, bool has_control_point, std::size_t touch_count) {
-  is_in_doubt_ = is_in_doubt;
-  doubt_has_control_point_ = has_control_point;
-  touches_before_doubt_ = touch_count;
-}
-
-std::optional<std::size_t> BoneWatch::touches_before_doubt() const {
-  return is_in_doubt_ && !doubt_has_control_point_ ? std::optional(touches_before_doubt_) : std::nullopt;
+  return looks && looks->otherwise != doubt_.holds() ? looks : std::nullopt;
 }
 
 contour::ContourVerdict BoneWatch::verdict() const {

@@ -17,6 +17,7 @@
 
 #include "navigation/contour/contour_check.h"
 #include "navigation/contour/covered.h"
+#include "navigation/operation/place_doubt.h"
 #include "navigation/operation/registration_ledger.h"
 #include "navigation/operation/seen_drift.h"
 #include "navigation/pipeline/navigation_pipeline.h"
@@ -34,9 +35,7 @@ class BoneWatch {
   // After whatever may have changed it. One that has the bone elsewhere, or does not stand, ends a doubt; and
   // the next one that stands is watched anew.
   void on_registration(const RegistrationInForce& in_force);
-  // After whatever may have changed them. A control point that is gone can't end a doubt: one that is set
-  // anew was set in doubt.
-  void on_touches(const Touches& touches);
+  void on_touches(const Touches& touches) { doubt_.on_touches(touches); }
   // The probe, or the surgeon, has said that the bone lies where it lay: what it looks like now is how it
   // looks.
   void look_anew();
@@ -54,13 +53,12 @@ class BoneWatch {
   // One that changes nothing is none.
   [[nodiscard]] std::optional<SeenLooks> take_looks();
   // has_control_point: one was set while the bone was seen to lie where it lay.
-  void doubt(bool is_in_doubt, bool has_control_point, std::size_t touch_count);
+  void begin_doubt(bool has_control_point, std::size_t touch_count) {
+    doubt_.begin(has_control_point, touch_count);
+  }
+  void end_doubt() { doubt_.end(); }
 
-  [[nodiscard]] bool is_in_doubt() const { return is_in_doubt_; }
-  // In doubt, and a control point that was set before can end it.
-  [[nodiscard]] bool control_point_ends_doubt() const { return is_in_doubt_ && doubt_has_control_point_; }
-  // In doubt that no control point can end: so many touches there were when it began; empty: not so.
-  [[nodiscard]] std::optional<std::size_t> touches_before_doubt() const;
+  [[nodiscard]] const PlaceDoubt& doubt() const { return doubt_; }
   [[nodiscard]] contour::ContourVerdict verdict() const;
 
  private:
@@ -71,8 +69,7 @@ class BoneWatch {
   std::vector<std::uint8_t> luma_;  // of pictures that have none of their own
   std::optional<SeenDrift> drift_;  // told, and not in force yet
   std::optional<SeenLooks> looks_;
-  bool is_in_doubt_ = false, doubt_has_control_point_ = false;
-  std::size_t touches_before_doubt_ = 0;
+  PlaceDoubt doubt_;
 };
 
 }  // namespace arthronaut::operation

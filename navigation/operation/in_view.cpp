@@ -16,19 +16,14 @@ constexpr std::int64_t kStillThere_ns = 500'000'000;
 
 }  // namespace
 
-void InView::on_source(bool may_have_moved) {
-  const bool was_lost = was_lost_for_long_ || may_have_moved;
-  *this = InView();
-  was_lost_for_long_ = was_lost;
-}
-
-bool InView::add(std::int64_t now_ns, bool world_is_seen, bool guide_is_seen) {
-  bool is_new = guide_is_seen && !guide_was_seen_;
+InView::News InView::add(std::int64_t now_ns, bool world_is_seen, bool guide_is_seen) {
+  News news;
+  news.guide_is_new = guide_is_seen && !guide_was_seen_;
   guide_was_seen_ = guide_was_seen_ || guide_is_seen;
-  if (!world_is_seen) return is_new;
-  if (world_ns_ && now_ns - *world_ns_ > kLongLoss_ns) was_lost_for_long_ = is_new = true;
+  if (!world_is_seen) return news;
+  news.marker_is_back = world_ns_ && now_ns - *world_ns_ > kLongLoss_ns;
   world_ns_ = now_ns;
-  return is_new;
+  return news;
 }
 
 bool InView::control_point_is_old(std::int64_t now_ns) const {

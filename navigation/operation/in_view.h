@@ -1,6 +1,6 @@
 // What was in view, and when: the world marker, the guide, the control point under the probe, and the last
 // picture that guided. All times are of the frames of one source, ns; with another source, whose clock is
-// another one, they are gone. What is left of the source before is that nobody saw the marker in between.
+// another one, they are gone.
 //
 // Thread-free, deterministic; allocates nothing.
 #pragma once
@@ -13,26 +13,23 @@ namespace arthronaut::operation {
 
 class InView {
  public:
-  // Pictures of another source. may_have_moved: pictures of this operation were seen before, and a hand may
-  // have hit the marker since: that is a long loss.
-  void on_source(bool may_have_moved);
+  // Pictures of another source.
+  void on_source() { *this = InView(); }
   // Another registration: nothing was guided by it yet.
   void on_registration() { guided_ns_.reset(); }
 
-  // Every frame, in order of time. True when something is new that is told: the marker was lost for long, or
-  // the guide is seen for the first time.
-  bool add(std::int64_t now_ns, bool world_is_seen, bool guide_is_seen);
+  struct News {
+    bool marker_is_back = false;  // it was out of sight for so long that a hand may have hit it
+    bool guide_is_new = false;    // it is seen for the first time
+  };
+  // Every frame, in order of time.
+  News add(std::int64_t now_ns, bool world_is_seen, bool guide_is_seen);
   void guided(std::int64_t now_ns) { guided_ns_ = now_ns; }
   // Touched for the first time: it knows where the bone lies from now on.
   void control_point_set(std::int64_t now_ns) { control_set_ns_ = now_ns; }
   // Touched, and where it was: the marker sits where it sat.
-  void control_point_held(std::int64_t now_ns) {
-    control_held_ns_ = now_ns;
-    was_lost_for_long_ = false;
-  }
+  void control_point_held(std::int64_t now_ns) { control_held_ns_ = now_ns; }
 
-  // Until the control point is found where it was.
-  [[nodiscard]] bool marker_was_lost_for_long() const { return was_lost_for_long_; }
   // The guide was seen, and the control point so long ago that it is to be touched again before drilling.
   [[nodiscard]] bool control_point_is_old(std::int64_t now_ns) const;
   // One that is there was set in this source later than that, or in one before it.
@@ -49,7 +46,7 @@ class InView {
   std::int64_t control_held_ns_ = 0;  // a source's first frame, where it was not touched in it
   // Of a source before this one: before all of its frames.
   std::int64_t control_set_ns_ = std::numeric_limits<std::int64_t>::min();
-  bool was_lost_for_long_ = false, guide_was_seen_ = false;
+  bool guide_was_seen_ = false;
 };
 
 }  // namespace arthronaut::operation

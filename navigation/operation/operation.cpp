@@ -43,9 +43,7 @@ void Operation::start_source(const SourceSetup& source) {
   // First what may throw: then nothing has changed.
   auto pipeline = std::make_unique<pipeline::NavigationPipeline>(source.pipeline);
   const registration::Provenance now = provenance_of(p.setup, source, p.ledger.now().placement);
-  // Nobody saw the marker between two sources, however long that was.
   const bool is_first = p.source == nullptr && p.resumed == nullptr;
-  const bool may_have_moved = !is_first && source.kind == sources::SourceKind::Live;
   p.pipeline = std::move(pipeline);
   p.source = std::make_shared<const SourceSetup>(source);
   p.has_source = true;
@@ -57,7 +55,7 @@ void Operation::start_source(const SourceSetup& source) {
   p.tip.clear();
   p.drilling.on_source(p.plan);
   p.touch.refusal = TouchRefusal::None;
-  p.in_view.on_source(may_have_moved);
+  p.in_view.on_source();
   p.grades.on_other_numbers();
   p.marker_is_out = false;
   p.pipeline->set_bone(p.setup.surface);
@@ -75,6 +73,9 @@ void Operation::start_source(const SourceSetup& source) {
     p.set_aside_count += p.strokes.points().size();
     p.clear_strokes();
   }
+  p.look_for_end_of_loss();  // another world takes with it what rested on the marker
+  // Nobody saw the marker between two sources, however long that was.
+  if (!is_first && source.kind == sources::SourceKind::Live) p.marker_may_have_moved();
   p.hand_registration();
   if (p.ledger.in_force().registration != nullptr) p.note_in_force(true);
   p.followed.change = p.ledger.change_count();
@@ -122,6 +123,7 @@ void Operation::apply(const Command& command) {
   std::visit([&](const auto& c) { p.apply(c); }, command);
   if (!p.ledger.touches().has_control_point()) p.guide_check.forget_point();
   p.bone_watch.on_touches(p.ledger.touches());
+  p.look_for_end_of_loss();
   p.follow_ledger();
 }
 

@@ -5,11 +5,15 @@
 // it sits. It ends with that, in the class that holds it and by a member that says so (on_source(),
 // on_plan(), ...). The whole of it, which what_ends_test.cpp walks over; x: it ends.
 //
-//   S  a source begins, of the same camera, tools, medium and kind    C  strokes are cleared, without an
-//   alarm O  the same of something else: another medium                     M  the marker is placed anew E
-//   the source ends                                                W  a picture is through the wrong medium
-//   P  another plan is taken over                                     L  the marker was out of sight for
-//   long: R  another registration comes into force                             the scope went to another port
+//   S  a source begins: live, of the same camera, tools and medium as the one before
+//   O  the same, of something else: another medium
+//   E  the source ends
+//   P  another plan is taken over
+//   R  another registration comes into force
+//   C  strokes are cleared, without an alarm
+//   M  the marker is placed anew
+//   W  a picture is through the wrong medium
+//   L  the marker was out of sight for long: the scope went to another port
 //
 //   what                              | S O E P R C M W L
 //   numbers of the newest picture     | x x x x x . x x x
@@ -20,6 +24,7 @@
 //   the word that it is drilled       | x x . x . . x . .
 //   a registration that stands        | . x . . . . x . .
 //   that touches verified it          | . x . . . x x . .
+//   the same, without a control point | x x . . . x x . x
 //   touches                           | . . . . . x x . .
 //   the control point                 | . . . . . x x . .
 //   that the bone looks otherwise     | x x x . x . x . .
@@ -31,6 +36,8 @@
 //   why no touch was taken            | x x . . . . . . .
 //   that the probe draws              | x . x . . . . . .
 //
+// Without a control point nothing of before can tell whether a marker that nobody saw sits where it sat; with
+// one, it is to be touched (place_doubt.h).
 // The probe draws again by itself where the source that begins says so and no registration stands. Another
 // registration is verified at once where the touches lie on the bone by it, too.
 // The word that the marker is out stands without a registration: it ends with S, O and M, where a live source
@@ -53,6 +60,7 @@
 #include "navigation/operation/in_view.h"
 #include "navigation/operation/medium_watch.h"
 #include "navigation/operation/operation.h"
+#include "navigation/operation/place_doubt.h"
 #include "navigation/operation/stroke_bias.h"
 #include "navigation/operation/stroke_fit.h"
 #include "navigation/worker/recycler.h"
@@ -110,6 +118,10 @@ struct Operation::Parts {
   [[nodiscard]] ControlPointDue control_point_due() const;
   [[nodiscard]] bool guided_lately() const { return has_source && in_view.guided_lately(frame.timestamp_ns); }
   [[nodiscard]] int places_in_doubt() const;
+  // Whether anything is known that is wrong where the marker sits elsewhere by now.
+  [[nodiscard]] bool rests_on_marker() const;
+  void marker_may_have_moved();
+  void look_for_end_of_loss();
   [[nodiscard]] Verification verification() const;
   [[nodiscard]] TimeOut time_out() const { return confirmed.standing(source.get(), ledger.now(), plan); }
   [[nodiscard]] bool is_live() const { return has_source && source->kind == sources::SourceKind::Live; }
@@ -203,6 +215,7 @@ struct Operation::Parts {
   } touch;
   GuideCheck guide_check;
   InView in_view;
+  PlaceDoubt loss;  // the marker was out of sight for long, or between two live sources
   HeldGrades grades;
   MediumWatch medium;
   BoneWatch bone_watch;

@@ -187,7 +187,13 @@ void Operation::Parts::end_frame() {
 }
 
 void Operation::Parts::watch_guidance() {
-  if (in_view.add(frame.timestamp_ns, frame.world_is_seen(), guide_in_view().has_value())) changed = true;
+  const InView::News news =
+      in_view.add(frame.timestamp_ns, frame.world_is_seen(), guide_in_view().has_value());
+  if (news.guide_is_new) changed = true;
+  if (news.marker_is_back) {
+    marker_may_have_moved();
+    follow_ledger();
+  }
   if (marker_is_out && is_live() && frame.world_is_seen()) {
     marker_is_out = false;
     note(JournalKind::Note, "the world marker is seen again: it is not out");
@@ -197,6 +203,28 @@ void Operation::Parts::watch_guidance() {
   if (!frame.guidance.is_valid()) return;
   in_view.guided(frame.timestamp_ns);
   if (verification() == Verification::NotYet) skip_verification("guidance began without one");
+}
+
+bool Operation::Parts::rests_on_marker() const {
+  const RegistrationInForce& in_force = ledger.in_force();
+  const bool is_void_for_good = in_force.standing == Standing::Void && !in_force.can_be_confirmed;
+  return (in_force.standing != Standing::None && !is_void_for_good) || !strokes.points().empty() ||
+         ledger.touches().count() > 0 || ledger.touches().has_control_point();
+}
+
+// Nobody saw it meanwhile, and a hand may have hit it.
+void Operation::Parts::marker_may_have_moved() {
+  if (!rests_on_marker()) return;
+  changed = true;
+  loss.begin(ledger.touches().has_control_point(), ledger.touches().count());
+  if (!loss.control_point_ends()) ledger.verify_anew();
+}
+
+// By nothing that rests on the marker any more, or by as many places as verify.
+void Operation::Parts::look_for_end_of_loss() {
+  loss.on_touches(ledger.touches());
+  if (!rests_on_marker() || (!loss.control_point_ends() && loss.places_to_touch(ledger.touches()) == 0))
+    loss.end();
 }
 
 void Operation::Parts::skip_verification(const std::string& how) {
@@ -259,7 +287,8 @@ void Operation::Parts::take_touch(bool is_control_point) {
   // What asked for it asks on: whether the marker has moved is not answered.
   if (ledger.touches().control_point_lies_off()) return;
   in_view.control_point_held(frame.timestamp_ns);
-  if (is_set && bone_watch.control_point_ends_doubt()) bone_watch.look_anew();  // it lies where it lay
+  if (loss.control_point_ends()) loss.end();
+  if (bone_watch.doubt().control_point_ends()) bone_watch.look_anew();
 }
 
 // In a recording and in a simulation no hand takes out what their pictures show.
@@ -293,12 +322,9 @@ void Operation::Parts::apply(const GiveRegistration& give) {
               std::make_shared<const registration::RegistrationSummary>(give.registration), of);
 }
 
-// No control point can end such a doubt. Touches end it neither: a bone that went along its surface is
-// touched all the same. So they are asked for, shown, and then the operation goes on in doubt, as it is said
-// to be.
 int Operation::Parts::places_in_doubt() const {
-  const auto before = bone_watch.touches_before_doubt();
-  return before ? std::max(setup.limits.touches_to_verify - ledger.touches().places_since(*before), 0) : 0;
+  const Touches& touches = ledger.touches();
+  return std::max(bone_watch.doubt().places_to_touch(touches), loss.places_to_touch(touches));
 }
 
 // It is told a second or more after the bone has moved. A control point that was set meanwhile says that the
@@ -306,10 +332,12 @@ int Operation::Parts::places_in_doubt() const {
 void Operation::Parts::take_drift() {
   if (const auto looks = bone_watch.take_looks(); looks && ledger.in_force().standing == Standing::Stands) {
     note(JournalKind::BoneLooks, to_text(*looks));
-    bone_watch.doubt(
-        looks->otherwise,
-        ledger.touches().has_control_point() && in_view.control_point_was_set_before(looks->held_until_ns),
-        ledger.touches().count());
+    const bool was_set_before =
+        ledger.touches().has_control_point() && in_view.control_point_was_set_before(looks->held_until_ns);
+    if (looks->otherwise)
+      bone_watch.begin_doubt(was_set_before, ledger.touches().count());
+    else
+      bone_watch.end_doubt();
   }
   const auto drift = bone_watch.take_drift();
   if (!drift || ledger.in_force().standing != Standing::Stands) return;
@@ -321,10 +349,11 @@ void Operation::Parts::take_drift() {
 ControlPointDue Operation::Parts::control_point_due() const {
   if (!has_source || ledger.in_force().standing != Standing::Stands) return ControlPointDue::None;
   if (ledger.touches().control_point_lies_off()) return ControlPointDue::CheckShift;
-  if (bone_watch.control_point_ends_doubt()) return ControlPointDue::CheckLooks;
-  if (places_in_doubt() > 0) return ControlPointDue::CannotCheckLooks;
+  if (bone_watch.doubt().control_point_ends()) return ControlPointDue::CheckLooks;
+  if (bone_watch.doubt().places_to_touch(ledger.touches()) > 0) return ControlPointDue::CannotCheckLooks;
+  if (loss.control_point_ends()) return ControlPointDue::CheckAfterLoss;
+  if (loss.places_to_touch(ledger.touches()) > 0) return ControlPointDue::CannotCheckLoss;
   if (!ledger.touches().has_control_point()) return ControlPointDue::Set;
-  if (in_view.marker_was_lost_for_long()) return ControlPointDue::CheckAfterLoss;
   return in_view.control_point_is_old(frame.timestamp_ns) ? ControlPointDue::CheckBeforeDrilling
                                                           : ControlPointDue::None;
 }

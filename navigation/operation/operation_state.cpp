@@ -206,7 +206,7 @@ NextAction next_action_of(const OperationState& state) {
     if (registration.touches.places_to_verify() > 0) return NextAction::VerifyByTouch;
     return action_of_denied(state);
   }
-  if (state.control_point_due == ControlPointDue::CannotCheckLooks) return NextAction::VerifyByTouch;
+  if (asks_for_places(state.control_point_due)) return NextAction::VerifyByTouch;
   // Not asked of a hand that drills or has drilled: a control point that is set then tells nothing of before.
   if (state.control_point_due == ControlPointDue::Set && !guides && !state.drilled.has_evidence)
     return NextAction::SetControlPoint;

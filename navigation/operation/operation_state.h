@@ -86,6 +86,8 @@ enum class ControlPointDue {
   // Asked for until as many places were touched as verify; what they say is the surgeon's to judge.
   CannotCheckLooks,
   CheckShift,  // touched again it lay elsewhere: once more tells a bumped marker from a probe that slipped
+  // The marker was lost for long, and no control point was set before: asked for likewise.
+  CannotCheckLoss,
 };
 
 // The nine steps of an operation.
@@ -143,7 +145,7 @@ struct OperationState {
   GuidanceGrades grades;       // of the newest picture's numbers, without a flicker
   bool marker_is_out = false;  // by the surgeon's word, as long as no live source shows it
   ControlPointDue control_point_due = ControlPointDue::None;
-  int places_in_doubt = 0;  // still to be touched, with CannotCheckLooks
+  int places_in_doubt = 0;  // still to be touched, with CannotCheckLooks and CannotCheckLoss
   // Of the last touch, check of the guide or word that the marker is out.
   TouchRefusal touch_refusal = TouchRefusal::None;
   bool touch_is_of_guide = false;   // a check of it
@@ -161,6 +163,11 @@ struct OperationState {
   NextAction next_action = NextAction::PlanTunnel;
 };
 using OperationStatePtr = std::shared_ptr<const OperationState>;
+
+// Places are asked for, where no control point can tell.
+[[nodiscard]] inline bool asks_for_places(ControlPointDue due) {
+  return due == ControlPointDue::CannotCheckLooks || due == ControlPointDue::CannotCheckLoss;
+}
 
 // Which step an operation has come to, and what is to be done next; pure, from the rest of the state.
 [[nodiscard]] NextAction next_action_of(const OperationState& state);

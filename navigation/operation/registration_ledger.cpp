@@ -192,10 +192,14 @@ TouchAlarm RegistrationLedger::alarm() const {
 
 void RegistrationLedger::forget_touches() {
   touches_.clear();
-  for (std::size_t i = 0; i < entries_->size(); ++i)
-    if ((*entries_)[i].is_verified)
-      change_entry(i, [](RegistrationEntry& entry) { entry.is_verified = false; });
+  take_verification_back();
   seen_drift_mm_.reset();
+  judge();
+}
+
+void RegistrationLedger::verify_anew() {
+  touches_.verify_anew();
+  take_verification_back();
   judge();
 }
 
@@ -238,6 +242,12 @@ void RegistrationLedger::change_entry(std::size_t entry,
   auto entries = std::make_shared<std::vector<RegistrationEntry>>(*entries_);
   change((*entries)[entry]);
   entries_ = std::move(entries);
+}
+
+void RegistrationLedger::take_verification_back() {
+  for (std::size_t i = 0; i < entries_->size(); ++i)
+    if ((*entries_)[i].is_verified)
+      change_entry(i, [](RegistrationEntry& entry) { entry.is_verified = false; });
 }
 
 RegistrationInForce RegistrationLedger::judged() const {

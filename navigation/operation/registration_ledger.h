@@ -88,6 +88,9 @@ class RegistrationLedger {
   void bone_moved_in_picture(double drift_mm, bool control_point_is_older);
   // The touches were wrong and not the marker: takes an alarm away, and what they verified.
   void forget_touches();
+  // The marker was out of sight, and no control point can tell whether it sits where it sat: what touches
+  // have verified until then has to be verified by others.
+  void verify_anew();
   // Another plan is in force: what was found is known there as well as its covariance says, and no longer
   // reliable where that is worse than registration::kMaxError_mm. Empty: as it was found.
   void aim_at(const std::optional<Eigen::Vector3d>& target_in_bone_mm);
@@ -109,6 +112,7 @@ class RegistrationLedger {
  private:
   void add(RegistrationEntry entry);
   void change_entry(std::size_t entry, const std::function<void(RegistrationEntry&)>& change);
+  void take_verification_back();  // of every entry
   void judge();
   [[nodiscard]] RegistrationInForce judged() const;
 

@@ -87,9 +87,10 @@ WayOut way_out_of(const TouchAlarm& alarm, const Touches& touches) {
 }
 
 void Touches::add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of) {
-  // The same place touched again verifies nothing more; one that was touched under another provenance was not
-  // touched yet.
-  const bool is_new_place = std::none_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
+  // The same place touched again verifies nothing more; one that was touched under another provenance, or
+  // that verifies nothing any more, was not touched yet.
+  const auto first = touches_.begin() + static_cast<std::ptrdiff_t>(first_to_verify_);
+  const bool is_new_place = std::none_of(first, touches_.end(), [&](const Touch& touch) {
     return (touch.tip_in_marker_mm - tip_in_marker_mm).norm() < limits_.apart_mm &&
            !registration::mismatch_of(touch.of, of);
   });
@@ -198,7 +199,7 @@ TouchAlarm Touches::alarm() const {
 
 std::vector<double> Touches::misses_mm() const {
   std::vector<double> misses_mm;
-  for (std::size_t i = 0; i < residuals_mm_.size(); ++i)
+  for (std::size_t i = first_to_verify_; i < residuals_mm_.size(); ++i)
     if (residuals_mm_[i] && touches_[i].is_new_place) misses_mm.push_back(std::abs(*residuals_mm_[i]));
   return misses_mm;
 }

@@ -83,6 +83,9 @@ class Touches {
   void add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of);
   void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of);
   void clear();
+  // From now on others verify: the marker may sit elsewhere than where those so far were touched under it.
+  // What of them lies off the bone stays a violation.
+  void verify_anew() { first_to_verify_ = touches_.size(); }
   // Those of an operation that was cut off, in place of all there are.
   void bring_back(const std::vector<Eigen::Vector3d>& touches_mm,
                   const std::optional<Eigen::Vector3d>& control_point_mm, const registration::Provenance& of);
@@ -126,7 +129,7 @@ class Touches {
     registration::Provenance of;
     bool is_new_place;
   };
-  // Of those that were judged and are at different places: how far off the bone they lie.
+  // Of those that may verify, were judged and are at different places: how far off the bone they lie.
   [[nodiscard]] std::vector<double> misses_mm() const;
   [[nodiscard]] int touches_off() const;
   struct ControlTouch {
@@ -135,6 +138,7 @@ class Touches {
   };
   TouchLimits limits_;
   std::vector<Touch> touches_;
+  std::size_t first_to_verify_ = 0;
   std::vector<ControlTouch> control_touches_;
   std::vector<std::optional<double>> residuals_mm_;
   double control_shift_mm_ = 0;

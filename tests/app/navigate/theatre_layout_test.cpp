@@ -76,7 +76,8 @@ std::vector<std::string> all_words() {
   operation::OperationState state;
   for (const auto due :
        {operation::ControlPointDue::CheckBeforeDrilling, operation::ControlPointDue::CheckAfterLoss,
-        operation::ControlPointDue::CheckLooks, operation::ControlPointDue::CannotCheckLooks}) {
+        operation::ControlPointDue::CheckLooks, operation::ControlPointDue::CannotCheckLooks,
+        operation::ControlPointDue::CannotCheckLoss}) {
     state.control_point_due = due;
     words.push_back(words_of_checking(state));
     words.push_back(words_of_verifying(state));

@@ -289,6 +289,8 @@ TEST(CheckingWords, SayWhyTheControlPointIsAskedFor) {
   state.control_point_due = ControlPointDue::CannotCheckLooks;
   state.places_in_doubt = 2;
   EXPECT_EQ(words_of_verifying(state), "bone looks otherwise: touch places that you know, 2 to go");
+  state.control_point_due = ControlPointDue::CannotCheckLoss;
+  EXPECT_EQ(words_of_verifying(state), "marker was out of sight: touch places that you know, 2 to go");
 }
 
 // Why a touch was refused is told for long enough to be read, and while it can be mended: no longer once the

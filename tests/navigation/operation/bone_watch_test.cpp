@@ -33,8 +33,8 @@ TEST(BoneWatch, ADoubtIsOfOneRegistrationAndOneSource) {
   BoneWatch watch(nullptr);
   int judged = 0;
   const auto doubt = [&] {
-    watch.doubt(true, true, 0);
-    return watch.is_in_doubt() && watch.control_point_ends_doubt();
+    watch.begin_doubt(true, 0);
+    return watch.doubt().control_point_ends();
   };
   RegistrationInForce in_force{Standing::Stands, {}, {}, false, false};
   const auto lies_at = [&](double x_mm) {
@@ -47,40 +47,53 @@ TEST(BoneWatch, ADoubtIsOfOneRegistrationAndOneSource) {
   lies_at(1);
   ASSERT_TRUE(doubt());
   lies_at(1);
-  EXPECT_TRUE(watch.is_in_doubt()) << "judged at another plan it has the bone where it had it";
+  EXPECT_TRUE(watch.doubt().holds()) << "judged at another plan it has the bone where it had it";
   lies_at(2);
-  EXPECT_FALSE(watch.is_in_doubt());
+  EXPECT_FALSE(watch.doubt().holds());
   ASSERT_TRUE(doubt());
   in_force.standing = Standing::InDoubt;
   watch.on_registration(in_force);
-  EXPECT_FALSE(watch.is_in_doubt()) << "one that does not stand guides nobody";
+  EXPECT_FALSE(watch.doubt().holds()) << "one that does not stand guides nobody";
   ASSERT_TRUE(doubt());
   watch.on_source({640, 480});
-  EXPECT_FALSE(watch.is_in_doubt());
+  EXPECT_FALSE(watch.doubt().holds());
   ASSERT_TRUE(doubt());
   watch.tell(SeenDrift{1.5, 7});
   watch.tell(SeenLooks{false});
   watch.on_source_end();
-  EXPECT_FALSE(watch.is_in_doubt());
+  EXPECT_FALSE(watch.doubt().holds());
   EXPECT_FALSE(watch.take_drift()) << "what waited goes with it";
   EXPECT_FALSE(watch.take_looks());
   ASSERT_TRUE(doubt());
   watch.look_anew();
-  EXPECT_FALSE(watch.is_in_doubt());
+  EXPECT_FALSE(watch.doubt().holds());
 }
 
 // One that is set anew was set in doubt: it learns where the bone lies since.
 TEST(BoneWatch, AControlPointThatIsGoneEndsNoDoubt) {
   BoneWatch watch(nullptr);
-  watch.doubt(true, true, 2);
+  watch.begin_doubt(true, 2);
   watch.on_touches(touched(true, 2));
-  EXPECT_TRUE(watch.control_point_ends_doubt());
-  EXPECT_FALSE(watch.touches_before_doubt());
+  EXPECT_TRUE(watch.doubt().control_point_ends());
+  EXPECT_EQ(watch.doubt().places_to_touch(touched(true, 2)), 0);
   watch.on_touches(touched(false, 0));
   watch.on_touches(touched(true, 1));
-  EXPECT_TRUE(watch.is_in_doubt());
-  EXPECT_FALSE(watch.control_point_ends_doubt());
-  EXPECT_EQ(watch.touches_before_doubt(), 0U) << "those that were there then are gone";
+  EXPECT_TRUE(watch.doubt().holds());
+  EXPECT_FALSE(watch.doubt().control_point_ends());
+  EXPECT_EQ(watch.doubt().places_to_touch(touched(true, 1)), 2) << "those that were there then are gone";
+}
+
+// What began the first doubt may have moved the bone before the control point was set.
+TEST(PlaceDoubt, AControlPointThatWasSetInDoubtEndsNoSecondOne) {
+  PlaceDoubt doubt;
+  doubt.begin(false, 0);
+  EXPECT_EQ(doubt.places_to_touch(touched(true, 2)), 1);
+  doubt.begin(true, 2);
+  EXPECT_FALSE(doubt.control_point_ends());
+  EXPECT_EQ(doubt.places_to_touch(touched(true, 2)), 3) << "it may have moved since these";
+  doubt.end();
+  doubt.begin(true, 3);
+  EXPECT_TRUE(doubt.control_point_ends());
 }
 
 }  // namespace

@@ -103,6 +103,85 @@ TEST_F(OperationRules, Hazard25BetweenTwoSourcesTheMarkerWasOutOfSight) {
   EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
 }
 
+// Lost for long, or between two live sources, with no control point of before: nothing old can be held
+// against where the marker sits now. What is set then has learned that already, and ends nothing.
+TEST_F(OperationRules, Hazard25WithoutAControlPointALossAsksForTouchesAnew) {
+  const auto lose = [&] {
+    pipeline::FrameResult lost = run_.frame();
+    lost.camera_from_world.is_valid = false;
+    run_.show(lost);
+    run_.wait(31);
+    run_.show(run_.frame());
+  };
+  const auto begin_another = [&] {
+    run_.operation().end_source();
+    run_.start(test::scripted_source());
+    run_.show(run_.frame());
+  };
+  const std::vector<std::function<void()>> out_of_sight{lose, begin_another};
+  for (const auto& nobody_saw_it : out_of_sight) {
+    run_.apply(MarkerPlacedAnew{});
+    give();
+    run_.apply(Draw{false});
+    for (const double dx_mm : {0.0, 4.0, -4.0}) run_.touch(on_bone(dx_mm));
+    ASSERT_EQ(run_.state()->verification, Verification::ByTouches);
+    const long lost_before = run_.count(JournalKind::VerificationLost);
+    nobody_saw_it();
+    ASSERT_EQ(run_.in_force().standing, Standing::Stands);
+    EXPECT_EQ(run_.state()->verification, Verification::NotYet);
+    EXPECT_EQ(run_.count(JournalKind::VerificationLost), lost_before + 1);
+    const auto expect_asked_for = [&](int places) {
+      EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CannotCheckLoss);
+      EXPECT_EQ(run_.state()->places_in_doubt, places);
+      EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
+    };
+    expect_asked_for(3);
+    for (int press = 0; press < 2; ++press) run_.touch(on_bone(6), TouchControlPoint{});
+    expect_asked_for(3);
+    run_.show_guide(-5);
+    expect_asked_for(3);
+    run_.touch(on_bone(0));
+    run_.touch(on_bone(4));
+    expect_asked_for(1);
+    EXPECT_NE(run_.state()->verification, Verification::ByTouches) << "those of before do not count";
+    run_.touch(on_bone(-4));
+    EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+    EXPECT_EQ(run_.state()->verification, Verification::ByTouches);
+    lose();
+    EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckAfterLoss)
+        << "now there is one of before";
+    EXPECT_EQ(run_.state()->verification, Verification::ByTouches);
+  }
+}
+
+// Touches that lay off the bone before the loss stay what they were: they speak against the registration.
+TEST_F(OperationRules, Hazard25ALossTakesNoTouchAwayThatLiesOffTheBone) {
+  give();
+  run_.touch(on_bone(8, 5));
+  run_.operation().end_source();
+  run_.start(test::scripted_source());
+  run_.show(run_.frame());
+  ASSERT_EQ(run_.in_force().standing, Standing::Stands);
+  run_.touch(on_bone(-8, 5));
+  EXPECT_EQ(run_.in_force().standing, Standing::Alarm);
+}
+
+// Nothing was measured yet, or nothing of it is left: a marker that moved made nothing wrong.
+TEST_F(OperationRules, ALossBeforeAnythingWasMeasuredAsksForNothing) {
+  const auto lose = [&] {
+    run_.wait(31);
+    run_.show(run_.frame());
+  };
+  lose();
+  give();
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::Set);
+  lose();
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CannotCheckLoss);
+  run_.apply(MarkerPlacedAnew{});
+  give();
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::Set);
+}
+
 // A loss that is told once is over with the touch, whatever source it was in.
 TEST_F(OperationRules, ABumpedMarkerEndsGuidanceUntilItIsSaidWhatItWas) {
   give();

@@ -2,7 +2,9 @@
 // leaves.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <sstream>
 
@@ -33,8 +35,8 @@ PlannedTunnel moved_plan() {
 }
 
 // One whose guide stands where it must be while a tunnel is drilled, and where everything of the table is
-// known.
-void fill(PhantomOperation& run) {
+// known; without a control point what does not need one.
+void fill(PhantomOperation& run, bool with_control_point = true) {
   const SourceSetup source = table_source();
   run.start(source);
   run.show(run.frame());
@@ -42,7 +44,7 @@ void fill(PhantomOperation& run) {
   std::erase_if(stroke, [&](const auto& point) { return point.curve != stroke.front().curve; });
   run.draw(stroke);
   run.apply(test::true_registration(table_trial(), run.operation().now()));
-  run.touch(test::on_bone(table_trial(), 2), TouchControlPoint{});
+  if (with_control_point) run.touch(test::on_bone(table_trial(), 2), TouchControlPoint{});
   for (const double dx_mm : {0.0, 4.0, -4.0}) run.touch(test::on_bone(table_trial(), dx_mm));
   const tools::ToolAxis axis = *source.pipeline.tools.tools.back().axis;
   run.wait(1);
@@ -66,9 +68,13 @@ void fill(PhantomOperation& run) {
 }
 
 // Of each row, whether it is known.
-using Holds = std::function<bool(const OperationState&)>;
-const std::vector<std::pair<std::string, Holds>>& rows() {
-  static const std::vector<std::pair<std::string, Holds>> kRows{
+struct Row {
+  std::string name;
+  std::function<bool(const OperationState&)> holds;
+  bool with_control_point = true;
+};
+const std::vector<Row>& rows() {
+  static const std::vector<Row> kRows{
       {"numbers of the newest picture", [](const auto& s) { return s.frame.guidance.is_valid(); }},
       {"guidance a moment ago", [](const auto& s) { return s.guided_lately; }},
       {"how good the numbers are", [](const auto& s) { return s.grades.offset != Grade::None; }},
@@ -79,6 +85,8 @@ const std::vector<std::pair<std::string, Holds>>& rows() {
       {"a registration that stands",
        [](const auto& s) { return s.registration->in_force.standing == Standing::Stands; }},
       {"that touches verified it", [](const auto& s) { return s.verification == Verification::ByTouches; }},
+      {"the same, without a control point",
+       [](const auto& s) { return s.verification == Verification::ByTouches; }, false},
       {"touches", [](const auto& s) { return s.registration->touches.count() > 0; }},
       {"the control point", [](const auto& s) { return s.registration->touches.has_control_point(); }},
       {"that the bone looks otherwise",
@@ -168,14 +176,21 @@ TEST(WhatEnds, IsAsTheTableSays) {
   const std::map<std::string, std::string> table = table_of_header();
   EXPECT_EQ(table.size(), rows().size());
   for (const auto& [letter, event] : events()) {
-    PhantomOperation run;
-    fill(run);
-    for (const auto& [name, holds] : rows()) ASSERT_TRUE(holds(*run.state())) << name << " before " << letter;
-    event(run);
-    for (const auto& [name, holds] : rows()) {
-      ASSERT_TRUE(table.contains(name)) << name;
-      const bool ends = table.at(name).find(letter) != std::string::npos;
-      EXPECT_EQ(holds(*run.state()), !ends) << letter << (ends ? " has to end " : " has to leave ") << name;
+    for (const bool with_control_point : {true, false}) {
+      PhantomOperation run;
+      fill(run, with_control_point);
+      std::vector<Row> rows_of_run;
+      std::ranges::copy_if(rows(), std::back_inserter(rows_of_run),
+                           [&](const Row& row) { return row.with_control_point == with_control_point; });
+      for (const Row& row : rows_of_run)
+        ASSERT_TRUE(row.holds(*run.state())) << row.name << " before " << letter;
+      event(run);
+      for (const Row& row : rows_of_run) {
+        ASSERT_TRUE(table.contains(row.name)) << row.name;
+        const bool ends = table.at(row.name).find(letter) != std::string::npos;
+        EXPECT_EQ(row.holds(*run.state()), !ends)
+            << letter << (ends ? " has to end " : " has to leave ") << row.name;
+      }
     }
   }
 }
