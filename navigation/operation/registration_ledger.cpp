@@ -82,11 +82,9 @@ void RegistrationLedger::set_now(const registration::Provenance& now) {
   const bool is_same_world = now.bone == now_.bone && (now.source == sources::SourceKind::Simulation) ==
                                                           (now_.source == sources::SourceKind::Simulation);
   now_ = now;
-  // A control point of a simulated bone says nothing about a real one.
-  if (!is_same_world) {
-    touches_.clear();
-    seen_drift_mm_.reset();
-  }
+  // A touch of a simulated bone says nothing about a real one, and what touches verified was verified by
+  // those that go here: it does not come back with its own world.
+  if (!is_same_world) return forget_touches();
   judge();
 }
 

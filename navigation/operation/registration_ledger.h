@@ -53,7 +53,8 @@ class RegistrationLedger {
   RegistrationLedger(std::shared_ptr<const geometry::Surface> surface,
                      std::optional<registration::CartilageRegion> cartilage, const TouchLimits& limits);
 
-  // What the pictures are of from now on. Whatever is in force is judged by it at once.
+  // What the pictures are of from now on. Whatever is in force is judged by it at once; of another world the
+  // touches are forgotten.
   void set_now(const registration::Provenance& now);
   [[nodiscard]] const registration::Provenance& now() const { return now_; }
 

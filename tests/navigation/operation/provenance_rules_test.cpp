@@ -72,6 +72,26 @@ TEST(RegistrationIsVoid, OneTouchConfirmsAndDoesNotVerify) {
   EXPECT_EQ(run.state()->verification, Verification::ByTouches) << "three places, all with this camera";
 }
 
+// A simulation in between takes the touches with it: what they verified does not come back without them.
+TEST(RegistrationIsVoid, Hazard1ASimulationInBetweenLeavesNothingVerified) {
+  for (const SourceKind real : {SourceKind::Live, SourceKind::Recording}) {
+    PhantomOperation run;
+    run.start(test::scripted_source(real));
+    run.apply(test::true_registration(trial(), run.operation().now()));
+    run.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+    for (const double dx_mm : {0.0, 4.0, 8.0}) run.touch(test::on_bone(trial(), dx_mm));
+    ASSERT_EQ(run.state()->verification, Verification::ByTouches);
+    run.start(test::scripted_source(SourceKind::Simulation));
+    EXPECT_EQ(run.count(JournalKind::VerificationLost), 1);
+    run.start(test::scripted_source(real));
+    ASSERT_EQ(run.in_force().standing, Standing::Stands);
+    EXPECT_EQ(run.state()->registration->touches.count(), 0U);
+    EXPECT_EQ(run.state()->verification, Verification::NotYet);
+    for (const RegistrationEntry& entry : *run.state()->registration->history)
+      EXPECT_FALSE(entry.is_verified);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Changes, RegistrationIsVoid,
     ::testing::Values(Change{"Camera", [](SourceSetup& s) { s.pipeline.calibration.focal_px += 0.5; },
