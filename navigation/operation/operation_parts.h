@@ -11,30 +11,31 @@
 //   P  another plan is taken over
 //   R  another registration comes into force
 //   C  strokes are cleared, without an alarm
+//   A  they are cleared in an alarm
 //   M  the marker is placed anew
 //   W  a picture is through the wrong medium
 //   L  the marker was out of sight for long: the scope went to another port
 //
-//   what                              | S O E P R C M W L
-//   numbers of the newest picture     | x x x x x . x x x
-//   guidance a moment ago             | x x x x x . x . x
-//   how good the numbers are          | x x x x x . x x x
-//   what was seen of guide and drill  | x x . x x . x x .
-//   what the depth stop reads         | . . . x . . x . .
-//   the word that it is drilled       | x x . x . . x . .
-//   a registration that stands        | . x . . . . x . .
-//   that touches verified it          | . x . . . x x . .
-//   the same, without a control point | x x . . . x x . x
-//   touches                           | . . . . . x x . .
-//   the control point                 | . . . . . x x . .
-//   that the bone looks otherwise     | x x x . x . x . .
-//   strokes                           | . x . . . x x . .
-//   which strokes were tried          | . x . x . x x . .
-//   what is found while drawing       | . x . . . x x . .
-//   the time-out's confirmation       | . x . . . . . . .
-//   the check of a nominal guide      | . x . . . . . . .
-//   why no touch was taken            | x x . . . . . . .
-//   that the probe draws              | x . x . . . . . .
+//   what                              | S O E P R C A M W L
+//   numbers of the newest picture     | x x x x x . x x x x
+//   guidance a moment ago             | x x x x x . x x . x
+//   how good the numbers are          | x x x x x . x x x x
+//   what was seen of guide and drill  | x x . x x . x x x .
+//   what the depth stop reads         | . . . x . . x x . .
+//   the word that it is drilled       | x x . x . . x x . .
+//   a registration that stands        | . x . . . . x x . .
+//   that touches verified it          | . x . . . x x x . .
+//   the same, without a control point | x x . . . x x x . x
+//   touches                           | . . . . . x x x . .
+//   the control point                 | . . . . . x x x . .
+//   that the bone looks otherwise     | x x x . x . x x . .
+//   strokes                           | . x . . . x x x . .
+//   which strokes were tried          | . x . x . x x x . .
+//   what is found while drawing       | . x . . . x x x . .
+//   the time-out's confirmation       | . x . . . . . . . .
+//   the check of a nominal guide      | . x . . . . . . . .
+//   why no touch was taken            | x x . . . . . . . .
+//   that the probe draws              | x . x . . . . . . .
 //
 // Without a control point nothing of before can tell whether a marker that nobody saw sits where it sat; with
 // one, it is to be touched (place_doubt.h).
@@ -112,6 +113,8 @@ struct Operation::Parts {
   void look_for_registration();
   void register_strokes();
   void clear_strokes();
+  // Nothing that was found by the marker holds where it sits now; as the record is to say why.
+  void find_anew(std::string why);
   void take_touch(bool is_control_point);
   [[nodiscard]] std::optional<std::size_t> guide_in_view() const;
   [[nodiscard]] std::optional<Eigen::Vector3d> control_point_of_now_mm() const;
@@ -147,9 +150,8 @@ struct Operation::Parts {
     fit.on_strokes_excluded();
   }
   void apply(const ClearStrokes&) {
-    const bool marker_has_moved = static_cast<bool>(ledger.alarm());
+    if (ledger.alarm()) return find_anew("all was cleared in an alarm");
     clear_strokes();
-    if (marker_has_moved) return ledger.marker_placed_anew();
     ledger.forget_touches();
   }
   void apply(const RegisterStrokes&) { register_strokes(); }
@@ -162,12 +164,7 @@ struct Operation::Parts {
     confirmed.on_plan_taken_over(plan);
   }
   void apply(const SkipVerification&) { skip_verification("asked for"); }
-  void apply(const MarkerPlacedAnew&) {
-    clear_strokes();
-    drilling.on_marker_placed_anew();
-    ledger.marker_placed_anew();
-    marker_is_out = false;
-  }
+  void apply(const MarkerPlacedAnew&) { find_anew("the world marker was placed anew"); }
   void apply(const MarkerOut&);
   void apply(const ReadDepthStop& stop) { drilling.read_depth_stop(stop.depth_mm); }
   void apply(const TunnelDrilled&) {
@@ -202,6 +199,7 @@ struct Operation::Parts {
   std::shared_ptr<const registration::OnlineResult> online;
   StrokeFit fit;
   StrokeBias stroke_bias;
+  std::string why_found_anew;
   bool marker_is_out = false;  // by the surgeon's word, and no live source has shown it since
 
   std::optional<PlannedTunnel> plan;

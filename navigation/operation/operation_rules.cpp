@@ -11,7 +11,7 @@ void Operation::Parts::note_in_force(bool is_given) {
   entry.of = ledger.now();
   if (entry.registration == nullptr) {  // what was kept before must not be found again
     auto none = std::make_shared<registration::RegistrationSummary>();
-    none->reasons = {"the world marker was placed anew"};
+    none->reasons = {why_found_anew};
     entry.registration = std::move(none);
   }
   if (ledger.entry_in_force()) entry.of = (*ledger.entries())[*ledger.entry_in_force()].of;
@@ -268,6 +268,14 @@ void Operation::Parts::clear_strokes() {
   ledger.forget_strokes();
 }
 
+void Operation::Parts::find_anew(std::string why) {
+  why_found_anew = std::move(why);
+  clear_strokes();
+  drilling.on_marker_placed_anew();
+  ledger.marker_placed_anew();
+  marker_is_out = false;
+}
+
 void Operation::Parts::take_touch(bool is_control_point) {
   draws = false;
   touch = {TouchRefusal::None, false, frame.timestamp_ns};
@@ -298,7 +306,7 @@ void Operation::Parts::apply(const MarkerOut&) {
     touch.refusal = TouchRefusal::MarkerIsSeen;
     return;
   }
-  apply(MarkerPlacedAnew{});
+  find_anew("the world marker is out of the bone");
   marker_is_out = true;
 }
 

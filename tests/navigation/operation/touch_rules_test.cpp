@@ -252,6 +252,29 @@ TEST_F(OperationRules, AVerificationEndsWithItsTouches) {
   EXPECT_EQ(run_.count(JournalKind::Verified), 2);
 }
 
+// All ways that end what was found end the same of it, and the record says which it was.
+TEST_F(OperationRules, WhatIsFoundAnewIsRecordedWithItsReason) {
+  const auto recorded = [&] {
+    const auto told = std::find_if(run_.journal.rbegin(), run_.journal.rend(), [](const JournalEntry& entry) {
+      return entry.kind == JournalKind::RegistrationInForce;
+    });
+    return told->registration->has_pose ? "" : told->registration->reasons.front();
+  };
+  give();
+  for (const double dx_mm : {8.0, -8.0}) run_.touch(on_bone(dx_mm, 5));
+  ASSERT_EQ(run_.in_force().standing, Standing::Alarm);
+  run_.apply(ClearStrokes{});
+  EXPECT_EQ(run_.in_force().standing, Standing::None);
+  EXPECT_EQ(recorded(), "all was cleared in an alarm");
+  give();
+  run_.apply(MarkerPlacedAnew{});
+  EXPECT_EQ(recorded(), "the world marker was placed anew");
+  give();
+  run_.operation().end_source();
+  run_.apply(MarkerOut{});
+  EXPECT_EQ(recorded(), "the world marker is out of the bone");
+}
+
 // Two touches off the bone, told as an alarm and then as wrong, leave nothing verified.
 TEST_F(OperationRules, AnAlarmOfTouchesThatIsTakenAwayLeavesNothingVerified) {
   give();

@@ -130,6 +130,12 @@ const std::vector<std::pair<char, std::function<void(PhantomOperation&)>>>& even
          run.apply(other);
        }},
       {'C', [](PhantomOperation& run) { run.apply(ClearStrokes{}); }},
+      {'A',
+       [](PhantomOperation& run) {
+         run.operation().tell_bone_moved({2.0});
+         ASSERT_EQ(run.in_force().standing, Standing::Alarm);
+         run.apply(ClearStrokes{});
+       }},
       {'M', [](PhantomOperation& run) { run.apply(MarkerPlacedAnew{}); }},
       {'W',
        [](PhantomOperation& run) {
