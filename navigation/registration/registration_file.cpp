@@ -1,6 +1,7 @@
 #include "navigation/registration/registration_file.h"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "navigation/camera/medium.h"
@@ -15,6 +16,32 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr const char* kFormat = "arthronaut.registration";
 constexpr int kVersion = 1;
+
+std::string_view to_text(CartilageUse use) {
+  switch (use) {
+    case CartilageUse::None:
+      return "none";
+    case CartilageUse::Solved:
+      return "solved";
+    case CartilageUse::LeftOut:
+      return "left out";
+  }
+  return "unknown";
+}
+
+void read_cartilage(const files::JsonObject& document, RegistrationSummary& summary) {
+  // Where nothing is said, nobody knows how far off the mesh the probe touches on it.
+  summary.cartilage_use = CartilageUse::LeftOut;
+  if (!document.has("cartilage_use")) return;
+  const std::string word = document.text("cartilage_use");
+  constexpr std::array kUses{CartilageUse::None, CartilageUse::Solved, CartilageUse::LeftOut};
+  const auto* const use =
+      std::find_if(kUses.begin(), kUses.end(), [&](CartilageUse known) { return to_text(known) == word; });
+  if (use == kUses.end()) document.fail("cartilage_use", "must be none, solved or left out");
+  summary.cartilage_use = *use;
+  if (*use == CartilageUse::Solved)
+    summary.cartilage_thickness_mm = document.number("cartilage_thickness_mm");
+}
 
 RegistrationSummary summary_from(const files::JsonObject& document) {
   RegistrationSummary summary;
@@ -37,6 +64,7 @@ RegistrationSummary summary_from(const files::JsonObject& document) {
   if (document.has("misfit_mm")) summary.misfit_mm = document.number("misfit_mm");
   if (document.has("shared_misfit_mm")) summary.shared_misfit_mm = document.number("shared_misfit_mm");
   if (document.has("assumptions")) summary.assumptions = document.texts("assumptions");
+  read_cartilage(document, summary);
   if (document.has("covariance")) {
     summary.covariance = files::read_covariance(document, "covariance", 6);
   } else {
@@ -144,6 +172,9 @@ nlohmann::ordered_json to_json(const RegistrationSummary& registration, const Pr
   document["misfit_mm"] = registration.misfit_mm;
   document["shared_misfit_mm"] = registration.shared_misfit_mm;
   document["assumptions"] = registration.assumptions;
+  document["cartilage_use"] = to_text(registration.cartilage_use);
+  if (registration.cartilage_use == CartilageUse::Solved)
+    document["cartilage_thickness_mm"] = registration.cartilage_thickness_mm;
   document["covariance"] = files::covariance_to_json(registration.covariance);
   if (of != nullptr) document["of"] = to_json(*of);
   return document;

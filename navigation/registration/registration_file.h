@@ -1,5 +1,5 @@
 // registration.json (format "arthronaut.registration", version 1): where the bone lies under its world
-// marker, how sure that is, and what it is of; without the use of the cartilage, which the assumptions tell.
+// marker, how sure that is, what it made of cartilage, and what it is of.
 #pragma once
 
 #include <filesystem>
@@ -34,7 +34,8 @@ struct RegistrationRecord {
 };
 
 // Throws IoError or InvalidInput (file, place, reason). What was written comes back to the last bit, but for
-// what the file does not hold: residuals, the use of the cartilage and the marker's placement.
+// what the file does not hold: residuals and the marker's placement. Of one that says nothing of cartilage,
+// as those of other programs and of older versions, the cartilage was left out.
 [[nodiscard]] RegistrationRecord read_registration_record(const std::filesystem::path& file);
 [[nodiscard]] RegistrationSummary read_registration_file(const std::filesystem::path& file);
 // Atomic. Throws IoError. `of` may be null.

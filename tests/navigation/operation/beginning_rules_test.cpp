@@ -193,6 +193,28 @@ TEST(Resumed, Hazard25AsksForTheControlPointOfBefore) {
   }
 }
 
+// On cartilage the probe touches as far off the bone as it did before: no alarm comes of the crash.
+TEST(Resumed, TouchesOnCartilageAreJudgedAsBefore) {
+  constexpr double kThickness_mm = 2;
+  OperationSetup setup = test::phantom_setup();
+  const auto& vertices_mm = setup.surface->mesh().vertices_mm;
+  setup.cartilage.emplace();
+  for (std::size_t i = 0; i < vertices_mm.size(); i += 5)
+    setup.cartilage->points_mm.push_back(vertices_mm[i]);
+  PhantomOperation run(setup);
+  const SourceSetup source = test::scripted_source();
+  ResumeOperation resume = left_behind(run, source);
+  resume.registration->cartilage_use = registration::CartilageUse::Solved;
+  resume.registration->cartilage_thickness_mm = kThickness_mm;
+  run.apply(command_from_text(to_text(resume), "the record"));
+  run.start(source);
+  for (const double dx_mm : {0.0, 4.0}) {
+    run.touch(test::on_bone(trial(), dx_mm, kThickness_mm));
+    EXPECT_NEAR(run.state()->registration->touches.last().distance_mm.value(), 0, 0.2);
+  }
+  EXPECT_EQ(run.in_force().standing, Standing::Stands);
+}
+
 // Another registration in its place stands for itself: the journal tells of no touch that confirmed anything.
 // One void registration after another is told each time.
 TEST(Resumed, AnotherRegistrationInItsPlaceIsNoConfirmation) {

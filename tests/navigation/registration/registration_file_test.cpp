@@ -104,6 +104,36 @@ TEST(RegistrationFile, ABrokenOfIsRefused) {
   EXPECT_THROW((void)read_registration_record(folder / "registration.json"), InvalidInput);
 }
 
+// What touches are judged by on cartilage comes back; of a file that does not say it nothing is known there.
+TEST(RegistrationFile, WhatWasMadeOfCartilageComesBack) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "registration.json";
+  const CartilageRegion region{{{0, 0, 0}}, 4};
+  const auto offset_mm = [&] { return cartilage_offset_mm(read_registration_file(file), region, {1, 0, 0}); };
+  RegistrationSummary summary = some_registration();
+  write_registration_file(file, summary);
+  EXPECT_EQ(offset_mm(), 0.0);
+  summary.cartilage_use = CartilageUse::Solved;
+  summary.cartilage_thickness_mm = 7.0 / 3;
+  write_registration_file(file, summary);
+  EXPECT_EQ(offset_mm(), 7.0 / 3);
+  const auto write_with = [&](const std::string& was, const std::string& is) {
+    write_registration_file(file, summary);
+    std::string text = files::read_text(file);
+    ASSERT_NE(text.find(was), std::string::npos);
+    files::write_atomically(file, text.replace(text.find(was), was.size(), is));
+  };
+  write_with("\"cartilage_use\"", "\"cartilage_used\"");
+  EXPECT_EQ(offset_mm(), std::nullopt);
+  write_with("\"solved\"", "\"dissolved\"");
+  EXPECT_THROW((void)offset_mm(), InvalidInput);
+  write_with("\"cartilage_thickness_mm\"", "\"thickness_mm\"");
+  EXPECT_THROW((void)offset_mm(), InvalidInput);
+  summary.cartilage_use = CartilageUse::LeftOut;
+  write_registration_file(file, summary);
+  EXPECT_EQ(offset_mm(), std::nullopt);
+}
+
 // What found nothing has no error: null, not one of 0 mm. Files of before, which say 0, are read likewise.
 TEST(RegistrationFile, WithoutAPoseThereIsNoError) {
   const test::TemporaryFolder folder;
