@@ -48,6 +48,7 @@ void Operation::start_source(const SourceSetup& source) {
   p.source = std::make_shared<const SourceSetup>(source);
   p.has_source = true;
   p.medium.on_source(source.pipeline);
+  p.confirmed.on_source(source.pipeline);
   p.bone_watch.on_source(source.pipeline.calibration.image_size_px);
   p.frame = {};
   p.frame_count = 0;

@@ -10,7 +10,8 @@ namespace {
 
 // What stood on the screen, as the record keeps it: hashes, and no patient.
 std::string in_words(const SourceSetup& source, const registration::Provenance& now,
-                     const std::optional<PlannedTunnel>& plan, bool patient_was_shown) {
+                     const std::string& guides, const std::optional<PlannedTunnel>& plan,
+                     bool patient_was_shown) {
   std::string text = std::string(bones::to_text(source.pipeline.side)) + " " +
                      std::string(bones::to_text(now.bone)) +
                      (patient_was_shown ? ", patient shown" : ", patient not known");
@@ -20,7 +21,8 @@ std::string in_words(const SourceSetup& source, const registration::Provenance& 
       plan ? files::format(", plan %.1f mm wide and %.1f mm long", plan->tunnel.diameter_mm, plan->length_mm)
            : std::string(", no plan");
   return text + ", mesh " + now.mesh_sha256.substr(0, 12) + ", camera " + now.camera.substr(0, 12) +
-         ", tools " + now.tools.substr(0, 12) + ", " + camera::medium_to_text(now.refractive_index);
+         ", tools " + now.tools.substr(0, 12) + ", guides " + guides.substr(0, 12) + ", " +
+         camera::medium_to_text(now.refractive_index);
 }
 
 }  // namespace
@@ -28,7 +30,8 @@ std::string in_words(const SourceSetup& source, const registration::Provenance& 
 void Operation::Parts::apply(const ConfirmTimeOut& time_out_of) {
   if (time_out() != TimeOut::Due) return;
   confirmed.confirm(ledger.now(), plan);
-  note(JournalKind::TimeOutConfirmed, in_words(*source, ledger.now(), plan, time_out_of.patient_was_shown));
+  note(JournalKind::TimeOutConfirmed,
+       in_words(*source, ledger.now(), confirmed.guides_now(), plan, time_out_of.patient_was_shown));
 }
 
 // Held against the control point by the one guide that this source has; what it shows guides from the next

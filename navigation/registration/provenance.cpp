@@ -57,6 +57,21 @@ void add_markers(std::string& text, const std::vector<tools::BodyMarker>& marker
   }
 }
 
+// What a tool that is seen is known by, but for its axis.
+void add_tool(std::string& text, const tools::Tool& tool) {
+  text += std::to_string(tool.marker_id) + " ";
+  add_number(text, tool.size_mm);
+  if (tool.tip_mm) add_vector(text, *tool.tip_mm);
+  add_markers(text, tool.markers);
+}
+
+// What an outside tracker calls a body's frame is not where a marker has it.
+void add_device(std::string& text, const tools::ToolSet& tools, const std::string& body) {
+  if (!tools.tracker) return;
+  const auto found = tools.tracker->devices.find(body);
+  if (found != tools.tracker->devices.end()) text += found->second + " ";
+}
+
 }  // namespace
 
 std::string_view to_text(Mismatch mismatch) {
@@ -152,21 +167,31 @@ std::string tools_identity(const tools::ToolSet& tools, bones::BoneKind bone, st
     add_markers(text, marker->markers);
   }
   if (const tools::Tool* probe = tools.find_tool(std::string(probe_name))) {
-    text += "probe " + std::to_string(probe->marker_id) + " ";
-    add_number(text, probe->size_mm);
-    if (probe->tip_mm) add_vector(text, *probe->tip_mm);
-    add_markers(text, probe->markers);
+    text += "probe ";
+    add_tool(text, *probe);
   }
-  // What an outside tracker calls the bone's frame is not where a marker has it.
   if (tools.tracker) {
-    const auto add_device = [&](const std::string& body) {
-      const auto found = tools.tracker->devices.find(body);
-      if (found != tools.tracker->devices.end()) text += found->second + " ";
-    };
     // Another tracker may have its frame elsewhere under the same names.
     text += "outside " + tools.tracker->address + " ";
-    add_device(std::string(bones::to_text(bone)));
-    add_device(std::string(probe_name));
+    add_device(text, tools, std::string(bones::to_text(bone)));
+    add_device(text, tools, std::string(probe_name));
+  }
+  return files::sha256_of(text);
+}
+
+std::string guides_identity(const tools::ToolSet& tools, std::string_view guide_name) {
+  std::string text;
+  for (const tools::Tool& tool : tools.tools) {
+    const bool is_drill = tool.kind == tools::ToolKind::Drill;
+    if (!is_drill && tool.name != guide_name) continue;
+    text += is_drill ? "drill " : "guide ";
+    add_tool(text, tool);
+    if (tool.axis) {
+      text += "axis ";
+      add_vector(text, tool.axis->point_mm);
+      add_vector(text, tool.axis->direction);
+    }
+    add_device(text, tools, tool.name);
   }
   return files::sha256_of(text);
 }

@@ -46,5 +46,7 @@ enum class Mismatch { Bone, Mesh, SourceKind, WorldMarker, Placement, Camera, To
 // SHA-256 over what a registration depends on: the bone's world marker and the probe, not the guides.
 [[nodiscard]] std::string tools_identity(const tools::ToolSet& tools, bones::BoneKind bone,
                                          std::string_view probe_name);
+// The same over what a tunnel is drilled by, which no registration depends on: the guide and the drills.
+[[nodiscard]] std::string guides_identity(const tools::ToolSet& tools, std::string_view guide_name);
 
 }  // namespace arthronaut::registration

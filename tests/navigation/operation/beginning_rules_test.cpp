@@ -101,9 +101,9 @@ TEST(TimeOut, IsNotAskedForWhereNobodyIsDrilled) {
   }
 }
 
-// What was confirmed holds for this camera, these tools, this medium, this side's bone and this plan: with
-// anything else it is asked for again. The same camera opened again goes on; so does a plan that was taken
-// over, which is a confirmation of its own, and a marker that was placed anew.
+// What was confirmed holds for this camera, these tools, guide and drill among them, this medium, this side's
+// bone and this plan: with anything else it is asked for again. The same camera opened again goes on; so does
+// a plan that was taken over, which is a confirmation of its own, and a marker that was placed anew.
 TEST(TimeOut, HoldsForWhatWasConfirmedAlone) {
   PhantomOperation run;
   const SourceSetup source = test::scripted_source(SourceKind::Live);
@@ -124,11 +124,21 @@ TEST(TimeOut, HoldsForWhatWasConfirmedAlone) {
   run.start_unconfirmed(source);
   EXPECT_EQ(run.state()->time_out, TimeOut::Due);
   run.apply(ConfirmTimeOut{});
-  for (const int what : {0, 1, 2}) {
+  ASSERT_EQ(run.state()->time_out, TimeOut::Confirmed);
+  for (const int what : {0, 1, 2, 3, 4, 5}) {
     SourceSetup other = source;
     if (what == 0) other.pipeline.calibration.focal_px += 1;
     if (what == 1) other.pipeline.refractive_index = 1.3345;
     if (what == 2) other.pipeline.tools.tools.front().marker_id += 20;
+    if (what == 3) other.pipeline.tools.tools.back().axis->point_mm.y() -= 20;
+    if (what == 4) other.pipeline.tools.tools.back().marker_id += 20;
+    if (what == 5) {
+      tools::Tool& drill = other.pipeline.tools.tools.emplace_back(other.pipeline.tools.tools.back());
+      drill.name = "drill";
+      drill.marker_id += 20;
+      drill.kind = tools::ToolKind::Drill;
+      drill.tip_mm = drill.axis->point_mm;
+    }
     run.start_unconfirmed(other);
     EXPECT_EQ(run.state()->time_out, TimeOut::Due) << what;
   }

@@ -32,5 +32,30 @@ TEST(ConfirmedTimeOut, HoldsForProvenanceAndPlanAlone) {
   EXPECT_EQ(time_out.standing(&live, now, edited), TimeOut::Confirmed);
 }
 
+// The registration depends on no guide, and the time-out does.
+TEST(ConfirmedTimeOut, HoldsForGuideAndDrillsAlone) {
+  SourceSetup source = test::scripted_source();
+  const registration::Provenance now = provenance_of(test::phantom_setup(), source);
+  ConfirmedTimeOut time_out;
+  const auto standing_with = [&](const auto& change) {
+    SourceSetup other = source;
+    change(other.pipeline.tools.tools.back());
+    time_out.on_source(other.pipeline);
+    EXPECT_FALSE(registration::mismatch_of(now, provenance_of(test::phantom_setup(), other)));
+    return time_out.standing(&other, now, std::nullopt);
+  };
+  time_out.on_source(source.pipeline);
+  time_out.confirm(now, std::nullopt);
+  EXPECT_EQ(standing_with([](tools::Tool&) {}), TimeOut::Confirmed);
+  EXPECT_EQ(standing_with([](tools::Tool& guide) { guide.axis->point_mm.y() -= 20; }), TimeOut::Due);
+  EXPECT_EQ(standing_with([](tools::Tool& guide) { guide.axis->direction = -guide.axis->direction; }),
+            TimeOut::Due);
+  EXPECT_EQ(standing_with([](tools::Tool& guide) { guide.size_mm += 1; }), TimeOut::Due);
+  EXPECT_EQ(standing_with([](tools::Tool& guide) { guide.residual_mm = 0.3; }), TimeOut::Confirmed)
+      << "it is the same guide";
+  time_out.on_source(source.pipeline);
+  EXPECT_EQ(time_out.standing(&source, now, std::nullopt), TimeOut::Confirmed);
+}
+
 }  // namespace
 }  // namespace arthronaut::operation
