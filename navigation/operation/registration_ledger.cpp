@@ -17,13 +17,26 @@ RegistrationPtr doubted(const registration::RegistrationSummary& found, std::vec
   return summary;
 }
 
+// Empty: as it was found.
+double error_at_mm(const registration::RegistrationSummary& found,
+                   const std::optional<Eigen::Vector3d>& target_mm) {
+  return target_mm && found.has_pose ? registration::predicted_error_mm(found, *target_mm)
+                                     : found.predicted_tre_mm;
+}
+
+// It may have been found for another tunnel than this one.
+bool is_reliable_at(const registration::RegistrationSummary& found,
+                    const std::optional<Eigen::Vector3d>& target_mm) {
+  const double error_mm = error_at_mm(found, target_mm);
+  return found.reliable && (error_mm == found.predicted_tre_mm || error_mm <= registration::kMaxError_mm);
+}
+
 RegistrationPtr known_at(const RegistrationPtr& found, const std::optional<Eigen::Vector3d>& target_mm) {
-  if (!target_mm || !found->has_pose) return found;
-  const double error_mm = registration::predicted_error_mm(*found, *target_mm);
+  const double error_mm = error_at_mm(*found, target_mm);
   if (error_mm == found->predicted_tre_mm) return found;
   auto summary = std::make_shared<registration::RegistrationSummary>(*found);
   summary->predicted_tre_mm = error_mm;
-  if (found->reliable && error_mm > registration::kMaxError_mm) {
+  if (found->reliable && !is_reliable_at(*found, target_mm)) {
     summary->reliable = false;
     summary->reasons = {files::format(
         "at the tunnel of this plan %.2f mm is its predicted error: touch nearer to it", error_mm)};
@@ -91,8 +104,8 @@ void RegistrationLedger::set_now(const registration::Provenance& now) {
 void RegistrationLedger::take_online(const std::shared_ptr<const registration::OnlineResult>& online,
                                      std::uint64_t request_count) {
   const registration::RegistrationSummary& found = online->registration;
-  const bool is_confirmed =
-      online->state >= registration::OnlineState::Confirmed && found.reliable && !online->bone_is_in_doubt;
+  const bool is_confirmed = online->state >= registration::OnlineState::Confirmed &&
+                            is_reliable_at(found, target_in_bone_mm_) && !online->bone_is_in_doubt;
   if (online->bone_is_in_doubt && request_count > fitted_after_ && entry_in_force_) {
     doubt_ = found.reasons.empty() ? std::vector<std::string>{"the strokes bring the bone in doubt"}
                                    : found.reasons;
@@ -104,8 +117,10 @@ void RegistrationLedger::take_online(const std::shared_ptr<const registration::O
     doubt_.reset();
     is_chosen_ = false;  // what was chosen is what was doubted
   }
-  if (found.predicted_tre_mm >= kClearlyBetter * best_tre_mm_) return judge();
-  best_tre_mm_ = found.predicted_tre_mm;
+  // At the tunnel of now, as the best one so far: what was asked for before it is of another one.
+  const double error_mm = error_at_mm(found, target_in_bone_mm_);
+  if (error_mm >= kClearlyBetter * best_tre_mm_) return judge();
+  best_tre_mm_ = error_mm;
   add({RegistrationOrigin::WhileDrawing, std::make_shared<const registration::RegistrationSummary>(found),
        now_});
 }
@@ -117,7 +132,8 @@ void RegistrationLedger::take_fit(const RegistrationPtr& fit, std::uint64_t requ
   is_chosen_ = false;  // it was asked for just now
   fitted_after_ = request_count;
   if (fit->reliable) doubt_.reset();
-  best_tre_mm_ = fit->reliable ? fit->predicted_tre_mm : std::numeric_limits<double>::infinity();
+  best_tre_mm_ = is_reliable_at(*fit, target_in_bone_mm_) ? error_at_mm(*fit, target_in_bone_mm_)
+                                                          : std::numeric_limits<double>::infinity();
   add({RegistrationOrigin::AllStrokes, fit, now_});
 }
 

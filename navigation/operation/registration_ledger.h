@@ -127,11 +127,12 @@ class RegistrationLedger {
   bool is_chosen_ = false;
   // Doubt told by strokes drawn after the newest fit of all strokes; its reasons.
   std::optional<std::vector<std::string>> doubt_;
-  std::optional<Eigen::Vector3d> target_in_bone_mm_;              // of another plan than it was begun with
-  std::optional<double> seen_drift_mm_;                           // in the picture; empty: none
-  bool control_point_is_older_ = false;                           // than that drift
-  std::uint64_t fitted_after_ = 0;                                // requests, at the newest fit
-  double best_tre_mm_ = std::numeric_limits<double>::infinity();  // of those that took effect by themselves
+  std::optional<Eigen::Vector3d> target_in_bone_mm_;  // of another plan than it was begun with
+  std::optional<double> seen_drift_mm_;               // in the picture; empty: none
+  bool control_point_is_older_ = false;               // than that drift
+  std::uint64_t fitted_after_ = 0;                    // requests, at the newest fit
+  // Of those that took effect by themselves, at the target of now.
+  double best_tre_mm_ = std::numeric_limits<double>::infinity();
   RegistrationInForce in_force_;
   std::uint64_t change_count_ = 0;
 };

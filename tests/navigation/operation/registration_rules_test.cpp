@@ -255,6 +255,41 @@ TEST_F(RegistrationRules, TheRegistrationsStateIsMadeAnewOnlyAfterAChange) {
   EXPECT_NE(run_.state()->registration, first);
 }
 
+// What was asked for before the plan changed comes after it, with its error at the tunnel of before. Which is
+// the better one is asked at the tunnel of now.
+TEST(RegistrationLedger, WhatWasFoundForAnotherTunnelIsComparedAtThisOne) {
+  // Good at the origin, where the tunnel of before was; by how much it turns, it is not where that of now is.
+  const auto found = [](double error_at_origin_mm, double sigma_turn_rad) {
+    registration::OnlineResult online;
+    online.state = registration::OnlineState::Confirmed;
+    registration::RegistrationSummary& summary = online.registration;
+    summary.has_pose = summary.reliable = true;
+    summary.reasons.clear();
+    summary.covariance.diagonal().head<3>().setConstant(error_at_origin_mm * error_at_origin_mm / 3);
+    summary.covariance.diagonal().tail<3>().setConstant(sigma_turn_rad * sigma_turn_rad);
+    summary.predicted_tre_mm = registration::predicted_error_mm(summary, Eigen::Vector3d::Zero());
+    return std::make_shared<const registration::OnlineResult>(online);
+  };
+  const auto even = found(0.5, 0), turns = found(0.1, 0.005), turns_much = found(0.1, 0.02);
+  const Eigen::Vector3d target_mm(100, 0, 0);
+  ASSERT_LT(turns->registration.predicted_tre_mm, 0.2);
+  ASSERT_GT(registration::predicted_error_mm(turns->registration, target_mm), 0.6);
+  ASSERT_GT(registration::predicted_error_mm(turns_much->registration, target_mm),
+            registration::kMaxError_mm);
+  RegistrationLedger ledger(nullptr, std::nullopt, {});
+  ledger.aim_at(target_mm);
+  ledger.take_online(turns_much, 1);
+  EXPECT_EQ(ledger.in_force().standing, Standing::None) << "there it is not reliable";
+  ledger.take_online(even, 2);
+  ASSERT_EQ(ledger.in_force().standing, Standing::Stands);
+  ledger.take_online(turns, 3);
+  EXPECT_EQ(ledger.entries()->size(), 1U) << "it is better elsewhere";
+  ledger.take_fit(std::make_shared<const registration::RegistrationSummary>(turns->registration), 4, 300);
+  ASSERT_EQ(ledger.entries()->size(), 2U);
+  ledger.take_online(even, 5);
+  EXPECT_EQ(ledger.entries()->size(), 3U) << "it is clearly better here";
+}
+
 // Cartilage of 2 mm on a bone that was segmented bare: what was assumed is said, and touches on it lie where
 // they should.
 TEST_F(RegistrationRules, TouchesOnCartilageLieWhereTheyShould) {
