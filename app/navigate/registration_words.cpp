@@ -44,6 +44,7 @@ SeverityText against(const operation::RegistrationState& state, std::size_t i,
                      const std::optional<registration::Provenance>& now) {
   const operation::RegistrationEntry& entry = (*state.history)[i];
   if (entry.marker_has_moved) return {Severity::Quiet, "", "the marker was moved or taken out since"};
+  if (entry.is_of_wrong_medium) return {Severity::Quiet, "", "it was found through the wrong medium"};
   if (i == state.entry_in_force) {
     const Standing standing = state.in_force.standing;
     const bool is_revoked =

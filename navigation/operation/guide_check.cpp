@@ -18,6 +18,7 @@ bool GuideCheck::is_same(const Subject& a, const Subject& b) {
 void GuideCheck::begin(const pipeline::PipelineOptions& options, const registration::Provenance& now,
                        bool is_live) {
   tip_.clear();
+  now_ns_ = held_ns_ = std::numeric_limits<std::int64_t>::min();
   const tools::Tool* const guide = options.tools.find_tool(options.guide_name);
   const auto is_measured = [&] {
     const tools::NominalParts nominal = tools::nominal_parts(*guide);
@@ -37,6 +38,7 @@ void GuideCheck::begin(const pipeline::PipelineOptions& options, const registrat
 
 void GuideCheck::add(const pipeline::FrameResult& frame) {
   if (!subject_) return;
+  now_ns_ = frame.timestamp_ns;
   const double time_s = static_cast<double>(frame.timestamp_ns) * 1e-9;
   std::optional<Eigen::Vector3d> tip_mm;
   if (*place_in_frame_ < frame.tools.size() && frame.tools[*place_in_frame_].world_from_tool.is_valid)
@@ -54,7 +56,13 @@ TouchRefusal GuideCheck::check(const std::optional<Eigen::Vector3d>& control_poi
   state_.error_mm = (*tip_mm - *control_point_mm).norm();
   state_.standing =
       state_.error_mm <= limits.max_guide_error_mm ? GuideStanding::Checked : GuideStanding::Off;
+  held_ns_ = now_ns_;
   return TouchRefusal::None;
+}
+
+void GuideCheck::forget_since(std::int64_t time_ns) {
+  const bool was_held = state_.standing == GuideStanding::Checked || state_.standing == GuideStanding::Off;
+  if (was_held && held_ns_ > time_ns) state_ = {GuideStanding::Due};
 }
 
 void GuideCheck::forget_point() {

@@ -10,6 +10,8 @@
 // Thread-free, deterministic.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -59,6 +61,8 @@ class GuideCheck {
   // changes with a refusal.
   TouchRefusal check(const std::optional<Eigen::Vector3d>& control_point_mm, const TouchLimits& limits);
   void trust();
+  // What was found of it in this source after that time was found wrongly.
+  void forget_since(std::int64_t time_ns);
   // The control point that it was held on is gone: that it was off there says nothing any more.
   void forget_point();
 
@@ -74,6 +78,9 @@ class GuideCheck {
   std::optional<Subject> subject_;  // empty: nothing is to be checked
   std::optional<std::size_t> place_in_frame_;
   SteadyTip tip_;
+  // Of this source: of its newest frame, and of the frame in which it was held; min: before all of its
+  // frames.
+  std::int64_t now_ns_ = std::numeric_limits<std::int64_t>::min(), held_ns_ = now_ns_;
   GuideCheckState state_;
 };
 

@@ -23,6 +23,7 @@ enum class JournalKind {
   BoneMoved,      // in the picture, against its marker; text: see seen_drift.h
   BoneLooks,      // in the picture; text: see seen_drift.h. A doubt ends without it, too: by the control
                   // point, and with its registration
+  MediumWrong,    // what was measured since is gone; text: see seen_drift.h
   SourceStarted,  // what stands before the first of these was given before any source
   SourceEnded,
   RegistrationInForce,  // registration is set; without a pose: none is in force any more

@@ -48,6 +48,8 @@ void Operation::start_source(const SourceSetup& source) {
   p.source = std::make_shared<const SourceSetup>(source);
   p.has_source = true;
   p.medium.on_source(source.pipeline);
+  p.seen_medium.reset();
+  p.strokes.on_source();
   p.confirmed.on_source(source.pipeline);
   p.bone_watch.on_source(source.pipeline.calibration.image_size_px);
   p.frame = {};
@@ -94,7 +96,7 @@ void Operation::start_source(const SourceSetup& source) {
 void Operation::end_source() {
   Parts& p = *parts_;
   if (!p.has_source) return;
-  p.take_drift();
+  p.take_seen();
   p.note(JournalKind::SourceEnded);
   p.bone_watch.on_source_end();
   p.has_source = p.draws = false;
@@ -105,12 +107,14 @@ void Operation::end_source() {
 }
 
 void Operation::process(const camera::Frame& frame, const tracker::TrackerPoses* outside) {
-  parts_->take_drift();
+  parts_->take_seen();
   parts_->pipeline->process(frame, parts_->frame, outside);
   parts_->check_medium();
   parts_->take_frame();
   parts_->watch_bone(frame);
 }
+
+void Operation::heed_pictures() { parts_->take_seen(); }
 
 void Operation::process_recorded(const pipeline::FrameResult& result) {
   parts_->frame = result;
@@ -119,7 +123,7 @@ void Operation::process_recorded(const pipeline::FrameResult& result) {
 
 void Operation::apply(const Command& command) {
   Parts& p = *parts_;
-  p.take_drift();  // what the last picture showed comes before what is done about it
+  p.take_seen();  // what the last picture showed comes before what is done about it
   p.note(JournalKind::CommandGiven, to_text(command));
   std::visit([&](const auto& c) { p.apply(c); }, command);
   if (!p.ledger.touches().has_control_point()) p.guide_check.forget_point();
@@ -131,7 +135,7 @@ void Operation::apply(const Command& command) {
 void Operation::take_outcome(const OutcomePtr& outcome) {
   Parts& p = *parts_;
   if (outcome == nullptr || outcome == p.outcome) return;
-  p.take_drift();  // it was seen of the registration that the outcome may replace
+  p.take_seen();  // it was seen of the registration that the outcome may replace
   const OutcomePtr before = std::exchange(p.outcome, outcome);
   p.note(JournalKind::OutcomeTaken, std::to_string(outcome->request_count));
   const bool has_become_ready = outcome->bone_is_ready && (before == nullptr || !before->bone_is_ready);
@@ -158,12 +162,17 @@ void Operation::take_outcome(const OutcomePtr& outcome) {
 
 void Operation::tell_bone_moved(const SeenDrift& drift) {
   parts_->bone_watch.tell(drift);
-  parts_->take_drift();
+  parts_->take_seen();
 }
 
 void Operation::tell_bone_looks(const SeenLooks& looks) {
   parts_->bone_watch.tell(looks);
-  parts_->take_drift();
+  parts_->take_seen();
+}
+
+void Operation::tell_medium_wrong(const SeenMedium& medium) {
+  parts_->seen_medium = medium;
+  parts_->take_seen();
 }
 
 void Operation::take_look(const MediumLookPtr& look) { parts_->take_look(look); }

@@ -41,8 +41,9 @@ struct OperationSetup {
   // Nobody is at the pedal: while the guide is seen and no registration of all strokes stands, one is asked
   // for whenever the probe has drawn this much more.
   std::optional<double> registers_after_mm;
-  // A run from a record: that the bone has moved, or looks otherwise, is told by tell_bone_moved() and
-  // tell_bone_looks() alone, whatever pictures show.
+  // A run from a record: that the bone has moved, or looks otherwise, and that what was measured was measured
+  // through the wrong medium, is told by tell_bone_moved(), tell_bone_looks() and tell_medium_wrong() alone,
+  // whatever pictures show.
   bool hears_of_drifts = false;
 };
 // What a registration found with this source is of.
@@ -73,6 +74,11 @@ class Operation {
   // is ignored.
   void take_outcome(const OutcomePtr& outcome);
 
+  // What the pictures so far have shown takes effect: that the bone has moved, or the medium is wrong. The
+  // next frame or command does so, too; who records calls it before, since it belongs after the picture that
+  // showed it.
+  void heed_pictures();
+
   // A frame of a record instead of a picture: for resuming and for replay where no picture was kept.
   // `result` as process() made it.
   void process_recorded(const pipeline::FrameResult& result);
@@ -85,6 +91,8 @@ class Operation {
   void tell_bone_moved(const SeenDrift& drift);
   // The same of a bone that does not look as it did, or does again.
   void tell_bone_looks(const SeenLooks& looks);
+  // And that the medium was wrong: what was measured since is gone.
+  void tell_medium_wrong(const SeenMedium& medium);
 
   // The picture of the newest frame is to be seen in the other medium; once for each.
   [[nodiscard]] std::optional<MediumLookRequest> take_look_request();

@@ -14,28 +14,29 @@
 //   A  they are cleared in an alarm
 //   M  the marker is placed anew
 //   W  a picture is through the wrong medium
+//   D  and it is known that the pictures of this source have been since before all of that
 //   L  the marker was out of sight for long: the scope went to another port
 //
-//   what                              | S O E P R C A M W L
-//   numbers of the newest picture     | x x x x x . x x x x
-//   guidance a moment ago             | x x x x x . x x . x
-//   how good the numbers are          | x x x x x . x x x x
-//   what was seen of guide and drill  | x x . x x . x x x .
-//   what the depth stop reads         | . . . x . . x x . .
-//   the word that it is drilled       | x x . x . . x x . .
-//   a registration that stands        | . x . . . . x x . .
-//   that touches verified it          | . x . . . x x x . .
-//   the same, without a control point | x x . . . x x x . x
-//   touches                           | . . . . . x x x . .
-//   the control point                 | . . . . . x x x . .
-//   that the bone looks otherwise     | x x x . x . x x . .
-//   strokes                           | . x . . . x x x . .
-//   which strokes were tried          | . x . x . x x x . .
-//   what is found while drawing       | . x . . . x x x . .
-//   the time-out's confirmation       | . x . . . . . . . .
-//   the check of a nominal guide      | . x . . . . . . . .
-//   why no touch was taken            | x x . . . . . . . .
-//   that the probe draws              | x . x . . . . . . .
+//   what                              | S O E P R C A M W D L
+//   numbers of the newest picture     | x x x x x . x x x x x
+//   guidance a moment ago             | x x x x x . x x . . x
+//   how good the numbers are          | x x x x x . x x x x x
+//   what was seen of guide and drill  | x x . x x . x x x x .
+//   what the depth stop reads         | . . . x . . x x . . .
+//   the word that it is drilled       | x x . x . . x x . . .
+//   a registration that stands        | . x . . . . x x . . .
+//   that touches verified it          | . x . . . x x x . x .
+//   the same, without a control point | x x . . . x x x . x x
+//   touches                           | . . . . . x x x . x .
+//   the control point                 | . . . . . x x x . x .
+//   that the bone looks otherwise     | x x x . x . x x . . .
+//   strokes                           | . x . . . x x x . x .
+//   which strokes were tried          | . x . x . x x x . x .
+//   what is found while drawing       | . x . . . x x x . x .
+//   the time-out's confirmation       | . x . . . . . . . . .
+//   the check of a nominal guide      | . x . . . . . . . x .
+//   why no touch was taken            | x x . . . . . . . . .
+//   that the probe draws              | x . x . . . . . . . .
 //
 // Without a control point nothing of before can tell whether a marker that nobody saw sits where it sat; with
 // one, it is to be touched (place_doubt.h).
@@ -107,7 +108,9 @@ struct Operation::Parts {
   void watch_bone(const camera::Frame& picture) {
     bone_watch.look(picture, frame, source->pipeline.tools, ledger.in_force(), setup.hears_of_drifts);
   }
-  void take_drift();
+  // What the last pictures showed and is not in force yet.
+  void take_seen();
+  void take_medium();
   void draw_tip();
   void watch_guidance();
   void look_for_registration();
@@ -199,7 +202,7 @@ struct Operation::Parts {
   std::shared_ptr<const registration::OnlineResult> online;
   StrokeFit fit;
   StrokeBias stroke_bias;
-  std::string why_found_anew;
+  std::string why_none;        // is in force any more
   bool marker_is_out = false;  // by the surgeon's word, and no live source has shown it since
 
   std::optional<PlannedTunnel> plan;
@@ -216,6 +219,7 @@ struct Operation::Parts {
   PlaceDoubt loss;  // the marker was out of sight for long, or between two live sources
   HeldGrades grades;
   MediumWatch medium;
+  std::optional<SeenMedium> seen_medium;  // contradicted, and not in force yet
   BoneWatch bone_watch;
   Drilling drilling;
   ConfirmedTimeOut confirmed;

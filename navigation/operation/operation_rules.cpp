@@ -11,7 +11,7 @@ void Operation::Parts::note_in_force(bool is_given) {
   entry.of = ledger.now();
   if (entry.registration == nullptr) {  // what was kept before must not be found again
     auto none = std::make_shared<registration::RegistrationSummary>();
-    none->reasons = {why_found_anew};
+    none->reasons = {why_none};
     entry.registration = std::move(none);
   }
   if (ledger.entry_in_force()) entry.of = (*ledger.entries())[*ledger.entry_in_force()].of;
@@ -107,6 +107,7 @@ std::optional<std::size_t> Operation::Parts::guide_in_view() const {
 
 void Operation::Parts::take_frame() {
   ++frame_count;
+  ledger.set_time(frame.timestamp_ns);
   // A drill with a marker of its own is seen, and said, without the guide.
   if ((frame.guidance.is_valid() || frame.guidance.drill) && time_out() == TimeOut::Due)
     hide_guidance(guidance::GuidanceState::NotConfirmed);
@@ -132,38 +133,6 @@ void Operation::Parts::draw_tip() {
   ask(DrawnPoint{point});
 }
 
-void Operation::Parts::check_medium() {
-  const pipeline::MediumFit before = medium.verdict().fit;
-  medium.look(frame, source->pipeline);
-  follow_medium(before);
-}
-
-void Operation::Parts::take_look(const MediumLookPtr& look) {
-  if (look == nullptr || !medium.awaits(*look)) return;
-  const std::string frame_index = std::to_string(look->view.frame_index);
-  if (look->failure.empty())
-    note(JournalKind::LookTaken, frame_index);
-  else
-    note(JournalKind::LookFailed, frame_index + ": " + look->failure);
-  const pipeline::MediumFit before = medium.verdict().fit;
-  medium.take(*look);
-  follow_medium(before);
-}
-
-// In the wrong medium nothing that is reckoned from the pictures stands; the reason is the medium, not the
-// markers.
-void Operation::Parts::follow_medium(pipeline::MediumFit before) {
-  const pipeline::MediumVerdict verdict = medium.verdict();
-  if (verdict.fit != before) {
-    changed = true;
-    if (verdict.fit == pipeline::MediumFit::Contradicts)
-      note(JournalKind::Note, pipeline::reason_text(verdict));
-  }
-  if (verdict.fit != pipeline::MediumFit::Contradicts) return;
-  end_frame();
-  hide_guidance(guidance::GuidanceState::WrongMedium);
-}
-
 void Operation::Parts::hide_guidance(guidance::GuidanceState reason) {
   const std::int64_t timestamp_ns = frame.guidance.timestamp_ns;
   frame.guidance = {};
@@ -176,14 +145,6 @@ void Operation::Parts::hide_guide() {
   const std::optional<guidance::DrillDepth> drill = frame.guidance.drill;
   hide_guidance(guidance::GuidanceState::GuideNotChecked);
   frame.guidance.drill = drill;
-}
-
-// Nothing that was reckoned from the picture stands.
-void Operation::Parts::end_frame() {
-  frame.camera_from_world.is_valid = frame.tip_is_valid = frame.intrinsics_are_known = false;
-  frame.tracker_from_world.is_valid = false;
-  for (pipeline::ToolPose& tool : frame.tools) tool.world_from_tool.is_valid = false;
-  hide_guidance(guidance::GuidanceState::Stale);
 }
 
 void Operation::Parts::watch_guidance() {
@@ -269,7 +230,7 @@ void Operation::Parts::clear_strokes() {
 }
 
 void Operation::Parts::find_anew(std::string why) {
-  why_found_anew = std::move(why);
+  why_none = std::move(why);
   clear_strokes();
   drilling.on_marker_placed_anew();
   ledger.marker_placed_anew();
@@ -337,7 +298,8 @@ int Operation::Parts::places_in_doubt() const {
 
 // It is told a second or more after the bone has moved. A control point that was set meanwhile says that the
 // bone lies where it lies now, and nothing of whether it moved.
-void Operation::Parts::take_drift() {
+void Operation::Parts::take_seen() {
+  take_medium();
   if (const auto looks = bone_watch.take_looks(); looks && ledger.in_force().standing == Standing::Stands) {
     note(JournalKind::BoneLooks, to_text(*looks));
     const bool was_set_before =

@@ -1,5 +1,7 @@
 #include "navigation/operation/registration_ledger.h"
 
+#include <utility>
+
 #include "planning/files/format.h"
 
 namespace arthronaut::operation {
@@ -95,6 +97,7 @@ void RegistrationLedger::set_now(const registration::Provenance& now) {
   const bool is_same_world = now.bone == now_.bone && (now.source == sources::SourceKind::Simulation) ==
                                                           (now_.source == sources::SourceKind::Simulation);
   now_ = now;
+  at_ = {at_.source + 1, std::numeric_limits<std::int64_t>::min()};
   // A touch of a simulated bone says nothing about a real one, and what touches verified was verified by
   // those that go here: it does not come back with its own world.
   if (!is_same_world) return forget_touches();
@@ -156,19 +159,20 @@ void RegistrationLedger::bring_back(const registration::Provenance& of,
 }
 
 void RegistrationLedger::choose(std::size_t entry) {
-  if (entry >= entries_->size() || entry == entry_in_force_ || (*entries_)[entry].marker_has_moved) return;
+  if (entry >= entries_->size() || entry == entry_in_force_ || (*entries_)[entry].is_gone()) return;
   entry_in_force_ = entry;
   is_chosen_ = entry + 1 < entries_->size();
   judge();
 }
 
 void RegistrationLedger::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
-  touches_.add_touch(tip_in_marker_mm, now_);
+  touches_.add_touch(tip_in_marker_mm, now_, at_);
   judge();
   if (in_force_.standing == Standing::Void && in_force_.can_be_confirmed && touches_.last_confirms()) {
     // One touch confirms; what verified it before was under other circumstances.
     change_entry(*entry_in_force_, [this](RegistrationEntry& entry) {
-      entry.of = now_;
+      entry.confirmed_from = std::exchange(entry.of, now_);
+      entry.at = at_;
       entry.is_verified = false;
     });
     judge();
@@ -178,7 +182,7 @@ void RegistrationLedger::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
 void RegistrationLedger::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
   // Set since, it knows where the bone lies since it moved, and would lift the alarm at the next touch.
   if (seen_drift_mm_ && !control_point_is_older_) return;
-  touches_.touch_control_point(tip_in_marker_mm, now_);
+  touches_.touch_control_point(tip_in_marker_mm, now_, at_);
   judge();
   const Touches::Last last = touches_.last();
   if (!seen_drift_mm_ || last.kind != Touches::Last::Kind::ControlAgain || !last.distance_mm ||
@@ -209,6 +213,31 @@ void RegistrationLedger::forget_touches() {
   take_verification_back();
   seen_drift_mm_.reset();
   judge();
+}
+
+Touches::Gone RegistrationLedger::forget_since(std::int64_t time_ns) {
+  const Moment since{at_.source, time_ns};
+  const Touches::Gone gone = touches_.forget_since(since);
+  if (gone.touches) take_verification_back();
+  for (std::size_t i = 0; i < entries_->size(); ++i) {
+    const RegistrationEntry& entry = (*entries_)[i];
+    if (!entry.at.is_after(since)) continue;
+    if (entry.confirmed_from)
+      change_entry(i, [](RegistrationEntry& confirmed) {
+        confirmed.of = *std::exchange(confirmed.confirmed_from, std::nullopt);
+      });
+    else if (entry.origin == RegistrationOrigin::WhileDrawing ||
+             entry.origin == RegistrationOrigin::AllStrokes)
+      change_entry(i, [](RegistrationEntry& found) { found.is_of_wrong_medium = true; });
+  }
+  if (entry_in_force_ && (*entries_)[*entry_in_force_].is_gone()) {
+    entry_in_force_.reset();
+    for (std::size_t i = 0; i < entries_->size(); ++i)
+      if (!(*entries_)[i].is_gone()) entry_in_force_ = i;
+    forget_strokes();
+  }
+  judge();
+  return gone;
 }
 
 void RegistrationLedger::verify_anew() {
@@ -244,6 +273,7 @@ void RegistrationLedger::marker_placed_anew() {
 }
 
 void RegistrationLedger::add(RegistrationEntry entry) {
+  entry.at = at_;
   auto entries = std::make_shared<std::vector<RegistrationEntry>>(*entries_);
   entries->push_back(std::move(entry));
   entries_ = std::move(entries);

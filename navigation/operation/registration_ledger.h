@@ -31,8 +31,12 @@ struct RegistrationEntry {
   RegistrationOrigin origin = RegistrationOrigin::WhileDrawing;
   RegistrationPtr registration;  // as it was found
   registration::Provenance of;
-  bool is_verified = false;       // by touches, of which none lies off the bone and none was forgotten
-  bool marker_has_moved = false;  // since: it can't be taken again
+  bool is_verified = false;         // by touches, of which none lies off the bone and none was forgotten
+  bool marker_has_moved = false;    // since: it can't be taken again
+  bool is_of_wrong_medium = false;  // nor one that was found when it was before the lens
+  Moment at = {};                   // when it was found, given, or confirmed by a touch
+  std::optional<registration::Provenance> confirmed_from = std::nullopt;  // what it was of before that touch
+  [[nodiscard]] bool is_gone() const { return marker_has_moved || is_of_wrong_medium; }
 };
 
 enum class Standing { None, Stands, NotReliable, Void, Alarm, InDoubt };
@@ -53,9 +57,11 @@ class RegistrationLedger {
   RegistrationLedger(std::shared_ptr<const geometry::Surface> surface,
                      std::optional<registration::CartilageRegion> cartilage, const TouchLimits& limits);
 
-  // What the pictures are of from now on. Whatever is in force is judged by it at once; of another world the
-  // touches are forgotten.
+  // What the pictures of a source that begins are of. Whatever is in force is judged by it at once; of
+  // another world the touches are forgotten.
   void set_now(const registration::Provenance& now);
+  // Every frame of it: what comes until the next one is of then.
+  void set_time(std::int64_t now_ns) { at_.time_ns = now_ns; }
   [[nodiscard]] const registration::Provenance& now() const { return now_; }
 
   // Found while the probe draws; `request_count` as in RegistrationOutcome. What was found with strokes that
@@ -89,6 +95,10 @@ class RegistrationLedger {
   void bone_moved_in_picture(double drift_mm, bool control_point_is_older);
   // The touches were wrong and not the marker: takes an alarm away, and what they verified.
   void forget_touches();
+  // What was measured in this source after that time was measured wrongly: touches, what they verified and
+  // confirmed, and what was found by strokes. What was there before is in force again. Which kinds of touches
+  // there were of that.
+  Touches::Gone forget_since(std::int64_t time_ns);
   // The marker was out of sight, and no control point can tell whether it sits where it sat: what touches
   // have verified until then has to be verified by others.
   void verify_anew();
@@ -120,6 +130,7 @@ class RegistrationLedger {
   const std::shared_ptr<const geometry::Surface> surface_;
   const std::optional<registration::CartilageRegion> cartilage_;
   registration::Provenance now_;
+  Moment at_;  // of the newest frame of this source
   Touches touches_;
   std::shared_ptr<const std::vector<RegistrationEntry>> entries_ =
       std::make_shared<const std::vector<RegistrationEntry>>();

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::string_view kUntil = " mm, where it lay until ";
 constexpr std::string_view kLookedUntil = ", as it did until ";
+constexpr std::string_view kLastSure = "last sure at ", kNeverSure = "never sure";
 constexpr std::string_view kUnit = " ns";
 
 // " mm, where it lay until 5 ns" after that head; false: it is something else.
@@ -64,6 +65,18 @@ SeenLooks seen_looks_from_text(const std::string& text, const std::string& where
   if (!is_short && !is_long)
     throw InvalidInput(where, "", "\"" + text + "\" does not say how the bone looks");
   return looks;
+}
+
+std::string to_text(const SeenMedium& medium) {
+  if (medium.last_sure_ns < 0) return std::string(kNeverSure);
+  return std::string(kLastSure) + std::to_string(medium.last_sure_ns) + std::string(kUnit);
+}
+
+SeenMedium seen_medium_from_text(const std::string& text, const std::string& where) {
+  SeenMedium medium;
+  if (text != kNeverSure && (!read_until(text, kLastSure, medium.last_sure_ns) || medium.last_sure_ns < 0))
+    throw InvalidInput(where, "", "\"" + text + "\" does not say until when the medium was sure");
+  return medium;
 }
 
 }  // namespace arthronaut::operation

@@ -1,5 +1,5 @@
-// A bone that the picture shows elsewhere than where it lay, or otherwise than it looked, as an operation is
-// told of it and its journal keeps it.
+// A bone that the picture shows elsewhere than where it lay, or otherwise than it looked, and a medium that
+// the pictures contradict, as an operation is told of it and its journal keeps it.
 #pragma once
 
 #include <cstdint>
@@ -33,5 +33,17 @@ inline constexpr std::string_view kLooksOtherwise = "otherwise", kLooksAsItDid =
 [[nodiscard]] std::string to_text(const SeenLooks& looks);
 // Also of older versions, which wrote "otherwise" alone. Throws InvalidInput that names `where`.
 [[nodiscard]] SeenLooks seen_looks_from_text(const std::string& text, const std::string& where);
+
+// The medium in force is contradicted from now on.
+struct SeenMedium {
+  // Time of a frame: what was measured in this source later was, or may have been, measured through the wrong
+  // medium. -1: all of it.
+  std::int64_t last_sure_ns = -1;
+};
+
+// "last sure at 4000000000 ns", or "never sure".
+[[nodiscard]] std::string to_text(const SeenMedium& medium);
+// Throws InvalidInput that names `where`.
+[[nodiscard]] SeenMedium seen_medium_from_text(const std::string& text, const std::string& where);
 
 }  // namespace arthronaut::operation

@@ -44,13 +44,36 @@ int StrokeBook::take_back() {
     const auto first = std::find_if(points_.begin(), points_.end(),
                                     [&](const strokes::CurvePoint& point) { return point.curve == curve; });
     was_long_enough = strokes::counts({first, points_.end()}, kLimits);
-    excluded_.erase(curve);
-    points_.erase(first, points_.end());
+    erase_last(first);
     ++count;
   }
   is_cut_ = true;
   trace_anew();
   return count;
+}
+
+int StrokeBook::take_back_since(double time_s) {
+  const auto first_of_source = points_.begin() + static_cast<std::ptrdiff_t>(first_of_source_);
+  const auto later = std::find_if(first_of_source, points_.end(),
+                                  [&](const strokes::CurvePoint& point) { return point.time_s > time_s; });
+  if (later == points_.end()) return 0;
+  const int from_curve = later->curve;
+  int count = 0;
+  for (; !points_.empty() && points_.back().curve >= from_curve; ++count) {
+    const int curve = points_.back().curve;
+    erase_last(std::find_if(points_.begin(), points_.end(),
+                            [&](const strokes::CurvePoint& point) { return point.curve == curve; }));
+  }
+  is_cut_ = true;
+  trace_anew();
+  return count;
+}
+
+// The last stroke, which begins there.
+void StrokeBook::erase_last(strokes::Curves::const_iterator first) {
+  excluded_.erase(first->curve);
+  points_.erase(first, points_.end());
+  first_of_source_ = std::min(first_of_source_, points_.size());
 }
 
 void StrokeBook::exclude(int curve, bool is_excluded) {
@@ -62,6 +85,7 @@ void StrokeBook::exclude(int curve, bool is_excluded) {
 
 void StrokeBook::clear() {
   points_.clear();
+  first_of_source_ = 0;
   excluded_.clear();
   is_cut_ = true;
   trace_anew();

@@ -27,6 +27,11 @@ class StrokeBook {
   // Forgets the last stroke that is long enough to count, and the crumbs after it. Returns how many strokes
   // went.
   int take_back();
+  // The points so far are of a source that has ended, and of another clock than those to come.
+  void on_source() { first_of_source_ = points_.size(); }
+  // Forgets the first stroke of this source that has a point after that time, and all after it. Returns how
+  // many strokes went.
+  int take_back_since(double time_s);
   void exclude(int curve, bool is_excluded);
   void clear();
 
@@ -43,11 +48,13 @@ class StrokeBook {
   static constexpr std::size_t kMostTraced = 6000;
 
  private:
+  void erase_last(strokes::Curves::const_iterator first);
   void trace_point(const strokes::CurvePoint& point);
   void trace_anew();
   void step_off_screen(std::size_t count);
 
   strokes::Curves points_;
+  std::size_t first_of_source_ = 0;
   std::set<int> excluded_;
   int next_curve_ = 0;
   bool is_cut_ = true;  // the next point starts a stroke

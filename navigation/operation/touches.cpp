@@ -86,7 +86,8 @@ WayOut way_out_of(const TouchAlarm& alarm, const Touches& touches) {
                                                                 : WayOut::MarkerPlacedAnew;
 }
 
-void Touches::add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of) {
+void Touches::add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of,
+                        const Moment& at) {
   // The same place touched again verifies nothing more; one that was touched under another provenance, or
   // that verifies nothing any more, was not touched yet.
   const auto first = touches_.begin() + static_cast<std::ptrdiff_t>(first_to_verify_);
@@ -94,25 +95,39 @@ void Touches::add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registrat
     return (touch.tip_in_marker_mm - tip_in_marker_mm).norm() < limits_.apart_mm &&
            !registration::mismatch_of(touch.of, of);
   });
-  touches_.push_back({tip_in_marker_mm, of, is_new_place});
+  touches_.push_back({tip_in_marker_mm, of, is_new_place, at});
   last_ = Last::Kind::Touch;
   last_of_ = of;
   last_is_of_now_ = true;
 }
 
-void Touches::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm,
-                                  const registration::Provenance& of) {
+void Touches::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of,
+                                  const Moment& at) {
   last_of_ = of;
   last_is_of_now_ = true;
-  control_touches_.push_back({tip_in_marker_mm, of});
-  if (control_touches_.size() == 1) {
-    last_ = Last::Kind::ControlSet;
-    return;
+  control_touches_.push_back({tip_in_marker_mm, of, at});
+  last_ = control_touches_.size() == 1 ? Last::Kind::ControlSet : Last::Kind::ControlAgain;
+  compare_control_point();
+}
+
+// How far it lay off last, and how often in a row: one that is back where it was takes the suspicion away.
+void Touches::compare_control_point() {
+  control_shift_mm_ = 0;
+  control_violations_ = 0;
+  for (const ControlTouch& touch : control_touches_) {
+    control_shift_mm_ = (touch.tip_in_marker_mm - control_touches_.front().tip_in_marker_mm).norm();
+    control_violations_ = control_shift_mm_ > limits_.max_control_shift_mm ? control_violations_ + 1 : 0;
   }
-  control_shift_mm_ = (tip_in_marker_mm - control_touches_.front().tip_in_marker_mm).norm();
-  // One that is back where it was takes the suspicion away.
-  control_violations_ = control_shift_mm_ > limits_.max_control_shift_mm ? control_violations_ + 1 : 0;
-  last_ = Last::Kind::ControlAgain;
+}
+
+Touches::Gone Touches::forget_since(const Moment& moment) {
+  const auto is_since = [&](const auto& touch) { return touch.at.is_after(moment); };
+  const Gone gone{std::erase_if(touches_, is_since) > 0, std::erase_if(control_touches_, is_since) > 0};
+  if (!gone.touches && !gone.control_point) return gone;
+  first_to_verify_ = std::min(first_to_verify_, touches_.size());
+  compare_control_point();
+  last_ = Last::Kind::None;
+  return gone;
 }
 
 void Touches::clear() { *this = Touches(limits_); }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,16 @@ struct TouchLimits {
   // Of a nominal guide's tip on the control point, where that is to guide: as far as a touch may be off.
   double max_guide_error_mm = 1.5;
   double apart_mm = 3;  // touches nearer to each other are of the same place
+};
+
+// When something was measured: in which of the sources that an operation had, and then. What is of another
+// source is of another clock, and neither before nor after.
+struct Moment {
+  std::uint64_t source = 0;
+  std::int64_t time_ns = 0;
+  [[nodiscard]] bool is_after(const Moment& other) const {
+    return source == other.source && time_ns > other.time_ns;
+  }
 };
 
 // The tip at rest: a touch is where the tip stood for a moment, not where one frame saw it.
@@ -80,9 +91,17 @@ class Touches {
 
   // `of`: what the pictures were of when it was taken. A touch under another provenance is kept and says
   // nothing about a registration of this one.
-  void add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of);
-  void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of);
+  void add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of,
+                 const Moment& at = {});
+  void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of,
+                           const Moment& at = {});
   void clear();
+  // Those after that moment were no touches; what was before them stands as it stood then. Which kinds there
+  // were of them.
+  struct Gone {
+    bool touches = false, control_point = false;
+  };
+  Gone forget_since(const Moment& moment);
   // From now on others verify: the marker may sit elsewhere than where those so far were touched under it.
   // What of them lies off the bone stays a violation.
   void verify_anew() { first_to_verify_ = touches_.size(); }
@@ -128,6 +147,7 @@ class Touches {
     Eigen::Vector3d tip_in_marker_mm;
     registration::Provenance of;
     bool is_new_place;
+    Moment at;
   };
   // Of those that may verify, were judged and are at different places: how far off the bone they lie.
   [[nodiscard]] std::vector<double> misses_mm() const;
@@ -135,7 +155,9 @@ class Touches {
   struct ControlTouch {
     Eigen::Vector3d tip_in_marker_mm;
     registration::Provenance of;
+    Moment at;
   };
+  void compare_control_point();
   TouchLimits limits_;
   std::vector<Touch> touches_;
   std::size_t first_to_verify_ = 0;

@@ -51,6 +51,8 @@ std::string_view kind_of(JournalKind kind) {
       return kBoneMovedEvent;
     case JournalKind::BoneLooks:
       return kBoneLooksEvent;
+    case JournalKind::MediumWrong:
+      return kMediumWrongEvent;
     case JournalKind::SourceStarted:
       return kSourceStartedEvent;
     case JournalKind::SourceEnded:

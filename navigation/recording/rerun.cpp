@@ -180,6 +180,9 @@ void Rerun::play(const SessionEvent& event) {
   } else if (event.kind == kBoneLooksEvent) {
     operation_.tell_bone_looks(
         operation::seen_looks_from_text(event.text, database_file(session_->folder()).string()));
+  } else if (event.kind == kMediumWrongEvent) {
+    operation_.tell_medium_wrong(
+        operation::seen_medium_from_text(event.text, database_file(session_->folder()).string()));
   } else if (event.kind == kSourceEndedEvent) {
     operation_.end_source();
   } else if (!has_journal_ && event.kind == kPlanEvent) {

@@ -95,6 +95,7 @@ inline constexpr std::string_view kTimeOutConfirmedEvent =
 inline constexpr std::string_view kBoneMovedEvent =
     "bone moved in the picture";                                         // text: operation::SeenDrift
 inline constexpr std::string_view kBoneLooksEvent = "bone looks";        // text: operation::SeenLooks
+inline constexpr std::string_view kMediumWrongEvent = "medium wrong";    // text: operation::SeenMedium
 inline constexpr std::string_view kGuideCheckedEvent = "guide checked";  // text: how far its tip was off
 inline constexpr std::string_view kDrilledEvent = "tunnel drilled";      // text: the file that holds it
 inline constexpr std::string_view kDrilledTakenBackEvent =

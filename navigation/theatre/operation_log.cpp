@@ -37,6 +37,8 @@ std::string what_of(const JournalEntry& entry) {
       return "bone moved in the picture, mm";
     case JournalKind::BoneLooks:
       return "bone looks";
+    case JournalKind::MediumWrong:
+      return "medium wrong, what was measured since is gone";
     case JournalKind::SourceStarted:
       return "source started";
     case JournalKind::SourceEnded:

@@ -126,6 +126,7 @@ bool OperationRun::follow_registration() {
   const operation::OutcomePtr before = operation_.outcome();
   operation_.take_outcome(registration_->latest());
   operation_.take_look(looks_->latest());
+  operation_.heed_pictures();
   pass_on();
   return operation_.outcome() != before;
 }

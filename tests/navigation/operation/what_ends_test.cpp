@@ -106,6 +106,13 @@ const std::vector<Row>& rows() {
   return kRows;
 }
 
+void show_through_wrong_medium(PhantomOperation& run) {
+  pipeline::FrameResult frame = run.frame();
+  frame.camera_from_world.is_valid = false;
+  frame.guidance.state = guidance::GuidanceState::WrongMedium;
+  run.show(frame);
+}
+
 // Each column's letter, and what happens.
 const std::vector<std::pair<char, std::function<void(PhantomOperation&)>>>& events() {
   using Event = std::function<void(PhantomOperation&)>;
@@ -137,12 +144,11 @@ const std::vector<std::pair<char, std::function<void(PhantomOperation&)>>>& even
          run.apply(ClearStrokes{});
        }},
       {'M', [](PhantomOperation& run) { run.apply(MarkerPlacedAnew{}); }},
-      {'W',
+      {'W', show_through_wrong_medium},
+      {'D',
        [](PhantomOperation& run) {
-         pipeline::FrameResult frame = run.frame();
-         frame.camera_from_world.is_valid = false;
-         frame.guidance.state = guidance::GuidanceState::WrongMedium;
-         run.show(frame);
+         show_through_wrong_medium(run);
+         run.operation().tell_medium_wrong({});
        }},
       {'L',
        [](PhantomOperation& run) {

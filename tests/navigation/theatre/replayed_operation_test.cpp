@@ -397,16 +397,19 @@ TEST_F(ReplayedOperation, SecondLooksThatComeLateGiveTheSameStates) {
       run.keep_video(true);
       for (int i = 0; i < kFrames; ++i) ASSERT_TRUE(run.step().picture);
       run.end_source();
+      EXPECT_TRUE(run.operation().points().empty()) << "what was drawn through it is gone";
     }
     const std::string name = "session" + std::to_string(++session);
-    int looks = 0, failed = 0;
+    int looks = 0, failed = 0, wrong = 0;
     const recording::RecordedSession recorded(folder_ / name);  // whose events are looked at
     for (const recording::SessionEvent& event : recorded.events()) {
       looks += event.kind == recording::kLookEvent ? 1 : 0;
       failed += event.kind == recording::kLookFailedEvent ? 1 : 0;
+      wrong += event.kind == recording::kMediumWrongEvent ? 1 : 0;
     }
     EXPECT_GT(looks, first_fails ? 0 : 1) << frames_late << " frames late";
     EXPECT_EQ(failed, first_fails ? 1 : 0);
+    EXPECT_EQ(wrong, 1);
     expect_replays(name, kFrames);
   }
 }
