@@ -30,7 +30,7 @@ std::vector<std::string> column(const Content& content, const tunnels::TunnelKey
                                     verdict == "not reliable" ? "NOT RELIABLE" : verdict};
   if (found.is_found) {
     const auto plan = content.knee.plan.tunnels.find(key);
-    cells.push_back(format("%.2f mm \u00B1 %.2f", found.offset_mm, std::max(found.entry_sigma_mm, 0.01)));
+    cells.push_back(format("%.2f mm ", found.offset_mm) + postop::sigma_in_words(found.entry_sigma_mm, 2));
     const auto place = content.places.find(key);
     const bool has_place = place != content.places.end();
     const auto told = [&](std::string (&words)(const postop::AchievedPlace&)) {
@@ -39,8 +39,8 @@ std::vector<std::string> column(const Content& content, const tunnels::TunnelKey
     };
     cells.push_back(told(postop::off_in_words));
     cells.push_back(told(postop::grid_in_words));
-    cells.push_back(format("%.2f\u00B0 \u00B1 %.2f", geometry::deg_from_rad(found.angle_rad),
-                           std::max(geometry::deg_from_rad(found.direction_sigma_rad), 0.01)));
+    cells.push_back(format("%.2f\u00B0 ", geometry::deg_from_rad(found.angle_rad)) +
+                    postop::sigma_in_words(geometry::deg_from_rad(found.direction_sigma_rad), 2));
     cells.push_back(format("%.1f mm", found.tunnel.diameter_mm) +
                     (plan == content.knee.plan.tunnels.end()
                          ? ""

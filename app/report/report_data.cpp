@@ -130,12 +130,14 @@ ordered_json json_of(const Content& content, const operation::AchievedTunnel& ac
   return node;
 }
 
-// Numbers of what was not found are null.
+// Numbers of what was not found, or is not known, are null.
 ordered_json postoperative_of(const Content& content) {
   ordered_json all = ordered_json::array();
   for (const auto& [key, comparison] : content.postoperative) {
     const postop::AchievedTunnel& found = comparison.tunnel;
-    const auto number = [&](double value) { return found.is_found ? ordered_json(value) : ordered_json(); };
+    const auto number = [&](double value) {
+      return found.is_found && std::isfinite(value) ? ordered_json(value) : ordered_json();
+    };
     ordered_json node = {{"tunnel", tunnels::name_of(key)}, {"verdict", verdict_of(content, key)}};
     node["reliable"] = node["verdict"] == "reliable";
     node["reasons"] = doubts_of(content, key);
@@ -154,9 +156,8 @@ ordered_json postoperative_of(const Content& content) {
     node["beyond_mm"] = number(found.beyond_mm);
     node["entry_sigma_mm"] = number(found.entry_sigma_mm);
     node["direction_sigma_deg"] = number(geometry::deg_from_rad(found.direction_sigma_rad));
-    for (const auto& [name, sigma_mm] : {std::pair("diameter_sigma_mm", found.diameter_sigma_mm),
-                                         std::pair("length_sigma_mm", found.length_sigma_mm)})
-      node[name] = std::isfinite(sigma_mm) ? number(sigma_mm) : ordered_json();
+    node["diameter_sigma_mm"] = number(found.diameter_sigma_mm);
+    node["length_sigma_mm"] = number(found.length_sigma_mm);
     node["metal_share"] = number(found.metal_share);
     node["widths"] = ordered_json::array();
     for (const postop::Width& width : found.widths)

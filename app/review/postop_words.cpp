@@ -12,10 +12,11 @@ using files::format;
 
 // What was found and is not reliable is shown, with that word: a number alone would be believed.
 void fill_found(const postop::AchievedTunnel& found, AchievedRow& row) {
-  row.offset = format("%.1f mm \u00B1 %.1f from the planned one", found.offset_mm,
-                      std::max(found.entry_sigma_mm, 0.1));
-  row.angle = format("%.1f\u00B0 \u00B1 %.1f to the planned axis", geometry::deg_from_rad(found.angle_rad),
-                     std::max(geometry::deg_from_rad(found.direction_sigma_rad), 0.1));
+  row.offset = format("%.1f mm ", found.offset_mm) + postop::sigma_in_words(found.entry_sigma_mm, 1) +
+               " from the planned one";
+  row.angle = format("%.1f\u00B0 ", geometry::deg_from_rad(found.angle_rad)) +
+              postop::sigma_in_words(geometry::deg_from_rad(found.direction_sigma_rad), 1) +
+              " to the planned axis";
   row.diameter = format("%.1f mm", found.tunnel.diameter_mm);
   row.length = postop::length_in_words(found);
   if (const std::string widths = postop::widths_in_words(found.widths); !widths.empty())
@@ -76,10 +77,12 @@ std::vector<std::string> error_budget(const postop::Comparison& comparison,
         "entry was seen, %.0f %% of it lies on an edge.",
         comparison.bone.rms_mm, 100 * comparison.bone.in_view_share, 100 * comparison.bone.on_edge_share));
   if (comparison.tunnel.is_found) {
-    std::string line = format(
-        "Tunnel, one sigma by the scatter of the grey and the bone's pose: entry %.2f mm, "
-        "direction %.2f\u00B0",
-        comparison.tunnel.entry_sigma_mm, geometry::deg_from_rad(comparison.tunnel.direction_sigma_rad));
+    const auto told = [](double sigma, const char* unit) {
+      return std::isfinite(sigma) ? format("%.2f%s", sigma, unit) : std::string("not known");
+    };
+    std::string line = "Tunnel, one sigma by the scatter of the grey and the bone's pose: entry " +
+                       told(comparison.tunnel.entry_sigma_mm, " mm") + ", direction " +
+                       told(geometry::deg_from_rad(comparison.tunnel.direction_sigma_rad), "\u00B0");
     if (std::isfinite(comparison.tunnel.diameter_sigma_mm))
       line += format(", diameter %.2f mm", comparison.tunnel.diameter_sigma_mm);
     if (std::isfinite(comparison.tunnel.length_sigma_mm))

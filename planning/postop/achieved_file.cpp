@@ -13,7 +13,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json number(bool is_known, double value) { return is_known ? ordered_json(value) : ordered_json(); }
+// What is not finite is not known.
+ordered_json number(bool is_known, double value) {
+  return is_known && std::isfinite(value) ? ordered_json(value) : ordered_json();
+}
 
 ordered_json tunnel_json(const tunnels::TunnelKey& key, const AchievedTunnel& achieved) {
   const bool found = achieved.is_found;
@@ -33,16 +36,14 @@ ordered_json tunnel_json(const tunnels::TunnelKey& key, const AchievedTunnel& ac
   json["beyond_mm"] = found ? ordered_json(achieved.beyond_mm) : ordered_json();
   json["entry_sigma_mm"] = number(found, achieved.entry_sigma_mm);
   json["direction_sigma_deg"] = number(found, geometry::deg_from_rad(achieved.direction_sigma_rad));
-  json["diameter_sigma_mm"] =
-      number(found && std::isfinite(achieved.diameter_sigma_mm), achieved.diameter_sigma_mm);
-  json["length_sigma_mm"] =
-      number(found && std::isfinite(achieved.length_sigma_mm), achieved.length_sigma_mm);
+  json["diameter_sigma_mm"] = number(found, achieved.diameter_sigma_mm);
+  json["length_sigma_mm"] = number(found, achieved.length_sigma_mm);
   json["metal_share"] = number(found, achieved.metal_share);
   json["widths"] = ordered_json::array();
   for (const Width& width : achieved.widths)
     json["widths"].push_back({{"from_entry_mm", width.from_entry_mm},
                               {"diameter_mm", width.diameter_mm},
-                              {"sigma_mm", number(std::isfinite(width.sigma_mm), width.sigma_mm)}});
+                              {"sigma_mm", number(true, width.sigma_mm)}});
   return json;
 }
 
@@ -137,8 +138,7 @@ void put_place(ordered_json& node, const AchievedPlace& place) {
       !place.grid.empty() || place.axes_from == landmarks::AnatomicalAxes::Origin::FromLandmarks;
   node["landmarks"] = by_landmarks ? ordered_json(landmarks::to_text(place.landmarks_are)) : ordered_json();
   node["wall_mm"] = number(place.wall_mm.has_value(), place.wall_mm.value_or(0));
-  const bool is_known = place.wall_mm && std::isfinite(place.wall_sigma_mm);
-  node["wall_sigma_mm"] = number(is_known, place.wall_sigma_mm);
+  node["wall_sigma_mm"] = number(place.wall_mm.has_value(), place.wall_sigma_mm);
   node["planned_wall_mm"] = number(place.planned_wall_mm.has_value(), place.planned_wall_mm.value_or(0));
 }
 

@@ -57,7 +57,9 @@ std::optional<LeastWall> wall_of(const tunnels::Tunnel& drilled, double depth_mm
 void try_walls(const AchievedTunnel& achieved, double depth_mm, const geometry::Surface& bone,
                AchievedPlace& place) {
   const auto wall = wall_of(achieved.tunnel, depth_mm, bone);
-  if (!wall || !std::isfinite(achieved.diameter_sigma_mm)) return;
+  if (!wall ||
+      !std::isfinite(achieved.entry_sigma_mm + achieved.direction_sigma_rad + achieved.diameter_sigma_mm))
+    return;
   // Across the axis in one of two directions, of the radius, and of the bone's surface.
   const auto side_sigma_mm = [&](double station_mm) {
     return std::sqrt(0.5 * (std::pow(achieved.entry_sigma_mm, 2) +
@@ -157,6 +159,11 @@ std::string wall_in_words(const AchievedPlace& place) {
                                  place.most_wall_mm)
                  : files::format("%.1f mm", *place.wall_mm)) +
          (place.planned_wall_mm ? files::format("; planned %.1f mm", *place.planned_wall_mm) : "");
+}
+
+std::string sigma_in_words(double sigma, int decimals) {
+  if (!std::isfinite(sigma)) return "\u00B1 not known";
+  return files::format("\u00B1 %.*f", decimals, std::max(sigma, std::pow(10.0, -decimals)));
 }
 
 std::string length_in_words(const AchievedTunnel& achieved) {

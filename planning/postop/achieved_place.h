@@ -56,6 +56,8 @@ struct AchievedPlace {
 // "1.8 mm; planned 2.6 mm"; "0.0 to 4.2 mm, it grazes the bone's surface; planned 2.6 mm" where it is known
 // to no better than half a millimetre; empty where the drilled one's is not known.
 [[nodiscard]] std::string wall_in_words(const AchievedPlace& place);
+// "± 0.12", at least 1 of the last of so many decimals; "± not known" where it is infinite.
+[[nodiscard]] std::string sigma_in_words(double sigma, int decimals);
 // "27.3 mm"; "22.0 mm, a socket; beyond it a bore of 4.5 mm"; "30.5 mm, its end not seen". Precondition: the
 // tunnel was found.
 [[nodiscard]] std::string length_in_words(const AchievedTunnel& achieved);

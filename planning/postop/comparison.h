@@ -42,19 +42,20 @@ struct Width {
 };
 
 struct AchievedTunnel {
-  bool is_found = false;      // false: the numbers are meaningless
-  tunnels::Tunnel tunnel;     // the entry on the plan's bone, the direction in the plan's sense
-  double length_mm = 0;       // within the bone, to where it comes out, ends or goes on as a thinner bore
-  bool comes_out = false;     // else it is a socket
-  bool end_is_seen = true;    // false: how long it is is not known; the length is to where images or bone end
-  double beyond_mm = 0;       // diameter of the thinner bore that goes on beyond a socket; 0: none is seen
-  double offset_mm = 0;       // of the entry from the planned one
-  double angle_rad = 0;       // between the axes
-  double entry_sigma_mm = 0;  // one sigma, by the scatter of the grey and the bone's pose
-  double direction_sigma_rad = 0;
-  // Of the diameter, and of the length: by the grey, and for an end within the bone by how grainy the marrow
-  // about it is. Infinite where a file doesn't say, or it is not known.
-  double diameter_sigma_mm = std::numeric_limits<double>::infinity(),
+  bool is_found = false;    // false: the numbers are meaningless
+  tunnels::Tunnel tunnel;   // the entry on the plan's bone, the direction in the plan's sense
+  double length_mm = 0;     // within the bone, to where it comes out, ends or goes on as a thinner bore
+  bool comes_out = false;   // else it is a socket
+  bool end_is_seen = true;  // false: how long it is is not known; the length is to where images or bone end
+  double beyond_mm = 0;     // diameter of the thinner bore that goes on beyond a socket; 0: none is seen
+  double offset_mm = 0;     // of the entry from the planned one
+  double angle_rad = 0;     // between the axes
+  // One sigma each; infinite where a file doesn't say, or it is not known. Of entry and direction by the
+  // scatter of the grey and the bone's pose. Of the diameter, and of the length: by the grey, and for an end
+  // within the bone by how grainy the marrow about it is.
+  double entry_sigma_mm = std::numeric_limits<double>::infinity(),
+         direction_sigma_rad = std::numeric_limits<double>::infinity(),
+         diameter_sigma_mm = std::numeric_limits<double>::infinity(),
          length_sigma_mm = std::numeric_limits<double>::infinity();
   double metal_share = 0;     // of what is inside it
   std::vector<Width> widths;  // where its wall is seen

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
+
 #include "app/review/postop_page.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "planning/files/atomic_file.h"
@@ -140,11 +142,41 @@ TEST(PostopShown, AnotherPatientsImagesTakeNothingAway) {
   EXPECT_EQ(shown.comparisons.size(), 2U);
   EXPECT_TRUE(shown.comparisons.at(bones::BoneKind::Femur).tunnel.is_found);
   auto own = std::make_shared<open_case::PostopAnswer>();
-  own->comparisons[bones::BoneKind::Tibia];
+  own->comparisons[bones::BoneKind::Tibia].bone.reliable = true;
   EXPECT_TRUE(take_answer(own, shown));
   EXPECT_EQ(shown.answer, own);
   EXPECT_EQ(shown.comparisons.size(), 1U);
   EXPECT_TRUE(shown.other_patient.empty());
+}
+
+// A file that does not say how well entry and direction are known was read as if they were known exactly.
+TEST(AchievedFile, ASigmaThatItDoesNotSayIsNotKnown) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "achieved.json";
+  postop::write_achieved_file(file, some());
+  for (const bool is_null : {false, true}) {
+    auto json = nlohmann::json::parse(files::read_text(file));
+    for (auto& tunnel : json.at("tunnels"))
+      for (const char* key : {"entry_sigma_mm", "direction_sigma_deg"}) {
+        tunnel.erase(key);
+        if (is_null) tunnel[key] = nullptr;
+      }
+    files::write_atomically(file, json.dump());
+    const Comparisons read = postop::read_achieved_file(file);
+    const postop::Comparison& femur = read.at(bones::BoneKind::Femur);
+    EXPECT_TRUE(std::isinf(femur.tunnel.entry_sigma_mm));
+    EXPECT_TRUE(std::isinf(femur.tunnel.direction_sigma_rad));
+    const std::map<tunnels::TunnelKey, tunnels::Tunnel> planned;
+    const AchievedRow row = achieved_rows(read, planned, {}, {}).front();
+    EXPECT_THAT(row.offset, HasSubstr("\u00B1 not known"));
+    EXPECT_THAT(row.angle, HasSubstr("\u00B1 not known"));
+    EXPECT_THAT(error_budget(femur, nullptr, Eigen::Vector3d::Zero()),
+                testing::Contains(HasSubstr("entry not known, direction not known")));
+    postop::write_achieved_file(file, read);
+    const auto again = nlohmann::json::parse(files::read_text(file)).at("tunnels").at(0);
+    EXPECT_TRUE(again.at("entry_sigma_mm").is_null());
+    EXPECT_TRUE(again.at("direction_sigma_deg").is_null());
+  }
 }
 
 // What a comparison kept in the case is shown again with every number and every reason.

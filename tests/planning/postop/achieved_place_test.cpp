@@ -25,6 +25,7 @@ class AchievedPlaceTest : public ::testing::Test {
     AchievedTunnel achieved;
     achieved.is_found = achieved.comes_out = true;
     achieved.tunnel = tunnel;
+    achieved.entry_sigma_mm = achieved.direction_sigma_rad = 0;
     return achieved;
   }
   struct Known {
@@ -124,6 +125,18 @@ TEST_F(AchievedPlaceTest, SaysHowWellTheBoneBesideItIsKnown) {
   EXPECT_LT(place.wall_sigma_mm, 0.3);
   EXPECT_LT(place.least_wall_mm, *place.wall_mm - 0.15);
   EXPECT_GT(place.most_wall_mm, *place.wall_mm + 0.15);
+  for (double AchievedTunnel::*const unknown :
+       {&AchievedTunnel::entry_sigma_mm, &AchievedTunnel::direction_sigma_rad}) {
+    AchievedTunnel other = achieved;
+    other.*unknown = std::numeric_limits<double>::infinity();
+    EXPECT_FALSE(std::isfinite(place_of(other, knee_.femoral_tunnel, femur_, kConfirmed).wall_sigma_mm));
+  }
+}
+
+TEST(AchievedSigma, IsNeverNothing) {
+  EXPECT_EQ(sigma_in_words(0.123, 2), "\u00B1 0.12");
+  EXPECT_EQ(sigma_in_words(0, 1), "\u00B1 0.1");
+  EXPECT_EQ(sigma_in_words(std::numeric_limits<double>::infinity(), 2), "\u00B1 not known");
 }
 
 // Moved aside bit by bit until its wall leaps from one such bit to the next.
