@@ -6,6 +6,7 @@
 #include "planning/cases/case_lock.h"
 #include "planning/cases/case_note.h"
 #include "planning/files/atomic_file.h"
+#include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/library/case_query.h"
 #include "planning/library/cohort.h"
@@ -71,6 +72,8 @@ void print(const Context& context, const std::vector<CaseRecord>& records, std::
     } else {
       context.say("  ! " + outcome);
     }
+    if (!record.part_problem.empty())
+      context.say("  ! in part not to be read: " + files::within_folder(record.folder, record.part_problem));
     if (!record.note.empty()) {
       std::string note = record.note;
       for (std::size_t at = 0; (at = note.find('\n', at)) != std::string::npos; at += 5)

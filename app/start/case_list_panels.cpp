@@ -7,6 +7,7 @@
 #include "planning/files/format.h"
 #include "planning/files/local_time.h"
 #include "planning/files/utc_clock.h"
+#include "planning/files/within_folder.h"
 
 namespace arthronaut::start {
 
@@ -268,6 +269,9 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
   const Severity severity = severity_of(*record, verdict);
   if (record->state() != CaseState::Planned && (severity == Severity::Caution || severity == Severity::Bad))
     widgets::status_row(ui, severity, capital(std::string(to_text(record->state()))), record->last_outcome());
+  if (!record->part_problem.empty())
+    widgets::status_row(ui, Severity::Caution, "Not readable",
+                        files::within_folder(record->folder, record->part_problem));
   if (!record->side.empty()) widgets::status_row(ui, Severity::Quiet, "Side", record->side + " knee");
   if (record->problem.empty())
     widgets::status_row(ui, severity_of_plan(*record, verdict), "Plan", plan_in_words(*record, verdict));

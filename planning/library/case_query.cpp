@@ -27,7 +27,8 @@ std::string searched(const CaseRecord& record) {
   std::string text = record.name + "\n" + record.note + "\n" + record.side + "\n" + record.created_utc +
                      "\n" + record.changed_utc + "\n" + std::string(to_text(record.state())) + "\n" +
                      files::local_day(record.created_utc) + "\n" + files::local_day(record.changed_utc) +
-                     "\n" + record.plan_in_words() + "\n" + record.folder.string() + "\n" + record.problem;
+                     "\n" + record.plan_in_words() + "\n" + record.folder.string() + "\n" + record.problem +
+                     "\n" + record.part_problem;
   for (const SessionFacts& session : record.sessions)
     text += "\n" + session.started_utc + "\n" + files::local_day(session.started_utc) + "\n" + session.bone +
             "\n" + session.source_kind + "\n" + session.outcome();

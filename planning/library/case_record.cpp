@@ -36,7 +36,7 @@ constexpr std::array<std::pair<CaseState, std::string_view>, 6> kStates{{
 }};
 constexpr std::array<const char*, 4> kFiles{"case.json", "plan.json", "note.json", "achieved.json"};
 // Another word when a record holds more than before: what an index kept of it is then read again.
-constexpr std::string_view kHolds = "length";
+constexpr std::string_view kHolds = "part problem";
 
 // An open folder: what lies in it is looked at by the thousand, and by short names that costs half.
 class OpenFolder {
@@ -134,6 +134,20 @@ std::string utc_of(std::int64_t seconds) {
 
 std::optional<double> optional_number(const files::JsonObject& node, std::string_view key) {
   return node.has(key) ? std::optional(node.number(key)) : std::nullopt;
+}
+
+// Why reading fails; empty: it does not.
+std::string problem_of(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const InvalidInput& error) {
+    return error.what();
+  } catch (const IoError& error) {
+    return error.what();
+  } catch (const fs::filesystem_error& error) {
+    return error.what();
+  }
+  return {};
 }
 
 std::vector<PostoperativeFacts> read_postoperative(const fs::path& case_folder) {
@@ -236,27 +250,29 @@ CaseRecord read_case_record(const fs::path& case_folder, const SessionReader& re
   record.is_there = looked.has_value();
   if (!looked) return record;
   record.changed_utc = utc_of(looked->newest_s());
-  const auto note_problem = [&](const std::exception& error) { record.problem = error.what(); };
-  // Another user's or a broken case is one line of the list, not the end of it.
-  try {
+  // Another user's or a broken case is one line of the list, not the end of it; a broken part of it no more
+  // than that part.
+  record.problem = problem_of([&] {
     const cases::CaseOutline outline = cases::read_case_outline(case_folder);
     record.name = outline.name;
     record.side = bones::to_text(outline.side);
     record.created_utc = outline.created_utc;
     record.bones = outline.bones;
     record.planned = outline.planned;
-    record.note = cases::load_note(case_folder).text;
-    record.postoperative = read_postoperative(case_folder);
-    for (const fs::path& session : cases::session_folders(case_folder)) {
-      SessionFacts facts = read_session(session);
-      if (!facts.is_exercise) record.sessions.push_back(std::move(facts));
-    }
-  } catch (const InvalidInput& error) {
-    note_problem(error);
-  } catch (const IoError& error) {
-    note_problem(error);
-  } catch (const fs::filesystem_error& error) {
-    note_problem(error);
+  });
+  const auto read_part = [&](const auto& read) {
+    if (const std::string problem = problem_of(read); !problem.empty())
+      record.part_problem += (record.part_problem.empty() ? "" : "; ") + problem;
+  };
+  if (record.problem.empty()) {
+    read_part([&] { record.note = cases::load_note(case_folder).text; });
+    read_part([&] { record.postoperative = read_postoperative(case_folder); });
+    read_part([&] {
+      for (const fs::path& session : cases::session_folders(case_folder)) {
+        SessionFacts facts = read_session(session);
+        if (!facts.is_exercise) record.sessions.push_back(std::move(facts));
+      }
+    });
   }
   if (record.name.empty()) record.name = case_folder.stem().string();
   return record;

@@ -73,6 +73,9 @@ struct CaseRecord {
   std::filesystem::path folder;  // absolute
   bool is_there = true;          // false: the rest is what was known when it was there last
   std::string problem;           // why it cannot be read; empty when it can
+  // Why something beside case and plan cannot be read: note, comparison, list of sessions; the rest is told.
+  // Empty: all of it can.
+  std::string part_problem;
   std::string name;
   std::string side;         // "left", "right"
   std::string created_utc;  // ISO 8601
@@ -95,7 +98,7 @@ struct CaseRecord {
   [[nodiscard]] std::string last_outcome() const;
 };
 
-// Does not throw for what it finds: is_there and problem say it.
+// Does not throw for what it finds: is_there, problem and part_problem say it.
 [[nodiscard]] CaseRecord read_case_record(const std::filesystem::path& case_folder,
                                           const SessionReader& read_session);
 

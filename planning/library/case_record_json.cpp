@@ -114,6 +114,7 @@ ordered_json to_json(const CaseRecord& record) {
                        {"note", record.note},
                        {"last_outcome", record.last_outcome()}};
   if (!record.problem.empty()) node["problem"] = record.problem;
+  if (!record.part_problem.empty()) node["part_problem"] = record.part_problem;
   node["sessions"] = ordered_json::array();
   for (const SessionFacts& facts : record.sessions) node["sessions"].push_back(to_json(facts));
   node["postoperative"] = ordered_json::array();
@@ -127,6 +128,7 @@ CaseRecord record_from(const json& node) {
   record.folder = node.at("folder").get<std::string>();
   record.is_there = node.at("there");
   record.problem = node.value("problem", std::string());
+  record.part_problem = node.value("part_problem", std::string());
   record.name = node.at("name");
   record.side = node.at("side");
   record.created_utc = node.at("created_utc");

@@ -82,7 +82,9 @@ std::string row_of(const CaseRecord& record, const SessionFacts* session, const 
   for (const char* bone : {"femur", "tibia"})
     for (const char* bundle : {"am", "pl"}) add_postoperative(row, record, bone, bundle);
   row.add(record.note)
-      .add(session != nullptr && !session->problem.empty() ? session->problem : record.problem);
+      .add(session != nullptr && !session->problem.empty() ? session->problem
+           : !record.problem.empty()                       ? record.problem
+                                                           : record.part_problem);
   if (identities != nullptr) {
     const auto found = identities->find(record.folder);
     const cases::Identity identity = found != identities->end() ? found->second : cases::Identity{};

@@ -180,7 +180,8 @@ std::vector<CaseRecord> Library::look(const std::function<bool(std::size_t, std:
         const auto may_change = [](const SessionFacts& session) {
           return !session.problem.empty() || session.is_being_recorded;
         };
-        if (!one.record.problem.empty() || std::ranges::any_of(one.record.sessions, may_change))
+        if (!one.record.problem.empty() || !one.record.part_problem.empty() ||
+            std::ranges::any_of(one.record.sessions, may_change))
           one.fingerprint = 0;
         changed.push_back(one);
       }

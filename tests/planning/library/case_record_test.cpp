@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "planning/cases/case.h"
 #include "planning/cases/case_note.h"
 #include "planning/cases/identity.h"
 #include "planning/geometry/error.h"
+#include "planning/library/case_record_json.h"
 #include "tests/planning/library/made_case.h"
 #include "tests/temporary_folder.h"
 
@@ -80,6 +83,29 @@ TEST_F(CaseRecordTest, ABrokenCaseIsUnreadableWithItsReason) {
   EXPECT_EQ(record.state(), CaseState::Unreadable);
   EXPECT_THAT(record.problem, HasSubstr("case.json"));
   EXPECT_EQ(record.name, "Knee") << "the folder's name stands for it";
+}
+
+// A broken note or comparison made the whole case unreadable, and its sessions were in no trend and no
+// cohort.
+TEST_F(CaseRecordTest, ABrokenPartTakesNothingElseAway) {
+  for (const char* part : {"achieved.json", "note.json"}) {
+    SCOPED_TRACE(part);
+    const std::filesystem::path knee = folder_ / (std::string(part) + ".arthro");
+    test::make_case(knee);
+    std::filesystem::create_directories(knee / "sessions/0001-20260131-120000");
+    test::write_text(knee / part, "{");
+    const CaseRecord record = read_case_record(knee, [](const std::filesystem::path& session) {
+      SessionFacts facts;
+      facts.id = session.filename();
+      return facts;
+    });
+    EXPECT_EQ(record.problem, "");
+    EXPECT_THAT(record.part_problem, HasSubstr(part));
+    EXPECT_EQ(record_from(to_json(record)).part_problem, record.part_problem);
+    EXPECT_EQ(record.sessions.size(), 1U);
+    EXPECT_EQ(record.state(), CaseState::Navigated);
+    EXPECT_EQ(record.plan_in_words(), "femur planned, tibia not");
+  }
 }
 
 TEST_F(CaseRecordTest, AFolderThatIsGoneIsMissing) {
