@@ -32,11 +32,17 @@ std::optional<double> value_of(const SessionFacts& session, Trend trend) {
   return std::nullopt;
 }
 
-const SessionFacts* newest_session_of(const CaseRecord& record, const std::string& bone) {
-  const auto found = std::find_if(record.sessions.rbegin(), record.sessions.rend(), [&](const auto& session) {
-    return session.bone == bone && !session.started_utc.empty();
-  });
-  return found != record.sessions.rend() ? &*found : nullptr;
+// What is rehearsed or looked at after an operation is not what was compared.
+const SessionFacts* compared_session_of(const CaseRecord& record, const std::string& bone) {
+  const SessionFacts* best = nullptr;
+  const auto rank = [](const SessionFacts& session) {
+    return session.is_simulated() ? 0 : session.is_drilled() ? 2 : 1;
+  };
+  for (const SessionFacts& session : record.sessions)
+    if (session.bone == bone && !session.started_utc.empty() &&
+        (best == nullptr || rank(session) >= rank(*best)))
+      best = &session;
+  return best;
 }
 
 void add_comparisons(const CaseRecord& record, Trend trend, const TrendOptions& options,
@@ -44,7 +50,7 @@ void add_comparisons(const CaseRecord& record, Trend trend, const TrendOptions& 
   for (const PostoperativeFacts& facts : record.postoperative) {
     const auto value = trend == Trend::AchievedOffset ? facts.entry_offset_mm : facts.angle_deg;
     if (!value || !facts.is_reliable || (!options.bone.empty() && facts.bone != options.bone)) continue;
-    const SessionFacts* session = newest_session_of(record, facts.bone);
+    const SessionFacts* session = compared_session_of(record, facts.bone);
     if (session == nullptr)
       points.push_back({record.created_utc, *value, record.name, "", record.folder, facts.bone});
     else if (!session->is_simulated() || options.with_simulated)

@@ -43,8 +43,9 @@ struct TrendOptions {
   return trend == Trend::AchievedOffset || trend == Trend::AchievedAngle;
 }
 // In the order of time. Sessions that do not say the number, or whose header cannot be read, are left
-// out, as are comparisons that are not reliable. A comparison is of its bone's newest session, which says
-// when it was and whether of a simulation; of none, of the day on which the case was made.
+// out, as are comparisons that are not reliable. A comparison is of its bone's newest session
+// that drilled and is no simulation; without one, of the newest that is none; else of the newest one. That
+// says when it was and whether of a simulation; without any it is of the day on which the case was made.
 [[nodiscard]] std::vector<TrendPoint> trend_of(std::span<const CaseRecord> records, Trend trend,
                                                const TrendOptions& options = {});
 

@@ -80,6 +80,22 @@ TEST(TrendTest, GoesThroughTheComparisonsWithACt) {
   EXPECT_EQ(trend_of(records, Trend::AchievedAngle)[0].value, 4);
 }
 
+// What is rehearsed or looked at after an operation hid its comparison, or dated it wrongly.
+TEST(TrendTest, AComparisonIsOfTheOperation) {
+  std::vector<CaseRecord> records(1);
+  SessionFacts looked_at = session("2026-02-03", 0);
+  looked_at.entry_offset_mm.reset();
+  records[0].sessions = {session("2026-01-03", 1), looked_at, session("2026-03-03", 1, "simulation")};
+  records[0].postoperative = {found("femur", 2.5, 4, true)};
+  auto points = trend_of(records, Trend::AchievedOffset);
+  ASSERT_EQ(points.size(), 1U);
+  EXPECT_EQ(points[0].when_utc, "2026-01-03");
+  records[0].sessions.erase(records[0].sessions.begin());
+  points = trend_of(records, Trend::AchievedOffset);
+  ASSERT_EQ(points.size(), 1U);
+  EXPECT_EQ(points[0].when_utc, "2026-02-03") << "where none is drilled";
+}
+
 // By hand: moving ranges 1, 2, 1, 0, 2, 1, 0 have the mean 1, so the limits are 3 / 1.128 = 2.6596 about 4.5.
 TEST(ControlLimitsTest, AreThoseOfAnIndividualsChart) {
   const std::vector<double> values{4, 5, 3, 4, 4, 6, 5, 5};
