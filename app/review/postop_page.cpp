@@ -53,6 +53,7 @@ void PostopPage::compare_with(const std::filesystem::path& source, const std::st
   if (is_running() || model_ == nullptr) return;
   problem_.clear();
   shown_.other_patient.clear();
+  shown_.not_its_bones.clear();
   which_.clear();
   leave_browser();
   source_ = source;
@@ -156,14 +157,14 @@ void PostopPage::follow_plan(const widgets::Ui& ui) {
 
 void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
   take_ended();
-  ui.log.note_state("postop", is_running()                    ? "running"
-                              : search_.is_open               ? "browses"
-                              : !which_.empty()               ? "asks"
-                              : !problem_.empty()             ? "failed"
-                              : !shown_.other_patient.empty() ? "refused"
-                              : shown_.answer != nullptr      ? "compared"
-                              : shown_.comparisons.empty()    ? "none"
-                                                              : "kept");
+  ui.log.note_state("postop", is_running()                                                     ? "running"
+                              : search_.is_open                                                ? "browses"
+                              : !which_.empty()                                                ? "asks"
+                              : !problem_.empty()                                              ? "failed"
+                              : !shown_.other_patient.empty() || !shown_.not_its_bones.empty() ? "refused"
+                              : shown_.answer != nullptr                                       ? "compared"
+                              : shown_.comparisons.empty()                                     ? "none"
+                                                                                               : "kept");
   const float gap = ui.theme.px(12);
   draw_head(ui, area.cut_top(ui.theme.px(176), gap));
   if (search_.is_open) return draw_browser(ui, area);
@@ -218,6 +219,10 @@ void PostopPage::draw_head(const widgets::Ui& ui, widgets::Rect area) {
     widgets::status_row(
         ui, widgets::Severity::Bad, "Another patient",
         "these images say that they are of " + shown_.other_patient + "; nothing of them is kept or shown");
+  } else if (!shown_.not_its_bones.empty()) {
+    widgets::status_row(ui, widgets::Severity::Bad, "Not the plan's bones",
+                        "they are not surely in these images (" + shown_.not_its_bones +
+                            "); nothing of them is kept or shown");
   } else if (shown_.answer == nullptr && !shown_.comparisons.empty()) {
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      "As kept in the case (achieved.json). Its images are read again by a comparison (C).");

@@ -1,5 +1,7 @@
 #include "app/review/postop_run.h"
 
+#include <algorithm>
+
 #include "planning/geometry/error.h"
 #include "planning/images/volume_decoder.h"
 #include "planning/images/volume_file.h"
@@ -10,9 +12,46 @@
 
 namespace arthronaut::review {
 
+namespace {
+
+bool has_a_bone(const Comparisons& comparisons) {
+  return std::ranges::any_of(comparisons, [](const auto& one) { return one.second.bone.reliable; });
+}
+
+// Why none of the plan's bones is known to be in the images.
+std::string lacking_in_words(const Comparisons& comparisons) {
+  for (const auto& [key, comparison] : comparisons)
+    if (!comparison.bone.reasons.empty())
+      return std::string(bones::to_text(key.bone)) + ": " + comparison.bone.reasons.front();
+  return "nothing was compared";
+}
+
+Comparisons kept_in(const std::filesystem::path& file) {
+  try {
+    if (std::filesystem::exists(file)) return postop::read_achieved_file(file);
+  } catch (const InvalidInput&) {  // broken: it tells nobody anything
+  }
+  return {};
+}
+
+}  // namespace
+
+bool keep(const open_case::PostopAnswer& answer, const std::filesystem::path& case_folder) {
+  const std::filesystem::path file = achieved_file(case_folder);
+  if (!answer.other_patient.empty()) return false;
+  if (!has_a_bone(answer.comparisons) && has_a_bone(kept_in(file))) return false;
+  postop::write_achieved_file(file, answer.comparisons, answer.places);
+  return true;
+}
+
 bool take_answer(std::shared_ptr<const open_case::PostopAnswer> answer, PostopShown& shown) {
   shown.other_patient = answer->other_patient;
+  shown.not_its_bones.clear();
   if (!shown.other_patient.empty()) return false;
+  if (!has_a_bone(answer->comparisons) && has_a_bone(shown.comparisons)) {
+    shown.not_its_bones = lacking_in_words(answer->comparisons);
+    return false;
+  }
   shown.answer = std::move(answer);
   shown.comparisons = shown.answer->comparisons;
   return true;
@@ -108,9 +147,7 @@ PostopRun::PostopRun(const std::filesystem::path& case_folder, const std::filesy
             }
             auto answer = open_case::compare_with_postop(question);
             if (answer.was_stopped || inbox.stops()) return;
-            // What the case keeps of its own patient stays.
-            if (writes && answer.other_patient.empty())
-              postop::write_achieved_file(achieved_file(case_folder), answer.comparisons, answer.places);
+            if (writes) keep(answer, case_folder);
             progress.answer = std::make_shared<const open_case::PostopAnswer>(std::move(answer));
             inbox.publish(progress);
           },

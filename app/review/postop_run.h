@@ -48,13 +48,21 @@ class PostopRun {
 
 using Comparisons = std::map<tunnels::TunnelKey, postop::Comparison>;
 
+// Keeps a comparison as the case's achieved.json. What is kept stays where these images are another
+// patient's, or are known to show none of the plan's bones and the kept ones do: a CT that names nobody may
+// be anybody's. False then. Throws IoError.
+bool keep(const open_case::PostopAnswer& answer, const std::filesystem::path& case_folder);
+
 // What is told of images after the operation.
 struct PostopShown {
   std::shared_ptr<const open_case::PostopAnswer> answer;  // with the images; null: only what the case keeps
   Comparisons comparisons;
   std::string other_patient;  // whose the images that were asked for last are; empty: nobody else's
+  std::string
+      not_its_bones;  // why those show no bone of the plan; empty: they do, or nothing was shown before
 };
-// Images of another patient are refused: whose they are is told, and what was shown before stays. False then.
+// Images of another patient are refused: whose they are is told, and what was shown before stays. So are
+// those that show none of the plan's bones reliably, where what was shown before does. False then.
 bool take_answer(std::shared_ptr<const open_case::PostopAnswer> answer, PostopShown& shown);
 
 // Of a case, where a comparison writes what it found.

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <thread>
 
+#include "planning/postop/achieved_file.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::review {
@@ -28,6 +29,47 @@ TEST(PostopRun, Hazard18AFileThatEndsItsReaderEndsNothingElse) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   ASSERT_TRUE(run.has_ended());
   EXPECT_THAT(run.error(), HasSubstr("ended the importing process"));
+}
+
+// A CT that names nobody, of somebody else: its verdict stood in the place of a good comparison.
+class ForeignImages : public ::testing::Test {
+ protected:
+  static Comparisons comparisons(bool has_bone) {
+    Comparisons made;
+    postop::Comparison& femur = made[bones::BoneKind::Femur];
+    femur.bone.is_found = femur.bone.reliable = has_bone;
+    femur.bone.reasons = {"nothing in the images looks like it"};
+    if (has_bone) femur.bone.reasons.clear();
+    return made;
+  }
+  static std::shared_ptr<open_case::PostopAnswer> answer(bool has_bone) {
+    auto made = std::make_shared<open_case::PostopAnswer>();
+    made->comparisons = comparisons(has_bone);
+    return made;
+  }
+};
+
+TEST_F(ForeignImages, TakeNothingAwayFromWhatIsShown) {
+  PostopShown shown;
+  shown.comparisons = comparisons(true);
+  EXPECT_FALSE(take_answer(answer(false), shown));
+  EXPECT_EQ(shown.answer, nullptr);
+  EXPECT_TRUE(shown.comparisons.at(bones::BoneKind::Femur).bone.is_found);
+  EXPECT_EQ(shown.not_its_bones, "femur: nothing in the images looks like it");
+  EXPECT_TRUE(take_answer(answer(true), shown));
+  EXPECT_EQ(shown.not_its_bones, "");
+}
+
+TEST_F(ForeignImages, TakeNothingAwayFromWhatTheCaseKeeps) {
+  const test::TemporaryFolder folder;
+  const auto kept_bone = [&] {
+    return postop::read_achieved_file(achieved_file(folder.path())).at(bones::BoneKind::Femur).bone.reliable;
+  };
+  EXPECT_TRUE(keep(*answer(false), folder.path())) << "where nothing is kept";
+  EXPECT_FALSE(kept_bone());
+  EXPECT_TRUE(keep(*answer(true), folder.path()));
+  EXPECT_FALSE(keep(*answer(false), folder.path()));
+  EXPECT_TRUE(kept_bone());
 }
 
 }  // namespace
