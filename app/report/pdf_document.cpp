@@ -46,6 +46,7 @@ struct PdfDocument::Pdf {
     HPDF_SetCompressionMode(document, HPDF_COMP_ALL);
     regular = load(kRegularFont);
     bold = load(kBoldFont);
+    HPDF_SetCurrentEncoder(document, "UTF-8");
     HPDF_SetInfoAttr(document, HPDF_INFO_TITLE, title.c_str());
     HPDF_SetInfoAttr(document, HPDF_INFO_CREATOR, "Arthronaut");
   }

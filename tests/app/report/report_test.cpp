@@ -159,6 +159,12 @@ TEST_F(Report, Hazard21SaysThatThePlanIsOfAnotherMesh) {
   expect_contains(pdf_text(), "NOT VALID");
 }
 
+// The document's title, as a reader's window shows it, was read byte by byte.
+TEST_F(Report, IsCalledAsTheCaseIs) {
+  write(pdf());
+  expect_contains(pdf_info(), "Arthronaut report: Knee of \u00C6r\u00F8\n");
+}
+
 TEST_F(Report, LeavesNothingBehindWhenItFails) {
   EXPECT_THROW(write_report(knee_folder() / "nothing", pdf()), IoError);
   EXPECT_THROW(write("/nowhere/report.pdf"), IoError);
