@@ -194,7 +194,8 @@ void Report::registration_section(const registration::RegistrationSummary& regis
                 {"Verdict", registration.reliable ? "reliable" : "NOT RELIABLE"},
                 {"Touched points", std::to_string(registration.point_count)},
                 {"Distance of the points to the bone, RMS", of_pose(registration.rms_mm)},
-                {"Points that fit", number(100 * registration.inlier_fraction, " %", 0)},
+                {"Points that fit",
+                 registration.has_pose ? number(100 * registration.inlier_fraction, " %", 0) : "\u2013"},
                 {"Predicted error at the target, one sigma", of_pose(registration.predicted_tre_mm)}});
   for (const auto& reason : registration.reasons) pages_.sentence("– " + reason, {.ink = kWarning});
   for (const auto& assumption : registration.assumptions) pages_.sentence("– assumed: " + assumption);

@@ -64,7 +64,8 @@ ordered_json json_of(const registration::RegistrationSummary& registration) {
           {"reasons", registration.reasons},
           {"points", registration.point_count},
           {"rms_mm", registration.has_pose ? ordered_json(registration.rms_mm) : ordered_json()},
-          {"inlier_fraction", registration.inlier_fraction},
+          {"inlier_fraction",
+           registration.has_pose ? ordered_json(registration.inlier_fraction) : ordered_json()},
           {"predicted_tre_mm",
            registration.has_pose ? ordered_json(registration.predicted_tre_mm) : ordered_json()}};
 }

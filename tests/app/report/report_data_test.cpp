@@ -33,6 +33,18 @@ TEST_F(Report, TakesASessionWhoseRegistrationFoundAPose) {
   EXPECT_EQ(told(), found);
 }
 
+// Of a registration that found no pose no point fits or misses anything: it was told as 0 %.
+TEST_F(Report, SaysNoFitOfARegistrationWithoutAPose) {
+  const std::string text = text_of_session("live", {}, false);
+  const auto at = text.find("Points that fit");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(text.substr(at, text.find('\n', at) - at).find('%'), std::string::npos);
+  const auto json_file = pdf().parent_path() / "report.json";
+  write(json_file);
+  const auto json = nlohmann::json::parse(files::read_text(json_file));
+  EXPECT_TRUE(json.at("session").at("registration").at("inlier_fraction").is_null());
+}
+
 // The same numbers for other programs: whatever the table says, the document says.
 TEST_F(Report, GivesTheSameNumbersAsJsonAndAsATable) {
   cases::save_identity(knee_folder(), {"Muster^Anna", "4711", "19900131"});
