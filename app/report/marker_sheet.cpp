@@ -13,6 +13,8 @@ namespace arthronaut::report {
 namespace {
 
 constexpr int kCells = 6;  // 4 x 4 bits and a border of one cell
+// On A4: markers lie between these, the rule to check the printer with stands on the last.
+constexpr double kLeft_mm = 40, kRight_mm = 190, kRule_mm = 280;
 
 std::string mm_text(double value) {
   char text[32];
@@ -47,7 +49,7 @@ void draw_marker(PdfDocument& pdf, double x_mm, double y_mm, double size_mm, int
 }
 
 void draw_rule(PdfDocument& pdf) {
-  constexpr double kX = 20, kY = 280;
+  constexpr double kX = 20, kY = kRule_mm;
   for (int mm = 0; mm <= 50; ++mm) {
     const double length = mm % 10 == 0 ? 4 : mm % 5 == 0 ? 3 : 2;
     pdf.line(kX + mm, kY, kX + mm, kY - length, 0.1, kBlack);
@@ -77,19 +79,24 @@ void draw_markers(PdfDocument& pdf, const MarkerSheetOptions& options) {
                          mm_text(options.size_mm) + " do not fit the page");
     pdf.text(20, y + options.size_mm / 2 + 1, "id " + std::to_string(id), {.size_pt = 9});
     for (int copy = 0; copy < options.copies; ++copy) {
-      const double x = 40 + copy * pitch;
-      if (x + options.size_mm > 190) break;
+      const double x = kLeft_mm + copy * pitch;
+      if (x + options.size_mm > kRight_mm) break;
       draw_marker(pdf, x, y, options.size_mm, id);
     }
     y += pitch;
   }
   y += 6;
+  const double ruler_y = y + 6;
+  if (kLeft_mm + options.ruler_distance_mm + options.ruler_size_mm > kRight_mm ||
+      ruler_y + options.ruler_size_mm > kRule_mm - 6)
+    throw InvalidInput("markers: a ruler of " + mm_text(options.ruler_size_mm) + ", centres " +
+                       mm_text(options.ruler_distance_mm) + " apart, does not fit the page");
   pdf.text(20, y,
            "Ruler: ids 5 and 6, " + mm_text(options.ruler_size_mm) + ", centres " +
                mm_text(options.ruler_distance_mm) + " apart",
            {.size_pt = 9});
   for (int i = 0; i < 2; ++i) {
-    draw_marker(pdf, 40 + i * options.ruler_distance_mm, y + 6, options.ruler_size_mm, 5 + i);
+    draw_marker(pdf, kLeft_mm + i * options.ruler_distance_mm, ruler_y, options.ruler_size_mm, 5 + i);
   }
 }
 

@@ -129,6 +129,11 @@ TEST_F(MarkerSheet, RefusesWhatCannotBePrinted) {
   EXPECT_THROW(write_marker_sheet(file(), {.ids = {50}}), InvalidInput);
   EXPECT_THROW(write_marker_sheet(file(), {.size_mm = 0}), InvalidInput);
   EXPECT_THROW(write_marker_sheet(file(), {.ids = {1, 2, 3}, .size_mm = 95}), InvalidInput);
+  EXPECT_THROW(write_marker_sheet(file(), {.ruler_size_mm = 100, .ruler_distance_mm = 100}), InvalidInput);
+  EXPECT_THROW(
+      write_marker_sheet(file(),
+                         {.ids = {0, 1, 2, 3}, .size_mm = 24, .ruler_size_mm = 60, .ruler_distance_mm = 70}),
+      InvalidInput);
   EXPECT_THROW(write_marker_sheet("/nowhere/at/all/markers.pdf"), IoError);
   EXPECT_FALSE(std::filesystem::exists(file()));
 }
