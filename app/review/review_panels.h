@@ -43,6 +43,13 @@ struct TimeLineZoom {
 // `least` of the session, all of it at most.
 [[nodiscard]] TimeLineZoom zoomed(const TimeLineZoom& zoom, double about, double factor, double least);
 
+// From left to right, pixels.
+struct Span {
+  float from = 0, to = 0;
+};
+// What of it is shown; nullopt: nothing.
+[[nodiscard]] std::optional<Span> within(const Span& span, const Span& shown);
+
 struct NoteRoom {
   float from = 0, to = 0;  // free of other notes, within the panel
 };

@@ -222,8 +222,8 @@ void draw_loop(ImDrawList& draw, const Scale& scale, const Playback& playback, f
   if (!playback.from) return;
   const float x0 = scale.x_of(static_cast<double>(*playback.from));
   const float x1 = playback.to ? scale.x_of(static_cast<double>(*playback.to)) : x0 + 2;
-  draw.AddRectFilled({std::max(x0, scale.left), top}, {std::min(x1, scale.left + scale.width), bottom},
-                     IM_COL32(86, 180, 233, 40));
+  if (const auto seen = within({x0, x1}, {scale.left, scale.left + scale.width}))
+    draw.AddRectFilled({seen->from, top}, {seen->to, bottom}, IM_COL32(86, 180, 233, 40));
 }
 
 }  // namespace
@@ -234,6 +234,11 @@ std::string clock_text(double seconds) {
   const std::string rest = std::to_string(tenths / 10 % 60);
   return std::to_string(minutes) + ":" + (rest.size() < 2 ? "0" : "") + rest + "." +
          std::to_string(tenths % 10);
+}
+
+std::optional<Span> within(const Span& span, const Span& shown) {
+  const Span seen{std::max(span.from, shown.from), std::min(span.to, shown.to)};
+  return seen.from < seen.to ? std::optional(seen) : std::nullopt;
 }
 
 float note_left(float mark_x, float width, float gap, const NoteRoom& room) {

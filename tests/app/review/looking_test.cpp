@@ -159,6 +159,16 @@ TEST(TimeLine, NotesStayInThePanel) {
   EXPECT_EQ(note_left(200, 390, 10, room), 210) << "fits nowhere: cut off at its end";
 }
 
+// A loop beside the part that is zoomed to was drawn beside the time line.
+TEST(TimeLine, WhatLiesBesideThePartShownIsNotDrawn) {
+  EXPECT_FALSE(within({20, 80}, {100, 500}));
+  EXPECT_FALSE(within({510, 700}, {100, 500}));
+  const auto seen = within({20, 180}, {100, 500});
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->from, 100);
+  EXPECT_EQ(seen->to, 180);
+}
+
 // The place under the mouse stays under it; never less than asked for, never more than all.
 TEST(TimeLine, ZoomsAboutTheMouse) {
   TimeLineZoom zoom = zoomed({}, 0.25, 0.5, 0.01);
