@@ -86,7 +86,8 @@ const postop::Comparison* PostopPage::chosen() const {
 std::map<tunnels::TunnelKey, tunnels::Tunnel> PostopPage::planned() const {
   std::map<tunnels::TunnelKey, tunnels::Tunnel> planned;
   for (const auto& [key, comparison] : shown_.comparisons)
-    if (const auto tunnel = model_->tunnel(key)) planned.emplace(key, *tunnel);
+    if (const auto tunnel = model_->tunnel(key); tunnel && model_->plan_fit(key).is_valid())
+      planned.emplace(key, *tunnel);
   return planned;
 }
 

@@ -97,6 +97,7 @@ class PostopPage {
   void draw_table(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_slice(const widgets::Ui& ui, const widgets::Rect& area, int quarter_turns);
   [[nodiscard]] const postop::Comparison* chosen() const;
+  // By the plan of now; without what is of another surface of its bone.
   [[nodiscard]] std::map<tunnels::TunnelKey, tunnels::Tunnel> planned() const;
 
   const open_case::PlanModel* model_ = nullptr;

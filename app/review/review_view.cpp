@@ -195,7 +195,11 @@ void ReviewView::draw_numbers(const widgets::Ui& ui, widgets::Rect area) {
   const bones::BoneKind bone = open_->review.session->header.bone;
   if (model_->has_bone(bone)) {
     const widgets::Rect target = area.cut_top(ui.theme.px(210), ui.theme.px(8));
-    draw_bullseye(ui, target, screen(), model_->axes(bone));
+    if (is_of_another_surface())
+      widgets::text_centered(ui, target, ui.theme.strong, widgets::kQuietText,
+                             "The bone has another surface by now, and other axes.");
+    else
+      draw_bullseye(ui, target, screen(), model_->axes(bone));
   }
   draw_moment(ui, area, screen());
 }
