@@ -128,6 +128,12 @@ EncodedPacketPtr EncodedPackets::start_of(std::int64_t number) const {
   return nullptr;
 }
 
+std::optional<std::int64_t> EncodedPackets::time_ns_of(std::int64_t number) const {
+  const std::lock_guard lock(mutex_);
+  if (number < first_ || number >= next_) return std::nullopt;
+  return kept(number)->time_ns;
+}
+
 std::int64_t EncodedPackets::newest() const {
   const std::lock_guard lock(mutex_);
   return next_ - 1;

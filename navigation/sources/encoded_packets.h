@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "navigation/sources/libav.h"
@@ -30,7 +31,7 @@ struct PacketFormat {
 
 struct EncodedPacket {
   std::int64_t number = -1;  // counts from 0 over all connections
-  std::int64_t time_ns = 0;  // when its picture was captured
+  std::int64_t time_ns = 0;  // when its picture was captured; of one without a stamp: when it came
   // Everything after it is decoded without anything before it. A key frame alone is not enough: after some
   // (recovery points, H.265's open groups of pictures) come pictures that need what was before.
   bool is_start = false;
@@ -59,6 +60,8 @@ class EncodedPackets {
   void take(std::int64_t from, std::int64_t to, std::vector<EncodedPacketPtr>& packets) const;
   // The packet that decoding must begin at to come to this one; null: it was let go, or there was none.
   [[nodiscard]] EncodedPacketPtr start_of(std::int64_t number) const;
+  // Empty: it was let go, or there was none.
+  [[nodiscard]] std::optional<std::int64_t> time_ns_of(std::int64_t number) const;
   // The number of the newest; -1 before the first.
   [[nodiscard]] std::int64_t newest() const;
 

@@ -109,10 +109,11 @@ class Connection {
   [[nodiscard]] long damaged_count() const { return damaged_count_; }
   [[nodiscard]] std::int64_t received_ns() const { return received_ns_; }  // the newest of its data
 
-  // A bare stream of pictures has no stamps: then it is when its packet came, before it was decoded.
+  // By its stamp, if any, and no later than its own packet was dated: the sender may have begun anew since.
   std::int64_t captured_ns() const {
     const std::int64_t ticks = picture_->best_effort_timestamp;
-    return ticks == AV_NOPTS_VALUE ? received_ns_ : clock_.captured_ns(stamp_ns(ticks));
+    const std::int64_t latest_ns = packets_.time_ns_of(picture_->reordered_opaque).value_or(received_ns_);
+    return ticks == AV_NOPTS_VALUE ? latest_ns : std::min(latest_ns, clock_.captured_ns(stamp_ns(ticks)));
   }
   // The session's name as an RTSP server gives it, before any picture. (What MPEG-TS says of its programs
   // comes now and then, and may not have come yet.)

@@ -16,6 +16,9 @@ namespace {
 constexpr auto kBeforeAgain = std::chrono::milliseconds(100);
 // Another camera is opened to be asked, and closed again.
 constexpr auto kBeforeAsking = std::chrono::seconds(1);
+// A source whose pictures are dated back by more goes on from there: its time would stand still until the
+// dates are where they were, and with it all that looks for a picture that is frozen, or a mark that is lost.
+constexpr std::int64_t kStandsAtMost_ns = 1'000'000'000;
 
 std::string size_text(int width, int height) {
   return std::to_string(width) + " x " + std::to_string(height);
@@ -129,7 +132,9 @@ void LiveStamps::put_on(camera::Frame& frame, std::int64_t captured_ns, camera::
   frame.index = next_index_ + lost_before;
   next_index_ = frame.index + 1;
   // A clock that changes over (a driver's stamp that is missing once) must not run backwards.
-  last_timestamp_ns_ = std::max(captured_ns - started_at_ns_, last_timestamp_ns_ + 1);
+  const std::int64_t next_ns = last_timestamp_ns_ + 1;
+  if (captured_ns - started_at_ns_ < next_ns - kStandsAtMost_ns) started_at_ns_ = captured_ns - next_ns;
+  last_timestamp_ns_ = std::max(captured_ns - started_at_ns_, next_ns);
   frame.timestamp_ns = last_timestamp_ns_;
   frame.captured_ns = captured_ns;
   frame.capture_clock = clock;

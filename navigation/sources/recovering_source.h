@@ -20,7 +20,8 @@
 
 namespace arthronaut::sources {
 
-// Numbers and times of a live source's frames, over all its connections: they go on where they were.
+// Numbers and times of a live source's frames, over all its connections: they go on where they were, and by
+// what captured_ns went on; where that goes back by more than a second, from there.
 class LiveStamps {
  public:
   // When the picture was captured, on the steady clock. Pictures that were lost before it are counted too.

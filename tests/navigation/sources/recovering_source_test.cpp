@@ -69,6 +69,22 @@ TEST(RecoveringSource, GoesOnWhereItWas) {
   EXPECT_EQ(opened, 4);
 }
 
+// Pictures that are dated as of an hour ago, once: the time goes on with them, and does not wait for an hour.
+TEST(LiveStamps, Hazard3GoOnWithDatesThatWentBack) {
+  constexpr std::int64_t kInterval_ns = 33'333'333, kHour_ns = 3'600'000'000'000;
+  LiveStamps stamps;
+  std::vector<std::int64_t> times_ns;
+  for (std::int64_t i = 0; i < 90; ++i) {
+    camera::Frame frame;
+    stamps.put_on(frame, 2 * kHour_ns + i * kInterval_ns - (i < 30 ? 0 : kHour_ns),
+                  camera::CaptureClock::Driver);
+    EXPECT_EQ(frame.captured_ns, 2 * kHour_ns + i * kInterval_ns - (i < 30 ? 0 : kHour_ns));
+    times_ns.push_back(frame.timestamp_ns);
+  }
+  for (std::size_t i = 1; i < times_ns.size(); ++i)
+    EXPECT_EQ(times_ns[i] - times_ns[i - 1], i == 30 ? 1 : kInterval_ns) << i;
+}
+
 // A pipeline that reads a file would begin again at its beginning, as if it went on.
 TEST(RecoveringSource, WhatComesToAnEndIsNotBegunAnew) {
   int opened = 0;

@@ -1,10 +1,17 @@
 // How old a stream's pictures are said to be, against when they were sent.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <sstream>
@@ -18,6 +25,7 @@
 #include "planning/geometry/quantile.h"
 #include "tests/child_process.h"
 #include "tests/navigation/recording/streams.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::sources {
 namespace {
@@ -136,6 +144,59 @@ TEST(Stream, Hazard3AnAgeCountsThePicturesThatAreHeldBack) {
   const Ages ages = ages_by_udp("mpeg2video", test::stream_port(2));
   EXPECT_NEAR(ages.said_s, 0.03, 0.05);
   EXPECT_GT(ages.taken_s, 0.15);
+}
+
+// Sends a clip of MPEG-TS to a port of this machine as a sender does that is stopped and started again at
+// once: in as many seconds as it lasts, and over and over, each time with the same stamps.
+class RestartedSender {
+ public:
+  RestartedSender(const std::filesystem::path& clip, double clip_s, const std::string& port)
+      : sends_([clip, clip_s, port](const std::stop_token& stop) {
+          std::ifstream file(clip, std::ios::binary);
+          const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+          sockaddr_in to{};
+          to.sin_family = AF_INET;
+          to.sin_port = htons(static_cast<std::uint16_t>(std::stoi(port)));
+          to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+          const int sender = ::socket(AF_INET, SOCK_DGRAM, 0);
+          const auto begin = std::chrono::steady_clock::now();
+          constexpr std::size_t kPacket = 188;
+          for (std::size_t sent = 0; !stop.stop_requested(); sent += kPacket) {
+            ::sendto(sender, bytes.data() + sent % bytes.size(), kPacket, 0,
+                     reinterpret_cast<const sockaddr*>(&to), sizeof to);
+            std::this_thread::sleep_until(begin +
+                                          std::chrono::duration<double>(clip_s * static_cast<double>(sent) /
+                                                                        static_cast<double>(bytes.size())));
+          }
+          ::close(sender);
+        }) {}
+
+ private:
+  std::jthread sends_;
+};
+
+// A sender that begins its stamps anew while pictures from before wait to be put in order: these are as old
+// as they are and none is of the future, and the time goes on as fast as before.
+TEST(Stream, Hazard3StampsThatBeginAnewDateNoPictureIntoTheFuture) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path clip = folder / "clip.ts";
+  constexpr int kClip = 120;
+  test::make_clip(clip, kClip, {"-c:v", "libx264", "-bf", "3", "-g", "30", "-b:v", "1M", "-f", "mpegts"});
+  const std::string port = test::stream_port(3);
+  const RestartedSender sender(clip, kClip / 30.0, port);
+  const auto source = test::open_when_there("udp://127.0.0.1:" + port);
+  camera::FramePtr first;
+  double furthest_apart_s = 0;
+  for (int i = 0; i < 2 * kClip + 60; ++i) {
+    const camera::FramePtr frame = source->next();
+    ASSERT_NE(frame, nullptr);
+    EXPECT_LE(frame->captured_ns, frame->received_ns) << i;
+    if (first == nullptr) first = frame;
+    const double passed_s = 1e-9 * static_cast<double>(frame->received_ns - first->received_ns);
+    const double counted_s = 1e-9 * static_cast<double>(frame->timestamp_ns - first->timestamp_ns);
+    furthest_apart_s = std::max(furthest_apart_s, std::abs(passed_s - counted_s));
+  }
+  EXPECT_LT(furthest_apart_s, 0.5);
 }
 
 }  // namespace
