@@ -108,6 +108,16 @@ bones::BoneKind kind_of(const files::JsonObject& bone) {
   }
 }
 
+// One that is broken says nothing, and is no reason to keep a surgeon from the bones: how they lie is looked
+// at besides (tunnels/knee_pose.h). Who writes it, or exports by it, is told.
+bool says_two_frames(const fs::path& folder) {
+  try {
+    return are_of_two_frames(load_studies(folder));
+  } catch (const InvalidInput&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 CaseOutline read_case_outline(const fs::path& case_folder) {
@@ -145,7 +155,7 @@ Case load_case(const fs::path& folder) {
     for (const auto& node : root.objects("images")) result.images.push_back(image_from(node));
   }
   read_plan(folder, result);
-  result.is_of_two_frames = result.bones.size() == 2 && are_of_two_frames(load_studies(folder));
+  result.is_of_two_frames = result.bones.size() == 2 && says_two_frames(folder);
   return result;
 }
 

@@ -104,6 +104,14 @@ TEST_F(CaseFolder, WritesOnlyWhatChanged) {
 }
 
 // Every refusal names the file, the place and the reason.
+// Of which study the bones are is no reason to keep a surgeon from them.
+TEST_F(CaseFolder, OpensWhateverIsWrongWithItsStudy) {
+  overwrite("study.json", "{ broken");
+  const Case opened = load_case(folder_);
+  EXPECT_EQ(opened.bones.size(), 2U);
+  EXPECT_FALSE(opened.is_of_two_frames);
+}
+
 TEST_F(CaseFolder, RefusesANewerVersion) {
   replace("case.json", "\"version\": 1", "\"version\": 2");
   EXPECT_THAT(refusal(), ::testing::AllOf(HasSubstr("case.json"), HasSubstr("version"), HasSubstr("2")));
