@@ -132,9 +132,8 @@ class Reading {
         inbox_.publish(book_);
       }
       if (!received.ending.empty()) return received.ending;
-      if (!book_.is_far_behind()) timely_ns = listener.now_ns;
-      if (listener.now_ns - timely_ns > kBehind_ns)
-        return "its poses come more than a second late by its clock";
+      if (!book_.is_late()) timely_ns = listener.now_ns;
+      if (listener.now_ns - timely_ns > kBehind_ns) return "its poses come late by its clock";
       if (listener.now_ns - heard_ns > kSilence_ns) return "it sends nothing";
       if (reader.is_within_message() && listener.now_ns - heard_ns > kHalfMessage_ns)
         return "a message broke off half-way";

@@ -13,7 +13,6 @@ constexpr double kSameMoment_s = 0.005;
 // As old as any pose may be: what is the same to the last bit for so long was measured before that. Six
 // samples at 60 a second, so that one that a server sends twice or thrice is none that was lost.
 constexpr double kRepeatsAfter_s = PoseBook::kMaxAge_s;
-constexpr double kFarBehind_s = 1;
 
 double seconds_of(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -66,7 +65,7 @@ void PoseBook::begin(double longest_transit_s) {
   for (Body& body : bodies_) body.is_told_lost = body.is_broken = false;
   clock_ = ClockMatch(longest_transit_s);
   is_connected_ = has_stamps_ = true;
-  is_far_behind_ = false;
+  is_late_ = false;
 }
 
 void PoseBook::end() {
@@ -103,7 +102,7 @@ void PoseBook::keep(Body& body, const Name& name, const ReceivedPose& received) 
   if (!(received.stamp_utc_s > 0)) has_stamps_ = false;
   if (has_stamps_) {
     clock_.add(received.stamp_utc_s, received.arrival_ns);
-    is_far_behind_ = clock_.age_s(received.stamp_utc_s, received.arrival_ns) > kFarBehind_s;
+    is_late_ = clock_.age_s(received.stamp_utc_s, received.arrival_ns) > kMaxAge_s;
   }
   Sample sample;
   sample.pose = *received.target_from_source;

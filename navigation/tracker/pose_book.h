@@ -64,9 +64,9 @@ class PoseBook {
   void take_lost(std::string_view device);
 
   void poses_at(std::int64_t now_ns, TrackerPoses& poses) const;
-  // Poses come, but by the tracker's clock all of them are of a second ago or more: it was set anew, or they
-  // wait somewhere. A new connection tells which.
-  [[nodiscard]] bool is_far_behind() const { return is_connected_ && is_far_behind_; }
+  // The newest pose is too late to be used by the tracker's clock. Where all of them are for seconds, that
+  // clock was set anew, or they wait somewhere: a new connection tells which.
+  [[nodiscard]] bool is_late() const { return is_connected_ && is_late_; }
 
  private:
   struct Name {
@@ -102,7 +102,7 @@ class PoseBook {
   std::optional<std::size_t> world_;
   bool may_repeat_ = false, has_known_error_ = false;
   bool is_in_world_alone_ = false;  // whatever is in a world is in this bone's
-  bool is_connected_ = false, has_stamps_ = true, is_far_behind_ = false;
+  bool is_connected_ = false, has_stamps_ = true, is_late_ = false;
   ClockMatch clock_;
 };
 
