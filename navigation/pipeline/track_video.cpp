@@ -11,7 +11,7 @@ namespace arthronaut::pipeline {
 
 namespace {
 
-constexpr std::size_t kStateCount = static_cast<std::size_t>(markers::MarkerState::Doubtful) + 1;
+constexpr std::size_t kStateCount = static_cast<std::size_t>(markers::MarkerState::Disagreeing) + 1;
 
 void add_marker(std::vector<MarkerStatistics>& markers, int id, std::string name) {
   MarkerStatistics statistics;

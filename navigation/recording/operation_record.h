@@ -44,7 +44,6 @@ class OperationRecord {
   }
   // See SessionRecorder.
   void never_wait() { recorder_->never_wait(); }
-  [[nodiscard]] bool is_stuck() const { return recorder_->is_stuck(); }
   [[nodiscard]] std::string video_trouble() const { return recorder_->video_trouble(); }
   // Throws IoError. The strokes are those that count.
   void finish(const strokes::Curves& strokes);

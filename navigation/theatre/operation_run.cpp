@@ -95,8 +95,8 @@ void OperationRun::write(const What& what) {
     if (video_trouble_.empty()) video_trouble_ = record_->video_trouble();
   } catch (const std::runtime_error& error) {
     record_trouble_ = error.what();
-    if (record_->is_stuck()) stuck_.take(std::move(record_));
-    record_.reset();
+    // Its end encodes, hashes and waits for a disk that is in trouble.
+    ending_.take(std::move(record_));
   }
 }
 

@@ -130,7 +130,7 @@ class OperationRun {
   MakeSessionFolder make_session_folder_;
   TheatreSource theatre_source_;
   std::unique_ptr<pipeline::PrefetchedSource> source_;
-  worker::LettingGo stuck_;  // records whose disk takes nothing: guidance does not wait for their end
+  worker::LettingGo ending_;  // records that failed: guidance does not wait for their end
   std::unique_ptr<recording::OperationRecord> record_;
   std::filesystem::path session_folder_;
   std::vector<operation::JournalEntry> early_;  // from before the first source
