@@ -232,9 +232,9 @@ TEST(Status, Hazard7SaysWhichOfTwoDrillsTheDepthIsOf) {
   EXPECT_EQ(status_of(state).reason, "drill guide not seen, depth of tibial drill (Drill2_World)");
   state.frame.guidance.state = guidance::GuidanceState::Valid;
   EXPECT_TRUE(status_of(state).is_ok);
-  EXPECT_EQ(status_of(state).reason, "OK, depth of tibial drill (Drill2_World)");
+  EXPECT_EQ(status_of(state).reason, "OK, simulation, depth of tibial drill (Drill2_World)");
   state.frame.guidance.drill.reset();
-  EXPECT_EQ(status_of(state).reason, "OK");
+  EXPECT_EQ(status_of(state).reason, "OK, simulation");
 }
 
 // Everything until "Arthronaut": "name" of a transform, "name: why" of a status.
