@@ -83,14 +83,14 @@ void FluidStation::start(const FeedSource& source) {
   camera_sha256_ = open_case::camera_fingerprint(case_folder_);
   run_ = std::make_unique<Run>(
       source,
-      [source, folder = case_folder_, index = refractive_index_] {
+      [source, folder = case_folder_, index = refractive_index_, camera_sha256 = camera_sha256_] {
         if (source.is_live)
           if (const std::string why = open_case::camera_is_not_for_live(folder); !why.empty())
             throw InvalidInput(why);
         calibration::RulerSightingsOptions options;
         options.calibration = open_case::camera_of(source.is_simulated, folder);
         options.refractive_index = index;
-        return std::make_unique<FluidJob>(options, open_case::camera_fingerprint(folder));
+        return std::make_unique<FluidJob>(options, camera_sha256);
       },
       wake_);
 }

@@ -239,7 +239,7 @@ void WorkstationWindow::close_paint() {
   start_.enter(case_->folder());
 }
 
-void WorkstationWindow::close_key_list() {
+void WorkstationWindow::dispatch_to_key_list() {
   room_.drop_pedals(actions_, [this] { shows_keys_ = false; });
   for (const widgets::KeyPress& press : window_.keys()) {
     log_.add("keys", 1);
@@ -250,7 +250,7 @@ void WorkstationWindow::close_key_list() {
 }
 
 void WorkstationWindow::dispatch_keys() {
-  if (shows_keys_) return close_key_list();
+  if (shows_keys_) return dispatch_to_key_list();
   // Elsewhere than in theatre and in Set up a key means what it is called.
   const auto prefixes = action_prefixes();
   const bool has_pedals = std::find(prefixes.begin(), prefixes.end(), "navigate.") != prefixes.end() ||

@@ -65,10 +65,11 @@ class WorkstationWindow {
   void reopen();  // the open case, whose bones are others now
   void take_over_when_free();
   void dispatch_keys();
+  // The same while the list of keys covers everything: whatever is pressed closes it, and does nothing that
+  // nobody sees.
+  void dispatch_to_key_list();
   // What the ids of the actions that work now start with.
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const;
-  // While the list of keys covers everything whatever is pressed closes it and does nothing that nobody sees.
-  void close_key_list();
   void show(std::size_t mode);
   void draw_screen(const widgets::Ui& ui);
   void draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area);

@@ -262,7 +262,6 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
                          axes_in_words(volume));
   result.lines.insert(result.lines.end(), volume.notes.begin(), volume.notes.end());
 
-  const auto labels = labels_of(volume);
   take_side_of_images(result, volume.side, options.side.has_value());
   result.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
   const bool has_labels = is_label_map(volume);
@@ -280,6 +279,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
         named = labels_by_shape(volume, result.lines);
       }
       if (named.empty() || (options.kind && !named.contains(*options.kind))) {
+        const auto labels = labels_of(volume);
         throw refusal(
             source,
             "is a label map with the labels " + list_of(labels) +
