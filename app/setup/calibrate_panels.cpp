@@ -40,7 +40,7 @@ void CalibrateStation::draw_form(const widgets::Ui& ui, const widgets::Rect& are
     std::string text = files::format("%.2f mm", form_.square_mm);
     if (ImGui::InputText("##square", &text, ImGuiInputTextFlags_AutoSelectAll))
       if (const auto side_mm = files::typed_number(text, "mm"); side_mm && *side_mm > 0 && *side_mm < 100)
-        form_.square_mm = *side_mm;
+        set_square(*side_mm);
   });
   field("Scope", "setup.scope", [&] { ImGui::InputText("##scope", &form_.scope_name); });
   field("Head", "setup.head", [&] { ImGui::InputText("##head", &form_.head_name); });

@@ -74,6 +74,13 @@ bool CalibrateStation::is_busy() const {
                              status_.job.is_calibrating);
 }
 
+// A result that stands is of the square that it was made with.
+void CalibrateStation::set_square(double square_mm) {
+  if (square_mm == form_.square_mm) return;
+  form_.square_mm = square_mm;
+  if (run_ != nullptr) run_->post([](CalibrateJob& job) { job.forget_result(); });
+}
+
 void CalibrateStation::calibrate() {
   calibration::CalibrationOptions options;
   options.square_mm = form_.square_mm;
@@ -156,9 +163,9 @@ void CalibrateStation::add_actions(widgets::Actions& actions) {
       "setup.camera.adopt", "Adopt", "This case is navigated with the result", GLFW_KEY_ENTER,
       [this] { return run_ != nullptr && display_.can_adopt; }, [this] { adopt(); });
   add("setup.camera.smaller", "Square \u2212", "The board's squares are smaller", GLFW_KEY_MINUS, {},
-      [this] { form_.square_mm = std::max(form_.square_mm - kSquareStep_mm, kLeastSquare_mm); });
+      [this] { set_square(std::max(form_.square_mm - kSquareStep_mm, kLeastSquare_mm)); });
   add("setup.camera.larger", "Square +", "The board's squares are larger", GLFW_KEY_EQUAL, {},
-      [this] { form_.square_mm = std::min(form_.square_mm + kSquareStep_mm, kMostSquare_mm); });
+      [this] { set_square(std::min(form_.square_mm + kSquareStep_mm, kMostSquare_mm)); });
   add("setup.camera.names", "Size, names", "Type the square's side and the names of scope and head",
       GLFW_KEY_N, {}, [this] { form_.wants_focus = true; });
 }

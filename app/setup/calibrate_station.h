@@ -27,6 +27,9 @@ class CalibrateStation : public Station {
   [[nodiscard]] Then take_next_step() override;
   [[nodiscard]] bool has_run() const override { return run_ != nullptr; }
   [[nodiscard]] bool is_busy() const override;
+  [[nodiscard]] bool gives_pictures() const override {
+    return run_ != nullptr && status_.phase == FeedPhase::Running;
+  }
   [[nodiscard]] bool awaits_text() const override { return form_.wants_focus; }
   [[nodiscard]] std::string next_step() const override { return display_.next_text; }
   [[nodiscard]] Row adopted() const override { return adopted_; }
@@ -35,6 +38,7 @@ class CalibrateStation : public Station {
   using Run = LiveRun<CalibrateJob>;
 
   void read_adopted();
+  void set_square(double square_mm);
   void calibrate();
   void adopt();
   void draw_pictures(const widgets::Ui& ui, const widgets::Rect& area);

@@ -28,6 +28,9 @@ class FluidStation : public Station {
   [[nodiscard]] Then take_next_step() override;
   [[nodiscard]] bool has_run() const override { return run_ != nullptr; }
   [[nodiscard]] bool is_busy() const override;
+  [[nodiscard]] bool gives_pictures() const override {
+    return run_ != nullptr && status_.phase == FeedPhase::Running;
+  }
   [[nodiscard]] std::string next_step() const override { return display_.next_text; }
   [[nodiscard]] Row adopted() const override { return checked_; }
 

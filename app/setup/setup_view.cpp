@@ -5,6 +5,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/setup/calibrate_station.h"
 #include "app/setup/fluid_station.h"
@@ -100,8 +101,15 @@ void SetupView::start() {
   step().started_kind = source->is_simulated ? sources::SourceKind::Simulation
                         : source->is_live    ? sources::SourceKind::Live
                                              : sources::SourceKind::Recording;
-  if (sources::is_stream_address(source->path.string())) streams_.note(source->path.string());
+  step().unproved_stream =
+      sources::is_stream_address(source->path.string()) ? source->path.string() : std::string();
   step().station->start(*source);
+}
+
+// A mistyped address would push one that works out of the five that are kept.
+void SetupView::note_stream() {
+  if (step().unproved_stream.empty() || !step().station->gives_pictures()) return;
+  streams_.note(std::exchange(step().unproved_stream, {}));
 }
 
 void SetupView::take_next_step() {
@@ -207,6 +215,7 @@ void SetupView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_heading(ui, rest.cut_top(ui.theme.px(88), gap));
   const widgets::Rect controls = rest.cut_bottom(ui.theme.px(100), gap);
   shows_gallery_ ? draw_gallery(ui, rest) : step().station->draw(ui, rest);
+  note_stream();
   draw_controls(ui, controls);
   ui.log.note_state("setup_step", std::string(step().action).substr(std::string("setup.show_").size()));
   const FeedSource* source = step().source.chosen();

@@ -53,6 +53,7 @@ class SetupView : public mode::Mode {
     std::unique_ptr<Station> station;
     SourceChoice source = {};
     sources::SourceKind started_kind = sources::SourceKind::Recording;  // of what runs
+    std::string unproved_stream = {};  // address of what runs, until a picture came from it
   };
 
   struct Typed {  // sources that the user names by their path or address
@@ -68,6 +69,7 @@ class SetupView : public mode::Mode {
   void choose_source();
   void take_typed_path();
   void start();
+  void note_stream();
   void take_next_step();
   void draw_heading(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_path_field(const widgets::Ui& ui, const widgets::Rect& area);

@@ -58,6 +58,7 @@ class Station {
   [[nodiscard]] virtual Then take_next_step() = 0;          // once has_run()
   [[nodiscard]] virtual bool has_run() const = 0;           // a source was started
   [[nodiscard]] virtual bool is_busy() const = 0;           // pictures or a result are to come
+  [[nodiscard]] virtual bool gives_pictures() const = 0;    // at least one came, and it has not ended
   [[nodiscard]] virtual std::string next_step() const = 0;  // in words, once has_run()
   [[nodiscard]] virtual Row adopted() const = 0;            // what the case has of this step
 };
