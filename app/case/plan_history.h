@@ -27,6 +27,7 @@ class PlanHistory {
   // nothing may be changed; empty where it may.
   void open(PlanModel* model, const std::filesystem::path& case_folder, const std::string& read_only = {});
   [[nodiscard]] const PlanModel* model() const { return model_; }  // null while no case is open
+  [[nodiscard]] bool is_read_only() const { return is_read_only_; }
 
   // An edit that changes nothing is no step.
   void apply(const PlanEdit& edit, double now_s);

@@ -49,8 +49,7 @@ void PlanView::take_defaults(std::vector<MadeTunnel> made, const std::string& wh
 }
 
 bool PlanView::can_make_defaults() const {
-  return model_ != nullptr && !defaults_.is_busy() &&
-         history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+  return model_ != nullptr && !defaults_.is_busy() && !history_.is_read_only();
 }
 
 void PlanView::add_default_actions(widgets::Actions& actions) {

@@ -118,9 +118,7 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
     return model_ != nullptr && state_.page == PanelPage::Landmarks && model_->has_bone(state_.key.bone);
   };
   // Of a case that is only looked at they are looked at alone.
-  const auto can_change = [this, here] {
-    return here() && history_.status().save != open_case::PlanStatus::Save::ReadOnly;
-  };
+  const auto can_change = [this, here] { return here() && !history_.is_read_only(); };
   const auto is_there = [this, can_change] {
     return can_change() && model_->landmarks(state_.key.bone).contains(landmark());
   };

@@ -63,8 +63,7 @@ void PlanView::add_tunnel_actions(widgets::Actions& actions) {
   // Not where the landmarks are gone through: there nothing shows the numbers, nor the handles, of a tunnel.
   const auto can_change = [this] {
     return model_ != nullptr && state_.page != PanelPage::Landmarks &&
-           model_->tunnel(state_.key).has_value() &&
-           history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+           model_->tunnel(state_.key).has_value() && !history_.is_read_only();
   };
   const auto add = [&](const std::string& id, const std::string& label, const char* tooltip, int key,
                        int mods, const char* what, auto moved) {
@@ -197,8 +196,7 @@ void PlanView::add_placing_actions(widgets::Actions& actions) {
                0, false,
                // On the page of the landmarks P places these.
                [this] {
-                 return model_ != nullptr && state_.page != PanelPage::Landmarks &&
-                        history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+                 return model_ != nullptr && state_.page != PanelPage::Landmarks && !history_.is_read_only();
                },
                [this] { return state_.placing == Placing::Entry; },
                [this] {
@@ -333,16 +331,20 @@ void PlanView::add_volume_actions(widgets::Actions& actions) {
 }
 
 void PlanView::add_measuring_actions(widgets::Actions& actions) {
-  const auto has_slices = [this] { return state_.shows_slices && slices_.volume() != nullptr; };
+  // What is measured is kept with the case: where that can't be, nothing is measured.
+  const auto can_measure = [this] {
+    return state_.shows_slices && slices_.volume() != nullptr && !history_.is_read_only();
+  };
   const auto switch_to = [this](MeasuringTool tool) {
     slices_.use(slices_.tool() == tool ? MeasuringTool::None : tool);
   };
   actions.add({"plan.distance", "Distance", "Drag from one point of the slices to another, or click on both",
-               GLFW_KEY_D, 0, false, has_slices, [this] { return slices_.tool() == MeasuringTool::Distance; },
+               GLFW_KEY_D, 0, false, can_measure,
+               [this] { return slices_.tool() == MeasuringTool::Distance; },
                [switch_to] { switch_to(MeasuringTool::Distance); }});
   actions.add({"plan.angle", "Angle",
                "Click on three points of the slices, or drag along one side; the angle is at the second",
-               GLFW_KEY_A, 0, false, has_slices, [this] { return slices_.tool() == MeasuringTool::Angle; },
+               GLFW_KEY_A, 0, false, can_measure, [this] { return slices_.tool() == MeasuringTool::Angle; },
                [switch_to] { switch_to(MeasuringTool::Angle); }});
   actions.add({"plan.unmeasure",
                "Remove last",
@@ -350,7 +352,10 @@ void PlanView::add_measuring_actions(widgets::Actions& actions) {
                GLFW_KEY_BACKSPACE,
                0,
                false,
-               [this] { return model_ != nullptr && state_.shows_slices && !model_->measurements().empty(); },
+               [this] {
+                 return model_ != nullptr && state_.shows_slices && !model_->measurements().empty() &&
+                        !history_.is_read_only();
+               },
                {},
                [this] {
                  std::vector<cases::Measurement> measurements = model_->measurements();

@@ -281,8 +281,9 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   }
   if (state_.shown_revision != model_->revision()) show_content();
   std::vector<PaneMark> shown = marks();
-  // A click places, also where a handle is: one that took it would be another landmark, or nothing.
-  if (state_.placing != Placing::Nothing)
+  // A click places, also where a handle is: one that took it would be another landmark, or nothing. Of a case
+  // that may only be looked at nothing is dragged.
+  if (state_.placing != Placing::Nothing || history_.is_read_only())
     for (PaneMark& mark : shown) mark.can_be_dragged = false;
   follow(bones_.draw(ui, area, shown));
   draw_survey_legend(ui, area);

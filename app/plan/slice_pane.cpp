@@ -84,6 +84,7 @@ SliceEvent SlicePane::draw(const widgets::Ui& ui, const char* name, const widget
   if (is_fitted_) {
     mm_per_px_ = fit_mm_ / std::min(rect.width, rect.height);
     is_fitted_ = false;
+    shown_ = {};  // a volume that was just opened may lie where one lay that is gone
   }
   ImGui::SetCursorScreenPos(rect.min());
   ImGui::PushID(name);
@@ -185,7 +186,10 @@ SliceEvent SlicePane::follow_mouse(const widgets::Rect& rect, const SliceContent
       center_mm_ += (mm_per_px_ - zoom) * (from_center.x() * right_ + from_center.y() * down_);
       mm_per_px_ = zoom;
     } else {
-      event.cross_mm = content.cross_mm + std::round(io.MouseWheel) * step_mm(*content.volume) * normal();
+      // A touchpad scrolls by fractions of a step: they add up.
+      const float steps = std::trunc(wheel_steps_ += io.MouseWheel);
+      wheel_steps_ -= steps;
+      if (steps != 0) event.cross_mm = content.cross_mm + steps * step_mm(*content.volume) * normal();
     }
   }
   return event;

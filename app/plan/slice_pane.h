@@ -117,6 +117,7 @@ class SlicePane {
   double mm_per_px_ = 0.5, fit_mm_ = 150;  // fit_mm: of the shorter side, until it is zoomed
   bool is_fitted_ = false, press_measures_ = false, press_paints_ = false;
   float press_travel_px_ = 0;
+  float wheel_steps_ = 0;                                 // of the wheel, not a whole slice yet
   Eigen::Vector3d pressed_mm_ = Eigen::Vector3d::Zero();  // a slow frame sees the mouse let go somewhere else
   widgets::GreyTexture texture_;
   std::vector<std::uint8_t> grey_;

@@ -54,7 +54,7 @@ void PlanView::export_plan() {
 
 void PlanView::take_markups(const std::filesystem::path& file) {
   state_.placing = Placing::Nothing;
-  if (history_.status().save == open_case::PlanStatus::Save::ReadOnly) {
+  if (history_.is_read_only()) {
     state_.hint = {"Nothing is taken from " + file.filename().string() + ": the case is read-only"};
     return;
   }
@@ -77,8 +77,7 @@ void PlanView::take_markups(const std::filesystem::path& file) {
 
 void PlanView::add_version_actions(widgets::Actions& actions) {
   const auto has_plan = [this] {
-    return model_ != nullptr && !model_->knee().plan.tunnels.empty() &&
-           history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+    return model_ != nullptr && !model_->knee().plan.tunnels.empty() && !history_.is_read_only();
   };
   actions.add({"plan.keep",
                "Keep version",
