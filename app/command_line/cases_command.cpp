@@ -158,7 +158,11 @@ void add_cases_command(CLI::App& app, Context& context) {
   sub->add_flag("--csv", arguments->as_csv, "The cohort as CSV, a row for each session")->excludes(json);
   sub->add_flag("--with-identity", arguments->with_identity,
                 "Name the patients (identity.json of the cases) in JSON and CSV; without it nobody is named");
-  sub->callback([&context, arguments] { list_cases(context, *arguments); });
+  sub->callback([&context, arguments] {
+    if (arguments->with_identity && !arguments->as_json && !arguments->as_csv)
+      throw CLI::ValidationError("--with-identity", "is of --json and --csv; the list names no patient");
+    list_cases(context, *arguments);
+  });
 }
 
 }  // namespace arthronaut::command_line

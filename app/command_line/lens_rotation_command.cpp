@@ -110,10 +110,12 @@ void add_lens_rotation_experiment(CLI::App& experiment, Context& context) {
                                      "on a recorded clip",
                                      "arthronaut experiment lens-rotation --frames 500 -o rotation");
   const auto arguments = std::make_shared<LensRotationArguments>();
-  command->add_option("--frames", arguments->frames, "Frames to simulate")->check(between(1, 100000));
-  command
-      ->add_option("--seed", arguments->seed, "Seed of the simulation; the same seed gives the same figures")
-      ->check(a_seed());
+  auto* frames =
+      command->add_option("--frames", arguments->frames, "Frames to simulate")->check(between(1, 100000));
+  auto* seed = command
+                   ->add_option("--seed", arguments->seed,
+                                "Seed of the simulation; the same seed gives the same figures")
+                   ->check(a_seed());
   command->add_option("-o", arguments->output, "Folder for the plot and the figures of every frame")
       ->check(a_file());
   auto* video =
@@ -125,7 +127,7 @@ void add_lens_rotation_experiment(CLI::App& experiment, Context& context) {
       command->add_option("--tools", arguments->tools, "tools.json of the clip, checked against the truth");
   auto* medium =
       add_medium_option(*command, arguments->medium, "Fluid of the clip, when it is not that of the truth");
-  video->needs(camera)->needs(truth);
+  video->needs(camera)->needs(truth)->excludes(frames)->excludes(seed);
   camera->needs(video);
   truth->needs(video);
   tools->needs(video);

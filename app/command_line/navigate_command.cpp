@@ -40,6 +40,7 @@ struct NavigateArguments {
   bool igtl_network = false;
   bool fixed_lens = false, no_copy = false;
   CLI::Option* probe_option = nullptr;
+  CLI::Option* pictures_option = nullptr;
   CartilageArguments cartilage;
 };
 
@@ -259,6 +260,8 @@ void navigate(Context& context, const NavigateArguments& arguments,
   }
   const std::shared_ptr<sources::FrameSource> source =
       open_for(arguments.video, options.source.pipeline.calibration.image_size_px);
+  if (arguments.pictures_option->count() > 0 && !source->info().is_live())
+    throw CLI::ValidationError("--pictures", "is of live sources; of a recording the video itself is copied");
   refuse_other_size(arguments.video, *source, options.source.pipeline.calibration);
   context.say("working medium: " + camera::medium_to_text(options.source.pipeline.refractive_index));
 
@@ -355,6 +358,8 @@ void add_navigate_command(CLI::App& app, Context& context) {
       "it is reliable and of this world marker, camera and medium; strokes give a new one");
   add_cartilage_option(*command, arguments->cartilage.mesh, "; copied into the case. Default: the case's");
   add_mesh_options(*command, arguments->cartilage.space, arguments->cartilage.unit, "the cartilage's mesh");
+  for (const char* of_the_cartilage : {"--space", "--unit"})
+    command->get_option(of_the_cartilage)->needs("--cartilage");
   arguments->probe_option =
       command->add_option("--probe", arguments->probe, "Name of the touch probe in the tools")
           ->capture_default_str();
@@ -365,19 +370,23 @@ void add_navigate_command(CLI::App& app, Context& context) {
                     "The lens stays at the calibration's reference angle; the lens mark is not needed");
   command->add_flag("--no-copy", arguments->no_copy,
                     "Keep only the video's path in the session, not a copy of it; of a live source, nothing");
-  command
-      ->add_option("--pictures", arguments->pictures,
-                   "How a live source's pictures are kept: as-they-came (a network stream's own packets; "
-                   "lossless where "
-                   "it has none), lossless, or h264 (a sixth on the disk; replayed with a tolerance)")
-      ->check(CLI::IsMember({"as-they-came", "lossless", "h264"}))
-      ->capture_default_str();
+  arguments->pictures_option =
+      command
+          ->add_option("--pictures", arguments->pictures,
+                       "How a live source's pictures are kept: as-they-came (a network stream's own packets; "
+                       "lossless where "
+                       "it has none), lossless, or h264 (a sixth on the disk; replayed with a tolerance)")
+          ->check(CLI::IsMember({"as-they-came", "lossless", "h264"}))
+          ->capture_default_str()
+          ->excludes("--no-copy");
   command
       ->add_option("--igtl", arguments->igtl_port,
                    "Serve poses and states by OpenIGTLink on this port, 0 for any free one, while it runs")
       ->check(between(0, 65535));
-  command->add_flag("--igtl-network", arguments->igtl_network,
-                    "Serve other machines too, and not this one alone: there is no password");
+  command
+      ->add_flag("--igtl-network", arguments->igtl_network,
+                 "Serve other machines too, and not this one alone: there is no password")
+      ->needs("--igtl");
   add_tracker_option(*command, arguments->tracker);
   command
       ->add_option(

@@ -63,17 +63,19 @@ CLI::Option* add_web_options(CLI::App& sub, Connection& connection) {
                                         "DICOMweb instead: https://HOST/dicom-web; --ca holds its authority, "
                                         "where that is not one of the system's");
   either->require_option(1);
-  sub.add_option("--user", connection.web.user, "User of the DICOMweb server")->needs(web);
+  CLI::Option* user =
+      sub.add_option("--user", connection.web.user, "User of the DICOMweb server")->needs(web);
   sub.add_option("--password-file", connection.web_password_file,
                  "File whose first line is the user's password; default: $ARTHRONAUT_DICOMWEB_PASSWORD")
-      ->needs(web);
+      ->needs(user);
   return web;
 }
 
 void add_connection_options(CLI::App& sub, Connection& connection, bool peer_may_call_us) {
   CLI::Option* web = add_web_options(sub, connection);
   sub.add_option("--aet", connection.options.our_ae_title, "Our own AE title; default: ARTHRONAUT")
-      ->check(read_by(pacs::check_ae_title));
+      ->check(read_by(pacs::check_ae_title))
+      ->excludes(web);
   CLI::Option* tls =
       sub.add_flag("--tls", connection.with_tls, "Speak TLS; the peer's certificate is checked");
   CLI::Option* files[] = {sub.add_option("--cert", connection.tls.certificate, "Our certificate (PEM)"),
@@ -103,7 +105,8 @@ void add_connection_options(CLI::App& sub, Connection& connection, bool peer_may
     sub.add_option("--listen", connection.options.listening_port,
                    "Port where the peer may call us by our AE title: images by C-MOVE, reports of storage "
                    "commitment")
-        ->check(between(1, 65535));
+        ->check(between(1, 65535))
+        ->excludes(web);
 }
 
 // Ctrl+C ends the connection; what came whole is kept.
@@ -314,12 +317,18 @@ void add_send(CLI::App& pacs_app, Context& context) {
                                  "  arthronaut pacs send --peer PACS@pacs.hospital:104 results");
   add_connection_options(*sub, *arguments, true);
   sub->add_option("FILE", arguments->paths, "DICOM files, or folders of them")->required();
-  sub->add_flag("--no-commitment", arguments->without_commitment, "Ask for no storage commitment");
+  // DICOMweb has no storage commitment.
+  CLI::Option* without =
+      sub->add_flag("--no-commitment", arguments->without_commitment, "Ask for no storage commitment")
+          ->excludes("--web");
   sub->add_flag("--require-commitment", arguments->must_be_committed,
-                "Exit code 4 unless the PACS has confirmed that it keeps everything");
+                "Exit code 4 unless the PACS has confirmed that it keeps everything")
+      ->excludes(without);
   sub->add_option("--commitment-wait-s", arguments->send.commitment_wait_s,
                   "How long its report is waited for; default: 5")
-      ->check(between(0, 86400));
+      ->check(between(0, 86400))
+      ->excludes(without)
+      ->excludes("--web");
   sub->add_flag("--json", arguments->as_json, "What was taken, as JSON");
   sub->callback([&context, arguments] { send(context, *arguments); });
 }

@@ -240,7 +240,8 @@ void add_segment_command(CLI::App& app, Context& context) {
       ->check(read_by([](const std::string& text) { (void)importing::labels_from_text(text); }));
   sub->add_option("--side", arguments->side,
                   "left or right, for the judgement; default: by the name of the label map, else not judged")
-      ->check(CLI::IsMember({"left", "right"}));
+      ->check(CLI::IsMember({"left", "right"}))
+      ->needs("--label");
   sub->add_flag("--largest", arguments->keeps_largest, "Of each bone's pieces keep the largest, no islands");
   sub->add_option("--fill-holes", arguments->closing_mm,
                   "Fill what a bone encloses, gaps of up to twice so many mm closed before; 0 closes none")

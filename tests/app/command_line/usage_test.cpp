@@ -161,6 +161,35 @@ TEST(CommandLine, AValueThatCannotBeRightIsWrongUsage) {
   expect_refused({"pacs", "get", "--series", "knee", "-o", "got"}, with_peer, "no UID");
 }
 
+// Of an option that changes nothing whoever gave it believes that it did.
+TEST(CommandLine, AnOptionThatWouldChangeNothingIsWrongUsage) {
+  const std::vector<std::string> navigate{"navigate", "Knee.arthro", "--video", "clip.mkv"};
+  const std::vector<std::string> send{"pacs", "send", "--web", "http://127.0.0.1:1/dicom-web", "results"};
+  const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> senseless{
+      {navigate, {"--igtl-network"}},
+      {navigate, {"--space", "ras"}},
+      {navigate, {"--unit", "cm"}},
+      {navigate, {"--no-copy", "--pictures", "h264"}},
+      {send, {"--password-file", "secret"}},
+      {send, {"--aet", "THEATRE"}},
+      {send, {"--listen", "11113"}},
+      {send, {"--no-commitment"}},
+      {send, {"--commitment-wait-s", "9"}},
+      {{"pacs", "send", "--peer", "PACS@127.0.0.1:104", "results"},
+       {"--no-commitment", "--require-commitment"}},
+      {{"cases"}, {"--with-identity"}},
+      {{"segment", "knee.nrrd", "--seeds", "s.nrrd", "-o", "l.nrrd"}, {"--side", "left"}},
+      {{"experiment", "lens-rotation", "--video", "v", "--camera", "c", "--truth", "t"}, {"--frames", "9"}},
+  };
+  for (const auto& [command, option] : senseless) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), option.begin(), option.end());
+    const auto result = run_program(arguments);
+    EXPECT_EQ(result.exit_code, 2) << option.front();
+    EXPECT_THAT(result.errors, HasSubstr(option.front()));
+  }
+}
+
 // It stands on the program as well as on what it does.
 TEST(CommandLine, QuietStandsOnTheProgramToo) {
   const test::TemporaryFolder folder;
