@@ -1,7 +1,6 @@
 #include "app/review/copy_maker.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
+#include "navigation/worker/niceness.h"
 
 namespace arthronaut::review {
 
@@ -10,9 +9,7 @@ CopyMaker::CopyMaker(const std::shared_ptr<const recording::SessionOverview>& se
     : worker_(
           worker::Backlog::NewestWins,
           [session, names](auto& inbox) {
-            // On Linux a thread has a niceness of its own; those that a decoder starts take it over.
-            constexpr int kNice = 19;
-            (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNice);
+            worker::stand_back(19);
             recording::QuickPictures copies(session, names);
             const auto goes_on = [&inbox] { return !inbox.stops(); };
             while (auto frame = inbox.next()) {

@@ -1,12 +1,10 @@
 #include "app/screen_copy/screen_copies.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <utility>
 
 #include "app/scene/image.h"
 #include "navigation/recording/session.h"
+#include "navigation/worker/niceness.h"
 #include "planning/files/format.h"
 #include "planning/files/private_folder.h"
 #include "planning/files/utc_clock.h"
@@ -18,11 +16,7 @@ namespace {
 
 constexpr double kSaidFor_s = 5;
 
-// Guidance first: on Linux a thread has a niceness of its own.
-void be_nice() {
-  constexpr int kNice = 10;
-  (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNice);
-}
+constexpr int kStandsBackBy = 10;  // guidance first
 
 // A name that nothing in the folder has yet, and nothing that is still being written will have.
 std::filesystem::path new_file(const std::filesystem::path& case_folder, const char* extension,
@@ -74,7 +68,7 @@ ScreenCopies::ScreenCopies(std::string stream_address, std::function<void()> wak
       shots_(
           worker::Backlog::Lossless,
           [](auto& inbox) {
-            be_nice();
+            worker::stand_back(kStandsBackBy);
             while (const auto shot = inbox.next()) {
               const std::string name = shot->first.filename().string();
               try {  // a disk that is full ends no later screenshot
@@ -111,7 +105,7 @@ void ScreenCopies::begin(Output& output, const std::string& target) {
   output.target = target;
   output.begun_s = -1;
   const auto body = [target](auto& inbox) {
-    be_nice();
+    worker::stand_back(kStandsBackBy);
     const std::filesystem::path folder = std::filesystem::path(target).parent_path();
     // The one that still waits when it is ended is written, too.
     const auto next = [&inbox] {

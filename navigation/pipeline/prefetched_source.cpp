@@ -19,6 +19,10 @@ namespace {
 // Four 1080p frames are 25 MB; more would not hide longer hiccups than a decoder has.
 constexpr std::size_t kFramesAhead = 4;
 
+using Clock = std::chrono::steady_clock;
+// So long a live picture may wait for a consumer that was held up.
+constexpr std::chrono::milliseconds kMostWait{50};
+
 std::string seconds_text(double seconds) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g s", seconds);
@@ -28,7 +32,7 @@ std::string seconds_text(double seconds) {
 }  // namespace
 
 Delivery delivery_of(const sources::SourceInfo& info) {
-  return info.is_live() ? Delivery::NewestWins : Delivery::Lossless;
+  return info.is_live() ? Delivery::CatchesUp : Delivery::Lossless;
 }
 
 // Shared by the thread and its owner, so that either may outlive the other. (Not a Worker, whose end waits
@@ -69,12 +73,19 @@ struct PrefetchedSource::State {
 
   bool put(camera::FramePtr frame) {
     Lock lock(mutex);
-    if (delivery == Delivery::NewestWins) waiting.clear();
+    if (delivery == Delivery::CatchesUp &&
+        (waiting.size() == kFramesAhead || (!waiting.empty() && is_too_slow)))
+      leave_out_all_but(0);
     changed.wait(lock, [&] { return stops || waiting.size() < kFramesAhead; });
     if (stops) return false;
-    waiting.push_back(std::move(frame));
+    waiting.push_back(std::move(frame), Clock::now());
     changed.notify_all();
     return true;
+  }
+
+  void leave_out_all_but(std::size_t newest) {
+    while (waiting.size() > newest) (void)waiting.pop_front();
+    is_too_slow = true;
   }
 
   // False when nothing was there in time.
@@ -89,8 +100,11 @@ struct PrefetchedSource::State {
 
   NextFrame take(std::optional<double> seconds) {
     Lock lock(mutex);
+    if (waiting.empty()) is_too_slow = false;
     (void)wait(lock, seconds, [&] { return has_ended || !waiting.empty(); });
     NextFrame next;
+    if (delivery == Delivery::CatchesUp && waiting.size() > 1 && Clock::now() - waiting.since() > kMostWait)
+      leave_out_all_but(1);
     if (!waiting.empty()) {
       next.frame = waiting.pop_front();
       changed.notify_all();
@@ -112,20 +126,24 @@ struct PrefetchedSource::State {
   // A ring: nothing is asked of the heap while frames go through.
   struct Waiting {
     std::array<camera::FramePtr, kFramesAhead> frames;
+    std::array<Clock::time_point, kFramesAhead> came;
     std::size_t first = 0, count = 0;
     [[nodiscard]] bool empty() const { return count == 0; }
     [[nodiscard]] std::size_t size() const { return count; }
-    void push_back(camera::FramePtr frame) { frames[(first + count++) % kFramesAhead] = std::move(frame); }
+    void push_back(camera::FramePtr frame, Clock::time_point now) {
+      const std::size_t at = (first + count++) % kFramesAhead;
+      frames[at] = std::move(frame);
+      came[at] = now;
+    }
+    [[nodiscard]] Clock::time_point since() const { return came[first]; }  // of the one that came first
     [[nodiscard]] camera::FramePtr pop_front() {
       camera::FramePtr frame = std::move(frames[first]);
       first = (first + 1) % kFramesAhead;
       --count;
       return frame;
     }
-    void clear() {
-      while (!empty()) (void)pop_front();
-    }
   } waiting;
+  bool is_too_slow = false;  // the consumer of a live source: one was left out, and it has not waited since
   std::exception_ptr error;
   bool is_open = false, has_ended = false, stops = false;
   std::thread thread;  // its owner's

@@ -1,9 +1,11 @@
 // A frame source whose frames are made (decoded, rendered, grabbed) in a thread of their own.
 //
 // Recordings and the simulator lose nothing: a few frames are made ahead of who asks for them. A live source
-// must never be behind: of it only the newest picture waits, and what a slow consumer did not take in time is
-// left out. When next() returns, the frame is then at most one frame interval older than the newest that the
-// device gave, however long the work on the one before took.
+// must not be behind: a consumer that is held up for a moment, as by the screen on a machine with few cores,
+// gets what waited meanwhile and catches up, but no picture that waited for more than 50 ms, nor one of more
+// than four. Beyond that all but the newest are left out, and until the consumer has to wait for a picture
+// again only the newest waits: one that is too slow for the source has a picture that is at most one frame
+// interval older than the newest that the device gave, however long the work on the one before took.
 #pragma once
 
 #include <functional>
@@ -13,9 +15,9 @@
 
 namespace arthronaut::pipeline {
 
-enum class Delivery { Lossless, NewestWins };
+enum class Delivery { Lossless, CatchesUp };
 
-// Newest wins for what is live, lossless for all else.
+// Catching up for what is live, lossless for all else.
 [[nodiscard]] Delivery delivery_of(const sources::SourceInfo& info);
 
 // What next_within() found.

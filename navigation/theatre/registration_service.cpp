@@ -1,5 +1,6 @@
 #include "navigation/theatre/registration_service.h"
 
+#include "navigation/worker/niceness.h"
 #include "navigation/worker/worker.h"
 
 namespace arthronaut::theatre {
@@ -42,6 +43,8 @@ class Beside : public RegistrationService {
   static void run(Inbox& inbox, const BoneMaker& bone, const operation::RegistrationWorkOptions& options) {
     // Somebody who draws without a pause, faster than this machine registers, still sees how far it is.
     constexpr auto kAtLatest = std::chrono::seconds(1);
+    // On two cores that also draw the screen it would hold up several pictures in a row.
+    worker::stand_back(5);
     RegistrationWork work(bone, options);
     inbox.publish(work.outcome());
     auto published_at = Worker::Clock::now();

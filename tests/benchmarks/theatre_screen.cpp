@@ -199,6 +199,18 @@ void print_record(const fs::path& folder) {
       60e-9 * static_cast<double>(frames.back().timestamp_ns - frames.front().timestamp_ns) + 1;
   std::printf("sent %.0f, looked at and recorded %zu (%.2f %%), pictures kept %zu\n", sent, frames.size(),
               100 * static_cast<double>(frames.size()) / sent, session.pictures().size());
+  // Most are lost together, as where the first scene with a guide is drawn: when.
+  double worst = 0, worst_s = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    constexpr std::int64_t kSecond_ns = 1'000'000'000;
+    const auto from = std::ranges::lower_bound(frames, frames[i].timestamp_ns - kSecond_ns, {},
+                                               [](const auto& frame) { return frame.timestamp_ns; });
+    const auto there = static_cast<double>(frames.begin() + static_cast<std::ptrdiff_t>(i) - from);
+    const double lost = 60e-9 * static_cast<double>(frames[i].timestamp_ns - from->timestamp_ns) - there;
+    if (lost > worst) worst = lost, worst_s = 1e-9 * static_cast<double>(frames[i].timestamp_ns);
+  }
+  std::printf("most of them within a second: %.0f, until %.1f s\n", worst,
+              worst_s - 1e-9 * static_cast<double>(frames.front().timestamp_ns));
   for (const recording::SessionEvent& event : session.events())
     if (event.kind == recording::kLatencyEvent || event.kind == recording::kDroppedPicturesEvent ||
         event.kind == recording::kPicturesKeptEvent)
