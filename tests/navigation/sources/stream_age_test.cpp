@@ -94,8 +94,8 @@ Ages ages_of(const PushedSender::Start& start, const std::string& address) {
     // The newest of that grey.
     int number = PushedSender::number_of(*frame);
     while (number + PushedSender::kGreys < static_cast<int>(pushed_ns.size())) number += PushedSender::kGreys;
-    const std::int64_t at_ns = pushed_ns[static_cast<std::size_t>(number)];
     if (i < 6) continue;
+    const std::int64_t at_ns = pushed_ns.at(static_cast<std::size_t>(number));
     said_s.push_back(1e-9 * static_cast<double>(frame->captured_ns - at_ns));
     taken_s.push_back(1e-9 * static_cast<double>(now_ns - at_ns));
   }
