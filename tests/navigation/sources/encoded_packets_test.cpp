@@ -11,7 +11,7 @@ namespace {
 LibavPtr<AVPacket> packet_of(const std::vector<std::uint8_t>& bytes) {
   LibavPtr<AVPacket> packet(av_packet_alloc());
   EXPECT_EQ(av_new_packet(packet.get(), static_cast<int>(bytes.size())), 0);
-  std::memcpy(packet->data, bytes.data(), bytes.size());
+  if (!bytes.empty()) std::memcpy(packet->data, bytes.data(), bytes.size());
   return packet;
 }
 
