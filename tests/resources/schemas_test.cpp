@@ -6,6 +6,7 @@
 
 #include "navigation/calibration/fluid_file.h"
 #include "navigation/camera/doubted_camera_file.h"
+#include "navigation/recording/session_files.h"
 #include "navigation/recording/session_marks.h"
 #include "navigation/registration/registration.h"
 #include "navigation/registration/registration_file.h"
@@ -193,6 +194,29 @@ TEST_F(Schemas, DescribeTheMarks) {
   recording::write_marks(folder_.path(), {{12, 200'000'000, "first touch"}, {30, 500'000'000, ""}});
   expect_described(recording::marks_file(folder_.path()), "marks",
                    [&] { (void)recording::read_marks(folder_.path()); });
+}
+
+// Of a session that says little, and of one that says all, in two parts of video.
+TEST_F(Schemas, DescribeTheSession) {
+  pipeline::PipelineOptions options;
+  options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+  options.tools = tools::standard_tools();
+  recording::SessionHeader header;
+  header.id = "0001-20260131-120000";
+  header.started_utc = "2026-01-31T12:00:00Z";
+  const fs::path file = folder_ / "session.json";
+  recording::write_session_header(folder_.path(), header, options);
+  expect_described(file, "session", [&] { (void)recording::read_session_header(folder_.path(), options); });
+  header.source_kind = "live";
+  header.mesh_sha256 = header.build = "5f";
+  header.continues = "0000-20260131-110000";
+  header.registers_after_mm = 12;
+  header.video_parts = {{.file = "video.mkv"}, {.file = "video_2.mkv", .first_picture = 300}};
+  recording::write_session_header(folder_.path(), header, options);
+  json written = read(file);
+  EXPECT_EQ(test::undescribed(written, "session"), "");
+  written["video_parts"][0]["pictures"] = "somehow";
+  EXPECT_NE(test::undescribed(written, "session"), "");
 }
 
 // What `cases --json` writes: a case with everything, one that is gone, one that cannot be read.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
 #include "planning/phantom/phantom_case.h"
+#include "tests/resources/described.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::report {
@@ -32,9 +34,14 @@ class Report : public ::testing::Test {
   std::filesystem::path pdf() const { return folder_ / "report.pdf"; }
 
   // With small pictures, which are most of the work; how they look is tested elsewhere.
+  // For other programs it is as its schema says.
   std::vector<std::string> write(const std::filesystem::path& output, ReportOptions options = {}) const {
     options.picture_px_per_mm = 1;
-    return write_report(knee_folder(), output, options);
+    const std::vector<std::string> doubts = write_report(knee_folder(), output, options);
+    if (output.extension() == ".json") {
+      EXPECT_EQ(test::undescribed(nlohmann::json::parse(files::read_text(output)), "report"), "");
+    }
+    return doubts;
   }
   std::string made(ReportOptions options) const {
     options.picture_px_per_mm = 1;
