@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using library::CaseRecord;
 
-struct Arguments {
+struct CasesArguments {
   std::string add, forget, note;
   std::string note_text;
   std::string side, state, order = "newest";
@@ -28,12 +28,13 @@ struct Arguments {
 };
 
 // What was done, in words; nothing beside what another program is to read.
-void say_done(const Context& context, const Arguments& arguments, const std::string& line) {
+void say_done(const Context& context, const CasesArguments& arguments, const std::string& line) {
   if (!arguments.as_json && !arguments.as_csv) context.say(line);
 }
 
 // What was found there.
-std::set<fs::path> add_folder(const Context& context, library::Library& known, const Arguments& arguments) {
+std::set<fs::path> add_folder(const Context& context, library::Library& known,
+                              const CasesArguments& arguments) {
   Progress progress("Looking through folders", 0);
   const auto found =
       library::find_case_folders(arguments.add, [&](long looked) { progress.advance_to(looked); });
@@ -87,7 +88,7 @@ void print(const Context& context, const std::vector<CaseRecord>& records, std::
                     : "None of the " + std::to_string(known_count) + " known cases is like that.");
 }
 
-void list_cases(const Context& context, const Arguments& arguments) {
+void list_cases(const Context& context, const CasesArguments& arguments) {
   library::CaseQuery query{.words = arguments.search, .side = arguments.side};
   if (!arguments.state.empty()) query.state = library::case_state_from_text(arguments.state);
   query.order = library::case_order_from_text(arguments.order);
@@ -132,7 +133,7 @@ void list_cases(const Context& context, const Arguments& arguments) {
 }  // namespace
 
 void add_cases_command(CLI::App& app, Context& context) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<CasesArguments>();
   CLI::App* sub = add_subcommand(app, context, "cases",
                                  "List the cases of this workstation: what is planned, done and reached",
                                  "arthronaut cases --add /data/knees\n"

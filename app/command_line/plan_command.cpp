@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "app/command_line/command.h"
+#include "app/command_line/kept_versions.h"
 #include "app/command_line/option_checks.h"
 #include "app/command_line/plan_report.h"
 #include "planning/bones/mesh_hash.h"
@@ -14,7 +15,6 @@
 #include "planning/default_plan/default_plan.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
-#include "planning/files/utc_clock.h"
 #include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
@@ -121,26 +121,6 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee
   return planned.tunnel;
 }
 
-// What a new plan takes the place of may be an evening's work, and nobody undoes a command: it is kept as a
-// version, unless one is the same.
-void keep_replaced(const PlanArguments& arguments, const cases::Plan& before, const cases::Plan& now,
-                   PlanVerdict& verdict, std::vector<std::string>& notes) {
-  std::string replaced;
-  for (const auto& difference : cases::compare_plans(now, before))
-    if (difference.is_lost_here()) replaced += (replaced.empty() ? "" : "; ") + difference.in_words();
-  if (replaced.empty()) return;
-  const auto versions = cases::load_plan_versions(arguments.case_folder);
-  const auto same = std::ranges::find_if(versions, [&](const cases::PlanVersion& version) {
-    return std::ranges::none_of(cases::compare_plans(version.plan, before),
-                                &cases::TunnelDifference::is_lost_here);
-  });
-  verdict.kept_version =
-      same != versions.end() ? same->number : cases::keep_plan_version(arguments.case_folder, before).number;
-  const std::string number = std::to_string(verdict.kept_version);
-  notes.push_back("The plan that was there is kept as version " + number + ", --take " + number +
-                  " brings it back. Against the one that is there now, " + replaced + ".");
-}
-
 // Tunnels as another program moved them; only those of bones that the case holds.
 void put(const tunnels::Tunnel& tunnel, const std::string& mesh_sha256, cases::Case& knee,
          std::vector<std::string>& notes) {
@@ -218,36 +198,6 @@ void remove_tunnel(const PlanArguments& arguments, cases::Case& knee) {
   if (!knee.plan.tunnels.contains(key))
     throw InvalidInput(arguments.case_folder, "plan.json", "holds no tunnel " + tunnels::name_of(key));
   knee.plan.remove(key);
-}
-
-// Of the same bones' meshes as it was kept: plan_fit says where that is no longer the case's.
-void take_version(const PlanArguments& arguments, cases::Case& knee) {
-  const auto versions = cases::load_plan_versions(arguments.case_folder);
-  const auto found = std::ranges::find(versions, arguments.version, &cases::PlanVersion::number);
-  if (found == versions.end()) {
-    throw InvalidInput(arguments.case_folder, "plan_versions",
-                       "holds no version " + std::to_string(arguments.version) + " (it holds " +
-                           std::to_string(versions.size()) + ")");
-  }
-  for (const bones::BoneKind bone : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
-    if (!is_asked_for(arguments, bone)) continue;
-    for (const tunnels::TunnelKey& key : knee.plan.of(bone)) knee.plan.remove(key);
-    for (const tunnels::TunnelKey& key : found->plan.of(bone)) {
-      const auto mesh = found->plan.mesh_sha256.find(key);
-      knee.plan.put(found->plan.tunnels.at(key), mesh != found->plan.mesh_sha256.end() ? mesh->second : "");
-    }
-  }
-}
-
-void list_versions(const PlanArguments& arguments, const Context& context, const cases::Case& knee) {
-  const auto versions = cases::load_plan_versions(arguments.case_folder);
-  if (versions.empty()) context.say("No version is kept. --keep keeps the plan as it is.");
-  for (const cases::PlanVersion& version : versions) {
-    context.say("Version " + std::to_string(version.number) + ", kept " +
-                files::utc_in_words(version.kept_utc) + ", against the plan as it is:");
-    for (const auto& difference : cases::compare_plans(knee.plan, version.plan))
-      context.say("  " + difference.in_words());
-  }
 }
 
 // An earlier export may be written over, a case's plan not.
@@ -372,7 +322,9 @@ void add_plan_command(CLI::App& app, Context& context) {
     if (!arguments->markups.empty()) {
       take_markups(*arguments, knee, notes);
     } else if (arguments->version > 0) {
-      take_version(*arguments, knee);
+      std::vector<bones::BoneKind> asked_for{bones::BoneKind::Femur, bones::BoneKind::Tibia};
+      std::erase_if(asked_for, [&](bones::BoneKind kind) { return !is_asked_for(*arguments, kind); });
+      take_version(arguments->case_folder, arguments->version, asked_for, knee.plan);
     } else if (arguments->removes) {
       remove_tunnel(*arguments, knee);
     } else if (writes) {
@@ -388,14 +340,14 @@ void add_plan_command(CLI::App& app, Context& context) {
       arguments->names_type = true;  // what was placed is shown
     }
     if (writes) {
-      keep_replaced(*arguments, before, knee.plan, verdict, notes);
+      verdict.kept_version = keep_replaced(arguments->case_folder, before, knee.plan, notes);
       cases::name_meshes(knee);
       knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
       if (arguments->by_default) cases::save_case(arguments->case_folder, knee);  // with its landmarks
     }
     if (!arguments->as_json)
       for (const std::string& note : notes) context.say(note);
-    if (arguments->lists_versions) return list_versions(*arguments, context, knee);
+    if (arguments->lists_versions) return list_versions(arguments->case_folder, context, knee.plan);
     // What the case lacks is proposed, as the window and the report have it, and not kept.
     cases::Case shown = knee;
     plan_review::propose_landmarks(shown, plan_review::Proposing::WithoutGrid);

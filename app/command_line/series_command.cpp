@@ -16,7 +16,7 @@ namespace arthronaut::command_line {
 
 namespace {
 
-struct Arguments {
+struct SeriesArguments {
   std::string source;
   bool as_json = false;
   double memory_limit_gib = importing::SeriesRequest{}.memory_limit_gib;
@@ -79,7 +79,7 @@ void print(const Context& context, const images::SeriesList& list) {
 }
 
 // In a process of its own, as the import: what the files hold ends in a message, not in this program's end.
-images::SeriesList found_series(const Arguments& arguments) {
+images::SeriesList found_series(const SeriesArguments& arguments) {
   using State = importing::SeriesProcess::State;
   constexpr double kLongestWait_s = 0.1;
   Progress progress("Looking", 100);
@@ -91,7 +91,7 @@ images::SeriesList found_series(const Arguments& arguments) {
   return process.list().value();
 }
 
-void list_series(const Context& context, const Arguments& arguments) {
+void list_series(const Context& context, const SeriesArguments& arguments) {
   const images::SeriesList list = found_series(arguments);
   if (list.series.empty()) {
     const std::string first = list.skipped.empty() ? ""
@@ -118,7 +118,7 @@ void list_series(const Context& context, const Arguments& arguments) {
 }  // namespace
 
 void add_series_command(CLI::App& app, Context& context) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SeriesArguments>();
   CLI::App* sub =
       add_subcommand(app, context, "series",
                      "List the image series of a folder, a DICOMDIR or a PACS download, and what is wrong "

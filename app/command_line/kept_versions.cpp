@@ -1,0 +1,59 @@
+#include "app/command_line/kept_versions.h"
+
+#include <algorithm>
+
+#include "planning/cases/plan_versions.h"
+#include "planning/files/utc_clock.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::command_line {
+
+int keep_replaced(const std::string& case_folder, const cases::Plan& before, const cases::Plan& now,
+                  std::vector<std::string>& notes) {
+  std::string replaced;
+  for (const auto& difference : cases::compare_plans(now, before))
+    if (difference.is_lost_here()) replaced += (replaced.empty() ? "" : "; ") + difference.in_words();
+  if (replaced.empty()) return 0;
+  const auto versions = cases::load_plan_versions(case_folder);
+  const auto same = std::ranges::find_if(versions, [&](const cases::PlanVersion& version) {
+    return std::ranges::none_of(cases::compare_plans(version.plan, before),
+                                &cases::TunnelDifference::is_lost_here);
+  });
+  const int kept =
+      same != versions.end() ? same->number : cases::keep_plan_version(case_folder, before).number;
+  const std::string number = std::to_string(kept);
+  notes.push_back("The plan that was there is kept as version " + number + ", --take " + number +
+                  " brings it back. Against the one that is there now, " + replaced + ".");
+  return kept;
+}
+
+void take_version(const std::string& case_folder, int number, const std::vector<bones::BoneKind>& bones,
+                  cases::Plan& plan) {
+  const auto versions = cases::load_plan_versions(case_folder);
+  const auto found = std::ranges::find(versions, number, &cases::PlanVersion::number);
+  if (found == versions.end()) {
+    throw InvalidInput(
+        case_folder, "plan_versions",
+        "holds no version " + std::to_string(number) + " (it holds " + std::to_string(versions.size()) + ")");
+  }
+  for (const bones::BoneKind bone : bones) {
+    for (const tunnels::TunnelKey& key : plan.of(bone)) plan.remove(key);
+    for (const tunnels::TunnelKey& key : found->plan.of(bone)) {
+      const auto mesh = found->plan.mesh_sha256.find(key);
+      plan.put(found->plan.tunnels.at(key), mesh != found->plan.mesh_sha256.end() ? mesh->second : "");
+    }
+  }
+}
+
+void list_versions(const std::string& case_folder, const Context& context, const cases::Plan& plan) {
+  const auto versions = cases::load_plan_versions(case_folder);
+  if (versions.empty()) context.say("No version is kept. --keep keeps the plan as it is.");
+  for (const cases::PlanVersion& version : versions) {
+    context.say("Version " + std::to_string(version.number) + ", kept " +
+                files::utc_in_words(version.kept_utc) + ", against the plan as it is:");
+    for (const auto& difference : cases::compare_plans(plan, version.plan))
+      context.say("  " + difference.in_words());
+  }
+}
+
+}  // namespace arthronaut::command_line
