@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "planning/geometry/rigid_transform.h"
 
@@ -22,6 +23,21 @@ bool has_bone(const geometry::Surface& bone, const Vector3d& from, const Vector3
               double within_mm) {
   const auto hit = bone.first_hit(from, direction);
   return hit && hit->distance_mm < within_mm && hit->normal.dot(direction) < 0;
+}
+
+using Polygon = std::vector<Vector3d>;
+
+// What of a convex polygon lies on the side of sign * coordinate <= sign * limit.
+Polygon cut_off(const Polygon& polygon, int axis, double limit, int sign) {
+  Polygon left;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector3d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const double beyond_a = sign * (a[axis] - limit), beyond_b = sign * (b[axis] - limit);
+    if (beyond_a <= 0) left.push_back(a);
+    if ((beyond_a < 0 && beyond_b > 0) || (beyond_a > 0 && beyond_b < 0))
+      left.push_back(a + beyond_a / (beyond_a - beyond_b) * (b - a));
+  }
+  return left;
 }
 
 // Where a place is looked at from, over the surface.
@@ -115,13 +131,27 @@ TibialExit tibial_exit(const TunnelGeometry& tunnel, const landmarks::Anatomical
 std::optional<double> to_posterior_cortex_mm(const geometry::TriangleMesh& femur, const Vector3d& exit_mm,
                                              const landmarks::AnatomicalAxes& axes) {
   constexpr double kBand_mm = 1.5, kLateral_mm = 5, kMedial_mm = 15;
+  Eigen::Matrix3d rows;
+  rows << axes.lateral.transpose(), axes.proximal.transpose(), axes.anterior.transpose();
+  const Eigen::Array2d least(-kMedial_mm, -kBand_mm), greatest(kLateral_mm, kBand_mm);
   double hindmost = kInfinity;
-  for (const Vector3d& v : femur.vertices_mm) {
-    const Vector3d away = v - exit_mm;
-    if (std::abs(away.dot(axes.proximal)) > kBand_mm) continue;
-    const double lateral = away.dot(axes.lateral);
-    if (lateral > kLateral_mm || lateral < -kMedial_mm) continue;
-    hindmost = std::min(hindmost, away.dot(axes.anterior));
+  for (const auto& triangle : femur.triangles) {
+    Eigen::Matrix3d away;  // a corner a column: lateral, proximal, anterior of the exit
+    for (int i = 0; i < 3; ++i)
+      away.col(i) =
+          rows *
+          (femur.vertices_mm[static_cast<std::size_t>(triangle[static_cast<std::size_t>(i)])] - exit_mm);
+    if (away.row(2).minCoeff() > hindmost) continue;
+    const Eigen::Array2d from = away.topRows<2>().rowwise().minCoeff(),
+                         to = away.topRows<2>().rowwise().maxCoeff();
+    if ((from > greatest).any() || (to < least).any()) continue;
+    Polygon part;
+    for (int i = 0; i < 3; ++i) part.push_back(away.col(i));
+    for (int axis = 0; axis < 2; ++axis) {
+      part = cut_off(part, axis, greatest[axis], 1);
+      part = cut_off(part, axis, least[axis], -1);
+    }
+    for (const Vector3d& corner : part) hindmost = std::min(hindmost, corner.z());
   }
   if (!std::isfinite(hindmost)) return std::nullopt;
   return -hindmost;

@@ -59,8 +59,8 @@ enum class TibialExit { AnteromedialFace, LateralFace, PosteriorFace, JointSurfa
 // more than 60 deg). Posterior and lateral: the face looks that way by more than 30 deg.
 [[nodiscard]] TibialExit tibial_exit(const TunnelGeometry& tunnel, const landmarks::AnatomicalAxes& axes);
 
-// From the exit straight back to the posterior cortex at its height: the hindmost vertex within 1.5 mm of its
-// height, from 5 mm lateral to 15 mm medial of it (femur). nullopt where no vertex lies there.
+// From the exit straight back to the posterior cortex at its height: the hindmost point of the surface within
+// 1.5 mm of its height, from 5 mm lateral to 15 mm medial of it (femur). nullopt where no surface lies there.
 [[nodiscard]] std::optional<double> to_posterior_cortex_mm(const geometry::TriangleMesh& femur,
                                                            const Eigen::Vector3d& exit_mm,
                                                            const landmarks::AnatomicalAxes& axes);

@@ -262,7 +262,7 @@ const std::map<std::string, OtherWay>& other_ways() {
       {"Coronal angle", {&Panel::coronal, 0.01}},
       {"Lateral epicondyle", {to_mark("lateral_epicondyle"), 0.02}},
       {"Tuberosity", {to_mark("tuberosity"), 0.02}},
-      // Of the mesh's vertices on one side, of rays a millimetre apart on the other.
+      // All of the surface on one side, rays a millimetre apart on the other.
       {"Posterior cortex", {&Panel::posterior_cortex, 0.5}},
       // Whole triangles on one side, their parts within the circle on the other.
       {"Opening", {&Panel::opening_deg, 2}},
