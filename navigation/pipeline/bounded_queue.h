@@ -1,5 +1,6 @@
 // The queue between two stages that each have a thread of their own. Lossless: a full queue makes the
-// producer wait (push) or tells it so (try_push). States: open -> closed, never back.
+// producer wait (push) or tells it so (try_push), or takes what must neither wait nor get lost
+// (push_at_once). States: open -> closed, never back.
 //
 // Threads: any may call anything; meant for one producer and one consumer.
 #pragma once
@@ -28,6 +29,12 @@ class BoundedQueue {
   bool try_push(Message message) {
     const std::lock_guard lock(mutex_);
     return messages_.size() < capacity_ && push_locked(std::move(message));
+  }
+  // Never waits, and is taken by a full queue too: for the end of a run of messages, of which there are no
+  // more than messages. False when it is closed.
+  bool push_at_once(Message message) {
+    const std::lock_guard lock(mutex_);
+    return push_locked(std::move(message));
   }
   // Waits for a message; nullopt when the queue is closed and empty.
   std::optional<Message> pop() {

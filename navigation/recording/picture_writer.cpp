@@ -197,6 +197,7 @@ struct PictureWriter::State {
 
   VideoParts parts;  // the thread's
   pipeline::BoundedQueue<camera::FramePtr> queue;
+  bool part_is_open = false;  // by what was handed over; the caller's
   std::atomic<bool> failed = false;
   std::exception_ptr error;
   std::thread worker;
@@ -215,15 +216,20 @@ PictureWriter::~PictureWriter() {
 
 void PictureWriter::write(const camera::FramePtr& picture) {
   if (!state_->queue.push(picture)) state_->join_and_report();
+  state_->part_is_open = true;
 }
 
 bool PictureWriter::try_write(const camera::FramePtr& picture) {
   if (state_->failed) state_->join_and_report();
-  return state_->queue.try_push(picture);
+  const bool is_taken = state_->queue.try_push(picture);
+  state_->part_is_open = state_->part_is_open || is_taken;
+  return is_taken;
 }
 
 void PictureWriter::end_part() {
-  if (!state_->queue.push(nullptr)) state_->join_and_report();
+  // One end for each run of pictures at most: the queue grows no further than to twice its room.
+  if (!std::exchange(state_->part_is_open, false)) return;
+  if (!state_->queue.push_at_once(nullptr)) state_->join_and_report();
 }
 
 void PictureWriter::finish() { state_->join_and_report(); }

@@ -49,7 +49,8 @@ class PictureWriter {
   void write(const camera::FramePtr& picture);
   // The same, but false at once when too many are waiting.
   [[nodiscard]] bool try_write(const camera::FramePtr& picture);
-  // Nothing of what comes between the last picture and the next one is kept.
+  // Nothing of what comes between the last picture and the next one is kept. Never waits for the disk; throws
+  // as write() does.
   void end_part();
   void finish();
 

@@ -4,10 +4,12 @@
 #include <atomic>
 #include <chrono>
 #include <fstream>
+#include <future>
 #include <iostream>
 #include <memory>
 #include <thread>
 
+#include "navigation/recording/picture_writer.h"
 #include "navigation/recording/session.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
@@ -128,6 +130,49 @@ TEST_F(BoundedRecording, StopsBeforeTheDiskIsFullAndKeepsWhatWasMade) {
   int pictures = 0;
   while (video->next()) ++pictures;
   EXPECT_GE(pictures, 10);
+}
+
+// A disk that hangs: its writer stands at its first word of a picture, and the queue before it is full.
+// Whoever switches the video off does not stand with it, and what was handed over is in its part, the end of
+// the part too.
+TEST_F(BoundedRecording, EndsAPartOfTheVideoWhileTheDiskHangs) {
+  std::promise<void> disk;
+  const std::shared_future<void> goes_on = disk.get_future().share();
+  std::vector<std::string> said;
+  recording::PictureNews news;
+  news.begun = [&, goes_on](const recording::VideoPart& part, const camera::Frame& first,
+                            const std::string&) {
+    goes_on.wait();
+    said.push_back("begun " + part.file + " " + std::to_string(first.index));
+  };
+  std::vector<std::int64_t> kept;
+  news.kept = [&](const recording::KeptPicture& picture) { kept.push_back(picture.frame); };
+  news.ended = [&](const recording::VideoPart& part) { said.push_back("ended " + part.file); };
+  recording::PictureWriter writer(folder_.path(), {}, news);
+  const auto picture = [](std::int64_t i) {
+    return std::make_shared<camera::Frame>(test::plain_frame(static_cast<int>(i), 80));
+  };
+  std::vector<std::int64_t> taken;
+  std::int64_t frame = 0;
+  while (writer.try_write(picture(frame))) taken.push_back(frame++);
+  EXPECT_TRUE(eventually([&] {  // the one that the writer stands at has left the queue
+    const bool is_taken = writer.try_write(picture(frame));
+    if (is_taken) taken.push_back(frame++);
+    return !is_taken && taken.size() > 32;
+  }));
+  // However often it is switched, it is one end: the queue must not grow by it.
+  auto switching = std::async(std::launch::async, [&] {
+    for (int i = 0; i < 1000; ++i) writer.end_part();
+  });
+  EXPECT_EQ(switching.wait_for(std::chrono::seconds(1)), std::future_status::ready);
+  disk.set_value();
+  switching.wait();
+  writer.write(picture(1000));
+  taken.push_back(1000);
+  writer.finish();
+  EXPECT_EQ(kept, taken);
+  EXPECT_EQ(said, (std::vector<std::string>{"begun video.mkv 0", "ended video.mkv", "begun video_2.mkv 1000",
+                                            "ended video_2.mkv"}));
 }
 
 // A recorder that cannot begin says so at once, with the folder's name: there is no thread behind it that
