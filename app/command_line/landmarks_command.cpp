@@ -1,4 +1,5 @@
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
@@ -182,6 +183,28 @@ bool change(const LandmarkArguments& arguments, cases::Case& knee,
   return arguments.propose || !placed.empty() || !confirmed.empty();
 }
 
+// Of the bones on which somebody placed or confirmed something: a slip is as confirmed as what is right.
+void say_far_from_shape(const Context& context, const LandmarkArguments& arguments, const cases::Case& knee,
+                        const std::map<BoneKind, landmarks::Proposal>& proposals) {
+  std::set<BoneKind> touched;
+  for (const std::string& text : arguments.set) touched.insert(placed_from(text).bone);
+  for (const std::string& text : arguments.confirm) touched.insert(place_from(text).bone);
+  for (const BoneKind kind : touched) {
+    const auto made = proposals.find(kind);
+    const landmarks::Proposal proposal =
+        made != proposals.end() ? made->second
+                                : landmarks::propose(knee.bones.at(kind).mesh, kind, {.side = knee.side});
+    for (const auto& [name, at] : knee.landmarks.at(kind)) {
+      const auto by_shape = proposal.landmarks.find(name);
+      if (!proposal.is_usable() || by_shape == proposal.landmarks.end()) continue;
+      const double off_mm = (at - by_shape->second).norm();
+      if (off_mm > landmarks::kFarFromShape_mm)
+        context.say(files::format("  ! %s.%s lies %.1f mm from where the bone's shape puts it: look",
+                                  std::string(bones::to_text(kind)).c_str(), name.c_str(), off_mm));
+    }
+  }
+}
+
 }  // namespace
 
 void add_landmarks_command(CLI::App& app, Context& context) {
@@ -218,6 +241,7 @@ void add_landmarks_command(CLI::App& app, Context& context) {
       files::write_atomically("-", to_json(knee, proposals).dump(2) + "\n");
     } else {
       list(context, knee);
+      say_far_from_shape(context, *arguments, knee, proposals);
     }
     std::vector<std::string> reasons;
     for (const auto& [kind, proposal] : proposals) {

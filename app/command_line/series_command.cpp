@@ -6,6 +6,7 @@
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
 #include "planning/bones/mesh_file.h"
+#include "planning/cases/identity.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
@@ -69,6 +70,9 @@ void print(const Context& context, const images::SeriesList& list) {
       size += files::format(" of %.3g x %.3g x %.3g mm", series.spacing_mm.x(), series.spacing_mm.y(),
                             series.spacing_mm.z());
     context.say(size);
+    const cases::Identity whose{series.patient_name, series.patient_id, ""};
+    for (const std::string& part : {whose.in_words(), cases::date_in_words(series.study_date)})
+      if (!part.empty()) context.say("    " + part);
     if (!series.is_readable()) context.say("  ! cannot be opened: " + series.refusal);
     for (const auto& warning : series.warnings) context.say("  ! " + warning);
   }

@@ -88,6 +88,21 @@ std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction ac
   }
 }
 
+std::string words_beside_no_picture(theatre::SourceTrouble trouble, NextAction action) {
+  if (action != NextAction::ConfirmTimeOut && action != NextAction::RecordDrilled) return "";
+  const std::string words = words_of(action);
+  switch (trouble) {
+    case theatre::SourceTrouble::NoPicture:
+      return "no picture comes; " + words;
+    case theatre::SourceTrouble::Plain:
+      return "the picture is plain; " + words;
+    case theatre::SourceTrouble::Frozen:
+      return "the picture is frozen; " + words;
+    default:
+      return "";
+  }
+}
+
 namespace {
 constexpr const char* kLooksOtherwise = "bone looks otherwise: ";
 constexpr const char* kWasOutOfSight = "marker was out of sight: ";

@@ -21,6 +21,10 @@ namespace arthronaut::navigate {
 // where that is no hindrance.
 [[nodiscard]] std::string words_without_pictures(theatre::SourceTrouble trouble,
                                                  operation::NextAction action);
+// The same where the step can be done all the same, as it takes somebody's word: "no picture comes; when the
+// tunnel is drilled: say so". Empty while pictures come, and for all other steps.
+[[nodiscard]] std::string words_beside_no_picture(theatre::SourceTrouble trouble,
+                                                  operation::NextAction action);
 // What was asked for a moment ago and not done, with why: "no touch: the probe moves". Short enough to stand
 // in full size beside the step. Empty once it was done, or when that is longer ago than it takes to read.
 [[nodiscard]] std::string refusal_notice(const theatre::LiveState& live, double now_s);

@@ -102,6 +102,9 @@ std::string NavigateView::next_step() {
     return started_.stops_once_open() ? "wait: it stops once it is open" : "wait for the first picture";
   if (is_in_wrong_medium()) return "wrong medium: hold Esc, then M for the other one, then start again";
   if (const std::string wait = words_without_pictures(); !wait.empty()) return wait;
+  if (is_running())
+    if (const std::string words = words_beside_no_picture(live_->trouble, action); !words.empty())
+      return words;
   if (takes_guide_in_simulation()) return "take the guide (simulation)";
   if (action == NextAction::CheckWorldMarker && registration().must_be_found_anew())
     return place_anew_words(registration().way_out());

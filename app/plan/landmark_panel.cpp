@@ -45,9 +45,9 @@ std::optional<double> off_proposal_mm(const open_case::PlanModel& model, bones::
 std::string state_in_words(LandmarkRow::State state, std::optional<double> off_proposal_mm) {
   if (state == LandmarkRow::State::Missing) return "not there: P, then click where it is";
   if (state == LandmarkRow::State::Proposed) return "proposed by the shape, looked at by nobody";
-  return "confirmed" + (off_proposal_mm ? ", " + widgets::fixed(*off_proposal_mm, 1) +
-                                              " mm from where the bone's shape puts it"
-                                        : std::string());
+  if (!off_proposal_mm) return "confirmed";
+  return "confirmed, " + widgets::fixed(*off_proposal_mm, 1) + " mm from where the bone's shape puts it" +
+         (*off_proposal_mm > landmarks::kFarFromShape_mm ? ": look" : "");
 }
 
 std::optional<std::size_t> next_proposed(const std::vector<LandmarkRow>& rows, std::size_t from) {
@@ -87,9 +87,11 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
       draw.AddRectFilled(at, {at.x + width, at.y + height},
                          i == selected ? IM_COL32(28, 74, 104, 255) : IM_COL32(38, 47, 57, 255),
                          ui.theme.px(6));
-    const auto severity = rows[i].state == LandmarkRow::State::Confirmed  ? widgets::Severity::Good
-                          : rows[i].state == LandmarkRow::State::Proposed ? widgets::Severity::Caution
-                                                                          : widgets::Severity::Quiet;
+    const bool is_far = off_proposal_mm(model, bone, rows[i].name).value_or(0) > landmarks::kFarFromShape_mm;
+    const auto severity = rows[i].state == LandmarkRow::State::Missing ? widgets::Severity::Quiet
+                          : rows[i].state == LandmarkRow::State::Proposed || is_far
+                              ? widgets::Severity::Caution
+                              : widgets::Severity::Good;
     widgets::draw_sign(draw, {at.x + ui.theme.px(14), at.y + height / 2}, ui.theme.px(8), severity);
     ImFont* font = i == selected ? ui.theme.strong : ui.theme.body;
     draw.AddText(font, font->FontSize, {at.x + ui.theme.px(32), at.y + (height - font->FontSize) / 2},
@@ -101,8 +103,10 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
   ImGui::EndChild();
   widgets::text_in(ui.theme.body, widgets::kText, about);
   const std::string word = state_in_words(row.state, off_proposal_mm(model, bone, row.name));
-  widgets::text_in(ui.theme.body,
-                   row.state == LandmarkRow::State::Proposed ? widgets::kCaution : widgets::kQuietText, word);
+  const bool is_far = off_proposal_mm(model, bone, row.name).value_or(0) > landmarks::kFarFromShape_mm;
+  widgets::text_in(
+      ui.theme.body,
+      row.state == LandmarkRow::State::Proposed || is_far ? widgets::kCaution : widgets::kQuietText, word);
   ui.log.note_state("landmark_state", word);
   return clicked;
 }

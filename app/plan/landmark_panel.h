@@ -27,8 +27,8 @@ struct LandmarkRow {
 // How far it lies from where the bone's shape puts it; nullopt where either is not there (yet).
 [[nodiscard]] std::optional<double> off_proposal_mm(const open_case::PlanModel& model, bones::BoneKind bone,
                                                     const std::string& name);
-// "confirmed, 31.5 mm from where the bone's shape puts it": one that was put in the wrong place is seen by
-// it.
+// "confirmed, 31.5 mm from where the bone's shape puts it: look": one that was put in the wrong place is seen
+// by it.
 [[nodiscard]] std::string state_in_words(LandmarkRow::State state, std::optional<double> off_proposal_mm);
 // The first that is proposed, after `from` and round again; nullopt when every one is confirmed or missing.
 [[nodiscard]] std::optional<std::size_t> next_proposed(const std::vector<LandmarkRow>& rows,

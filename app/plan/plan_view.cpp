@@ -86,7 +86,8 @@ void PlanView::tick(double now_s) {
   follow_defaults();
   if (const auto exported = export_.take_outcome())
     state_.hint = {exported->in_words(model_->revision()),
-                   exported->was_stopped || (exported->is_written && exported->doubts.empty())};
+                   exported->was_stopped || (exported->is_written && exported->doubts.empty()),
+                   model_->revision()};  // beside another plan it would be of that
   if (volume_.is_on()) slices_.want();
   slices_.tick();
   volume_.follow(slices_.shared_volume());

@@ -69,6 +69,12 @@ bool lies_in(const SliceLine& line, const scene::SlicePlane& plane) {
   });
 }
 
+std::string place_in_words(const Eigen::Vector3d& normal, const Eigen::Vector3d& point_mm) {
+  const double along_mm = normal.dot(point_mm);
+  const Eigen::Vector3d side = along_mm < 0 ? Eigen::Vector3d(-normal) : normal;
+  return scene::orientation_letters(side) + " " + widgets::fixed(std::abs(along_mm), 1) + " mm";
+}
+
 std::string window_in_words(const scene::GreyWindow& window) {
   return "W " + widgets::fixed(window.width, 0) + " L " + widgets::fixed(window.level, 0);
 }
@@ -279,7 +285,7 @@ void SlicePane::draw_frame(const widgets::Ui& ui, const widgets::Rect& rect,
            {to.x - ui.theme.body->CalcTextSizeA(ui.theme.body->FontSize, 1e9F, 0, text.c_str()).x,
             from.y - ui.theme.body->FontSize - ui.theme.px(4)},
            widgets::kText, text);
-  const std::string place = widgets::fixed(normal().dot(content.cross_mm), 1) + " mm";
+  const std::string place = place_in_words(normal(), content.cross_mm);
   const float row = ui.theme.body->FontSize, lowest = rect.y + rect.height - edge - row;
   shadowed(draw, ui.theme.body, {rect.x + edge, lowest}, widgets::kQuietText, place);
   shadowed(draw, ui.theme.body, {rect.x + edge, lowest - row}, widgets::kQuietText,

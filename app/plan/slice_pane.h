@@ -46,6 +46,10 @@ struct SliceLine {
 inline constexpr double kNearSlice_mm = 2;
 [[nodiscard]] bool lies_in(const SliceLine& line, const scene::SlicePlane& plane);
 
+// "R 66.1 mm": how far a slice of this normal through the point lies from the scanner's origin, and to which
+// side of the patient. In LPS it is the coordinate, without a sign that each pane would take another way.
+[[nodiscard]] std::string place_in_words(const Eigen::Vector3d& normal, const Eigen::Vector3d& point_mm);
+
 // "W 2500 L 480".
 [[nodiscard]] std::string window_in_words(const scene::GreyWindow& window);
 

@@ -83,6 +83,7 @@ class Sheet {
   double plateau(double x_mm, double y_mm, double width_mm);
   void slices(double y_mm);
   void slice(const PlanePicture& picture, BoneKind kind, const std::optional<images::Volume>& volume);
+  void letters(const PlanePicture& picture);
   // Where it ends, whether it is drawn or not.
   double checks(BoneKind kind, double x_mm, double y_mm, double width_mm, double size_pt, bool is_drawn);
   void put_grey(const PlanePicture& picture, const std::vector<std::uint8_t>& grey);
@@ -222,6 +223,24 @@ void Sheet::slice(const PlanePicture& picture, BoneKind kind, const std::optiona
        scene::outline_of(knee_.bones.at(kind).mesh, picture.plane.center_mm, picture.plane.normal()))
     line(picture, from, to, 0.2, volume ? kBone : kBlack);
   tunnel_outlines(picture, kind);
+  letters(picture);
+}
+
+// Which side of the patient each border is of.
+void Sheet::letters(const PlanePicture& picture) {
+  constexpr double kIn_mm = 1, kLine_mm = 2.6;
+  const TextStyle style{.size_pt = 7.5, .ink = kPlan};
+  const double middle_x = picture.x_mm + picture.width_mm / 2,
+               middle_y = picture.y_mm + picture.height_mm / 2;
+  const Vector3d &right = picture.plane.right, &down = picture.plane.down;
+  const auto put = [&](double x_mm, double y_mm, const Vector3d& side, double share_left) {
+    const std::string text = scene::orientation_letters(side);
+    pdf_.text(x_mm - share_left * pdf_.text_width_mm(text, style), y_mm, text, style);
+  };
+  put(picture.x_mm + kIn_mm, middle_y, -right, 0);
+  put(picture.x_mm + picture.width_mm - kIn_mm, middle_y, right, 1);
+  put(middle_x, picture.y_mm + kLine_mm, -down, 0.5);
+  put(middle_x, picture.y_mm + picture.height_mm - kIn_mm, down, 0.5);
 }
 
 // Two planes through each axis: one as upright as it can stand, one square to it.

@@ -48,9 +48,12 @@ class Report {
   PdfDocument& drawn() {
     plan_page();
     for (const norms::Bundle graft : planned_grafts(content_.knee.plan)) {
-      pages_.begin_page(graft == norms::Bundle::Whole          ? "The plan on one sheet"
-                        : graft == norms::Bundle::Anteromedial ? "The plan on one sheet: AM graft"
-                                                               : "The plan on one sheet: PL graft");
+      const std::string of_graft = graft == norms::Bundle::Whole          ? ""
+                                   : graft == norms::Bundle::Anteromedial ? ", AM graft"
+                                                                          : ", PL graft";
+      // It hangs on the wall by itself.
+      pages_.begin_page("The plan on one sheet: " + std::string(bones::to_text(content_.knee.side)) +
+                        " knee" + of_graft);
       draw_plan_sheet(pdf_,
                       {.left_mm = pages_.left_mm(),
                        .top_mm = pages_.y_mm(),

@@ -5,6 +5,7 @@
 
 #include "app/folders/folder_listing.h"
 #include "planning/bones/mesh_file.h"
+#include "planning/cases/identity.h"
 #include "planning/files/format.h"
 #include "planning/import/bone_import.h"
 
@@ -62,6 +63,10 @@ ImportSource source_of(const fs::path& root, const images::ImageSeries& series) 
   source.source = series.uid.empty() && !series.files.empty() ? series.files.front() : root;
   source.title = images::title_of(series);
   source.detail = images::detail_of(series);
+  // Of two series that look alike one may be another patient's, or of years ago.
+  const cases::Identity whose{series.patient_name, series.patient_id, ""};
+  for (const std::string& part : {whose.in_words(), cases::date_in_words(series.study_date)})
+    if (!part.empty()) source.detail += "  \u2013  " + part;
   source.refusal = series.refusal;
   source.warnings = series.warnings;
   return source;

@@ -21,6 +21,8 @@ struct ImageSeries {
   std::string number = {};  // DICOM: the series number
   std::string format = {};  // "DICOM", "NIfTI", "NRRD", "MetaImage"
   std::string modality = {}, description = {};  // as the file says; may be empty
+  // DICOM: whose images they are and of when ("20260131"), as the file says; may be empty.
+  std::string patient_name = {}, patient_id = {}, study_date = {};
   int image_count = 0;  // slices as stored; several for each place in a multi-echo series
   // Columns, rows and slices of the volume that it makes, and their distances. Zero where unknown: of a
   // refused series what its first image says.

@@ -204,6 +204,9 @@ void describe(Archive& archive, images::ImageSeries& series) {
   describe(archive, series.format);
   describe(archive, series.modality);
   describe(archive, series.description);
+  describe(archive, series.patient_name);
+  describe(archive, series.patient_id);
+  describe(archive, series.study_date);
   describe(archive, series.image_count);
   archive.bytes(series.size.data(), 3 * sizeof(int));
   archive.bytes(series.spacing_mm.data(), 3 * sizeof(double));
@@ -250,8 +253,9 @@ void with_each_text(images::SeriesList& list, const Use& use) {
     path = text;
   };
   for (images::ImageSeries& series : list.series) {
-    for (std::string* text : {&series.uid, &series.number, &series.format, &series.modality,
-                              &series.description, &series.refusal})
+    for (std::string* text :
+         {&series.uid, &series.number, &series.format, &series.modality, &series.description,
+          &series.patient_name, &series.patient_id, &series.study_date, &series.refusal})
       use(*text);
     for (std::string& warning : series.warnings) use(warning);
     for (std::filesystem::path& file : series.files) use_path(file);

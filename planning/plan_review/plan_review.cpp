@@ -56,6 +56,9 @@ std::vector<tunnels::PlanCheck> further_checks(const tunnels::TunnelKey& key, co
   const bool is_femur = key.bone == BoneKind::Femur;
   const MeasuredTunnel *femoral = is_femur ? &own : end, *tibial = is_femur ? end : &own;
   tunnels::KneePlan graft{.graft = key.bundle};
+  graft.has_other_tunnels = end == nullptr && std::ranges::any_of(plan, [&](const auto& one) {
+                              return one.first.bone != key.bone;
+                            });
   if (femoral != nullptr) {
     graft.femoral = &femoral->tunnel;
     graft.femoral_measured = &femoral->geometry;

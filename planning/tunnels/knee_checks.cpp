@@ -15,7 +15,10 @@ namespace {
 
 using Verdict = PlanCheck::Verdict;
 
-std::string name_of(const char* tunnel, norms::Bundle graft) {
+std::string name_of(const char* tunnel, const KneePlan& plan) {
+  const norms::Bundle graft = plan.graft;
+  if (graft == norms::Bundle::Whole && plan.has_other_tunnels)
+    return std::string(tunnel) + ", as one of two bundles is planned there,";
   return tunnel + std::string(graft == norms::Bundle::Whole          ? ""
                               : graft == norms::Bundle::Anteromedial ? " of the AM graft"
                                                                      : " of the PL graft");
@@ -27,10 +30,10 @@ bool is_there(const Tunnel* tunnel, const TunnelGeometry* measured) {
 
 // Empty when it is there; when both are.
 std::string missing_tibial_tunnel(const KneePlan& plan) {
-  return is_there(plan.tibial, plan.tibial_measured) ? "" : name_of("the tibial tunnel", plan.graft);
+  return is_there(plan.tibial, plan.tibial_measured) ? "" : name_of("the tibial tunnel", plan);
 }
 std::string missing_tunnel(const KneePlan& plan) {
-  if (!is_there(plan.femoral, plan.femoral_measured)) return name_of("the femoral tunnel", plan.graft);
+  if (!is_there(plan.femoral, plan.femoral_measured)) return name_of("the femoral tunnel", plan);
   return missing_tibial_tunnel(plan);
 }
 

@@ -39,6 +39,8 @@ struct KneePlan {
   const Tunnel* tibial = nullptr;
   const TunnelGeometry* tibial_measured = nullptr;
   norms::Bundle graft = norms::Bundle::Whole;
+  // Of a null one: the bone has tunnels, of other grafts.
+  bool has_other_tunnels = false;
 };
 
 // Femur: length of the graft in the joint and in all, its change over flexion, how that differs from a graft

@@ -26,6 +26,19 @@ TEST(WordsWithoutPictures, TakeThePlaceOfWhatNeedsThem) {
     EXPECT_EQ(words_without_pictures(SourceTrouble::NoPicture, action), "");
 }
 
+// A time-out and a drilled tunnel are somebody's word: taken without a picture, but not as if there were one.
+TEST(WordsWithoutPictures, StandBesideWhatIsTakenOnSomebodysWord) {
+  using operation::NextAction;
+  using theatre::SourceTrouble;
+  EXPECT_EQ(words_beside_no_picture(SourceTrouble::NoPicture, NextAction::RecordDrilled),
+            "no picture comes; when the tunnel is drilled: say so");
+  EXPECT_EQ(words_beside_no_picture(SourceTrouble::Frozen, NextAction::ConfirmTimeOut)
+                .find("the picture is frozen; "),
+            0U);
+  EXPECT_EQ(words_beside_no_picture(SourceTrouble::None, NextAction::RecordDrilled), "");
+  EXPECT_EQ(words_beside_no_picture(SourceTrouble::NoPicture, NextAction::Draw), "");
+}
+
 using widgets::Severity;
 using Phase = theatre::LiveState::Phase;
 

@@ -44,7 +44,8 @@ TEST(LandmarkPanel, SaysHowFarAConfirmedOneIsFromTheProposedPlace) {
   EXPECT_NEAR(*off_mm, 13, 1e-9);  // 3, 4, 12
   using State = LandmarkRow::State;
   EXPECT_EQ(state_in_words(State::Confirmed, off_mm),
-            "confirmed, 13.0 mm from where the bone's shape puts it");
+            "confirmed, 13.0 mm from where the bone's shape puts it: look");
+  EXPECT_EQ(state_in_words(State::Confirmed, 3.0), "confirmed, 3.0 mm from where the bone's shape puts it");
   EXPECT_EQ(state_in_words(State::Confirmed, std::nullopt), "confirmed");
   EXPECT_EQ(state_in_words(State::Proposed, 0), "proposed by the shape, looked at by nobody");
   EXPECT_FALSE(off_proposal_mm(model, bones::BoneKind::Femur, "native_footprint"));

@@ -15,6 +15,16 @@ TEST(SlicePane, DrawsOfALineThatOnlyCrossesItNoShadow) {
   EXPECT_FALSE(lies_in({{{10, 0, 0}, {10, 5, 0}, {13, 9, 0}}, "90.0\u00B0"}, sagittal));
 }
 
+// The sagittal pane looks from the left: its sign was the other way round than the coordinate's.
+TEST(SlicePane, SaysOnWhichSideASliceLies) {
+  const Eigen::Vector3d at_mm(66.14, -64.6, 565.9);
+  EXPECT_EQ(place_in_words(-Eigen::Vector3d::UnitX(), at_mm), "L 66.1 mm");
+  EXPECT_EQ(place_in_words(Eigen::Vector3d::UnitX(), -at_mm), "R 66.1 mm");
+  EXPECT_EQ(place_in_words(Eigen::Vector3d::UnitY(), at_mm), "A 64.6 mm");
+  EXPECT_EQ(place_in_words(-Eigen::Vector3d::UnitY(), at_mm), "A 64.6 mm");
+  EXPECT_EQ(place_in_words(Eigen::Vector3d::UnitZ(), at_mm), "H 565.9 mm");
+}
+
 TEST(SlicePane, SaysTheWindowAsViewersDo) {
   EXPECT_EQ(window_in_words(scene::kBoneWindow), "W 2500 L 480");
   EXPECT_EQ(window_in_words({-40.4, 399.6}), "W 400 L \u221240");
