@@ -44,8 +44,8 @@ AchievedTunnel told(const DrilledTunnel& drilled, const FoundBone& bone, const t
     achieved.beyond_mm = drilled.beyond_mm;
     achieved.offset_mm = (drilled.tunnel.entry_mm - plan.entry_mm).norm();
     achieved.angle_rad = geometry::angle_between_rad(drilled.tunnel.direction, plan.direction);
-    achieved.entry_sigma_mm =
-        std::hypot(drilled.entry_sigma_mm, bone.pose.sigma_at_mm(drilled.tunnel.entry_mm));
+    achieved.entry_sigma_mm = std::hypot(
+        drilled.entry_sigma_mm, drilled.entry_per_across * bone.pose.sigma_at_mm(drilled.tunnel.entry_mm));
     achieved.direction_sigma_rad =
         std::hypot(drilled.direction_sigma_rad, bone.pose.sigma_of_direction_rad(drilled.tunnel.direction));
     achieved.diameter_sigma_mm = drilled.diameter_sigma_mm;

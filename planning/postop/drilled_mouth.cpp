@@ -71,7 +71,12 @@ std::optional<Passage> passage_of(const geometry::Surface& bone, const Vector3d&
   const auto exit = std::find_if(entry + 1, hits.end(),
                                  [&](const geometry::RayHit& hit) { return hit.normal.dot(direction) >= 0; });
   if (exit == hits.end()) return std::nullopt;
-  return Passage{entry->point_mm, exit->point_mm};
+  return Passage{entry->point_mm, exit->point_mm, -entry->normal.dot(direction)};
+}
+
+double Passage::entry_per_across() const {
+  constexpr double kLeastCos = 0.07;
+  return std::sqrt(0.5 * (1 + std::pow(std::max(kLeastCos, square_cos), -2)));
 }
 
 SeenMouth mouth_at(const images::VolumeSampler& postop, const geometry::RigidTransform& postop_from_plan,

@@ -12,7 +12,11 @@ namespace arthronaut::postop {
 // Where a line runs within the bone.
 struct Passage {
   Eigen::Vector3d entry_mm, exit_mm;
+  double square_cos = 1;  // of the line to the surface's normal at the entry
   [[nodiscard]] double length_mm() const { return (exit_mm - entry_mm).norm(); }
+  // By how many times an entry is farther off than its line is across itself, rms: in one of the two
+  // directions across the surface slants away. More than 10 times is not told.
+  [[nodiscard]] double entry_per_across() const;
 };
 // The line's entry into the bone that is nearest to `near_mm`, and the next exit. nullopt when it does not
 // enter within 10 mm of it.

@@ -19,6 +19,7 @@ struct DrilledTunnel {
   bool end_is_seen = true;  // false: the length is as far as the images or the bone reach
   double beyond_mm = 0;     // diameter of the thinner bore beyond; 0: none is seen
   double entry_sigma_mm = 0, direction_sigma_rad = 0, diameter_sigma_mm = 0;
+  double entry_per_across = 1;     // what an axis is off across itself its entry is, times this
   double seen_share = 0;           // of its wall
   double metal_share = 0;          // of what is inside it
   std::vector<Stretch> stretches;  // from the entry to the end

@@ -18,6 +18,8 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kSectors = WallLevels::kSectors;
 constexpr double kStretch_mm = 4;
+// The numbers: the axis' four, the blur, and from here on the radii.
+constexpr Eigen::Index kBlur = 4, kRadii = 5;
 // Seen with so much blur at first, the wall is found from further off.
 constexpr double kFirstBlur_mm = 1.0;
 // Radii of neighbouring stretches differ by this, one sigma.
@@ -30,8 +32,8 @@ class Fit {
         bore_(shape_of(BoreFrame(bore.entry_mm, bore.direction, from_mm, to_mm), bore.radius_mm)),
         picture_(voxels, bore_, wall) {}
 
-  // `known`: not to be sought.
-  TunnelFit run(const std::optional<WallProfile>& known) {
+  // `known`: not to be sought, but for the blur where that is to be fitted.
+  TunnelFit run(const std::optional<WallProfile>& known, Blur blur) {
     if (known) bore_.profile = *known;
     see_through_blur(WallProfile{}.blur_mm);
     if (!settle(kFirstBlur_mm)) return {};
@@ -39,8 +41,7 @@ class Fit {
     constexpr int kRounds = 3;
     for (int round = 0; round < kRounds && !known && wall_ == Wall::Clear; ++round) {
       const bool had_rim = bore_.profile.has_rim();
-      const WallProfile seen =
-          explain_wall(picture_.mean_profile(), picture_.profile_noise_hu(), spread().shared_voxels);
+      const WallProfile seen = seen_wall();
       bore_.profile.wall_sigma_mm = seen.wall_sigma_mm;
       bore_.profile.plain_blur_mm = seen.plain_blur_mm;
       bore_.profile.layer_mm = seen.layer_mm;
@@ -55,19 +56,32 @@ class Fit {
     // How wide a bore without a rim is, and where it lies in bone that changes beside it, follows from how
     // much the images are blurred, which is seen by now.
     if (see_through_blur(bore_.profile.blur_mm) && !settle(bore_.profile.blur_mm)) return {};
+    // Through which blur all of the wall is explained best, cortex, too, which tells the most.
+    fits_blur_ = blur == Blur::Fitted && wall_ == Wall::Clear && !bore_.profile.has_rim();
+    if (fits_blur_ && !settle(bore_.profile.blur_mm)) return {};
     return result();
   }
 
  private:
+  // Cortex beside the bore makes its wall look sharper and further in: where that is to be seen, by the
+  // voxels alone that lie as deep as marrow; else by all of them, which tell more.
+  [[nodiscard]] WallProfile seen_wall() const {
+    const double noise_hu = picture_.profile_noise_hu(), shared = spread().shared_voxels;
+    const WallProfile all = explain_wall(picture_.mean_profile(0), noise_hu, shared),
+                      deep = explain_wall(picture_.mean_profile(kDeep_mm), noise_hu, shared);
+    return all.is_like(deep) ? all : deep;
+  }
+
   // From a blur that sees far to the scanner's own. False where nothing is to be found.
   bool settle(double first_blur_mm) {
     constexpr int kSteps = 24;
     for (int step = 0; step < kSteps; ++step) {
-      const double blur = std::max(bore_.profile.blur_mm, first_blur_mm * std::pow(0.8, step));
+      const double blur = fits_blur_ ? bore_.profile.blur_mm
+                                     : std::max(bore_.profile.blur_mm, first_blur_mm * std::pow(0.8, step));
       picture_.take(blur);
       const double moved = improve();
       if (!(moved < 1e3)) return false;
-      if (blur == bore_.profile.blur_mm && moved < 0.004) break;
+      if ((fits_blur_ || blur == bore_.profile.blur_mm) && moved < 0.004) break;
     }
     picture_.take(bore_.profile.blur_mm);
     return true;
@@ -84,7 +98,7 @@ class Fit {
   // `by_eighth`: what each eighth of each stretch alone puts into both.
   void assemble(Eigen::MatrixXd& normal, Eigen::VectorXd& right,
                 std::vector<PartOfFit>* by_eighth = nullptr) const {
-    const auto n = static_cast<Eigen::Index>(4 + bore_.stretches());
+    const auto n = kRadii + static_cast<Eigen::Index>(bore_.stretches());
     normal = Eigen::MatrixXd::Zero(n, n);
     right = Eigen::VectorXd::Zero(n);
     if (by_eighth)
@@ -94,20 +108,22 @@ class Fit {
     for (const auto& [placed, sector, cell, voxel, grey, model] : picture_.fitted()) {
       const double residual = voxel->hu - model.value, weight = picture_.weight_of(residual, model.variance);
       // The distance from the axis falls when the axis comes nearer.
-      Eigen::Matrix<double, 5, 1> row;
+      Eigen::Matrix<double, kRadii, 1> row;
       row << -placed.across_u, -placed.across_v, -placed.along * placed.across_u / bore_.frame.half_mm(),
-          -placed.along * placed.across_v / bore_.frame.half_mm(), -1;
+          -placed.along * placed.across_v / bore_.frame.half_mm(), 0;
       row *= model.slope;
-      const auto r = static_cast<Eigen::Index>(4 + placed.stretch);
+      if (fits_blur_) row[kBlur] = model.by_blur;
+      const double by_radius = -model.slope;
+      const auto r = kRadii + static_cast<Eigen::Index>(placed.stretch);
       const auto add = [&](Eigen::MatrixXd& to_normal, Eigen::VectorXd& to_right) {
-        to_normal.topLeftCorner<4, 4>() += weight * row.head<4>() * row.head<4>().transpose();
-        to_normal.block<4, 1>(0, r) += weight * row[4] * row.head<4>();
-        to_normal(r, r) += weight * row[4] * row[4];
-        to_right.head<4>() += weight * residual * row.head<4>();
-        to_right[r] += weight * residual * row[4];
+        to_normal.topLeftCorner<kRadii, kRadii>() += weight * row * row.transpose();
+        to_normal.block<kRadii, 1>(0, r) += weight * by_radius * row;
+        to_normal(r, r) += weight * by_radius * by_radius;
+        to_right.head<kRadii>() += weight * residual * row;
+        to_right[r] += weight * residual * by_radius;
       };
-      own[cell].with_others.topRows<4>() += weight * row.head<4>() * model.bone.transpose();
-      own[cell].with_others.row(r) += weight * row[4] * model.bone.transpose();
+      own[cell].with_others.topRows<kRadii>() += weight * row * model.bone.transpose();
+      own[cell].with_others.row(r) += weight * by_radius * model.bone.transpose();
       own[cell].normal += weight * model.bone * model.bone.transpose();
       own[cell].right += weight * residual * model.bone;
       add(normal, right);
@@ -116,7 +132,7 @@ class Fit {
       add(eighth.normal, eighth.right);
     }
     const auto mirror = [n](Eigen::MatrixXd& of) {
-      of.bottomLeftCorner(n - 4, 4) = of.topRightCorner(4, n - 4).transpose();
+      of.bottomLeftCorner(n - kRadii, kRadii) = of.topRightCorner(kRadii, n - kRadii).transpose();
     };
     mirror(normal);
     if (by_eighth)
@@ -128,9 +144,9 @@ class Fit {
       own[cell].take_out_of(eighth.normal, eighth.right);
     }
     const double stiff = 1 / (kRadiusChange_mm * kRadiusChange_mm);
-    for (Eigen::Index s = 4; s + 1 < n; ++s) {
-      const double change =
-          bore_.radius_mm[static_cast<std::size_t>(s - 3)] - bore_.radius_mm[static_cast<std::size_t>(s - 4)];
+    for (Eigen::Index s = kRadii; s + 1 < n; ++s) {
+      const auto stretch = static_cast<std::size_t>(s - kRadii);
+      const double change = bore_.radius_mm[stretch + 1] - bore_.radius_mm[stretch];
       normal(s, s) += stiff;
       normal(s + 1, s + 1) += stiff;
       normal(s, s + 1) -= stiff;
@@ -154,7 +170,10 @@ class Fit {
     bore_.frame.move(change.head<4>());
     for (std::size_t s = 0; s < bore_.stretches(); ++s)
       bore_.radius_mm[s] =
-          std::clamp(bore_.radius_mm[s] + change[static_cast<Eigen::Index>(4 + s)], 1.0, 10.0);
+          std::clamp(bore_.radius_mm[s] + change[kRadii + static_cast<Eigen::Index>(s)], 1.0, 10.0);
+    if (fits_blur_)
+      bore_.profile.plain_blur_mm = bore_.profile.blur_mm =
+          std::clamp(bore_.profile.blur_mm + change[kBlur], kLeastSeenBlur_mm, kMostSeenBlur_mm);
     return change.cwiseAbs().maxCoeff();
   }
 
@@ -168,7 +187,7 @@ class Fit {
           bore_.frame.middle_from_entry_mm() - bore_.frame.half_mm() +
           (static_cast<double>(s) + 0.5) * 2 * bore_.frame.half_mm() / static_cast<double>(bore_.stretches());
       stretch.diameter_mm = 2 * bore_.radius_mm[s];
-      const auto r = static_cast<Eigen::Index>(4 + s);
+      const auto r = kRadii + static_cast<Eigen::Index>(s);
       stretch.noise_sigma_mm = 2 * std::sqrt(std::max(0.0, known.by_noise(r, r)));
       stretch.diameter_sigma_mm =
           2 * std::hypot(bore_.profile.wall_sigma_mm,
@@ -216,7 +235,7 @@ class Fit {
       const Stretch& stretch = fit.stretches[s];
       if (stretch.noise_sigma_mm >= 0.5 || stretch.seen_share <= 0.3) continue;
       radii.push_back(0.5 * stretch.diameter_mm);
-      share[static_cast<Eigen::Index>(4 + s)] = 1;
+      share[kRadii + static_cast<Eigen::Index>(s)] = 1;
     }
     fit.radius_mm = geometry::median(radii, bore_.radius_mm[bore_.stretches() / 2]);
     fit.profile = bore_.profile;
@@ -234,6 +253,7 @@ class Fit {
   }
 
   Wall wall_;
+  bool fits_blur_ = false;
   BoreShape bore_;
   WallPicture picture_;
 };
@@ -241,8 +261,8 @@ class Fit {
 }  // namespace
 
 TunnelFit fit_tunnel(const std::vector<WallVoxel>& voxels, const Bore& bore, double from_mm, double to_mm,
-                     Wall wall, const std::optional<WallProfile>& known) {
-  return Fit(voxels, bore, from_mm, to_mm, wall).run(known);
+                     Wall wall, const std::optional<WallProfile>& known, Blur blur) {
+  return Fit(voxels, bore, from_mm, to_mm, wall).run(known, blur);
 }
 
 }  // namespace arthronaut::postop

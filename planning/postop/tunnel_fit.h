@@ -14,6 +14,10 @@ namespace arthronaut::postop {
 // Which voxels tell of the wall: those free of metal, or those of a screw that fills the bore.
 enum class Wall { Clear, Screw };
 
+// How much blur a wall without a rim is seen through: as the mean profile looks, or is known; or as explains
+// all of the wall best, one number more beside axis and radii, which the sigmas then count.
+enum class Blur { AsItLooks, Fitted };
+
 // A stretch of the bore, 4 mm long.
 struct Stretch {
   double from_entry_mm = 0;  // of its middle, along the axis
@@ -53,8 +57,9 @@ struct TunnelFit {
 // same all along. Axis and radii by robust least squares on the grey (Gauss-Newton), so that what differs
 // much tells much, what does not differ tells nothing, and the bore may be brighter than the marrow or
 // darker. Only stations `from_mm` to `to_mm` along the axis from the bore's entry count. `known`: rim and
-// blur, not to be sought.
+// blur, not to be sought; `blur`: where there is no rim.
 [[nodiscard]] TunnelFit fit_tunnel(const std::vector<WallVoxel>& voxels, const Bore& bore, double from_mm,
-                                   double to_mm, Wall wall, const std::optional<WallProfile>& known = {});
+                                   double to_mm, Wall wall, const std::optional<WallProfile>& known = {},
+                                   Blur blur = Blur::AsItLooks);
 
 }  // namespace arthronaut::postop

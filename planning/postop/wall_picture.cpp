@@ -159,9 +159,12 @@ FittedVoxel::Model WallPicture::model_of(const FittedVoxel& fitted, double blur)
                         (by_rim ? bore_.profile.rim_mm : 0);
   // Of grey that rises outwards the blur brings more across its edge from where it is brighter: by the
   // blur's square times both slopes.
+  // By more blur the wall seems nearer, too.
+  const double past = beyond / blur, nearer = blur / bore_.radius_mm[placed.stretch] - past;
   return {a * grey.inside + rim * grey.rim + bone.hu * share + blur * blur * rise * share_slope,
           a * grey.inside_slope + (by_rim ? rim * grey.rim_slope : 0) + bone.hu * share_slope -
               beyond * rise * share_slope,
+          share_slope * ((bone.hu - a) * nearer + blur * rise * (1 - past * nearer)),
           share * Eigen::Vector2d(1, bone.steep),
           std::max(grey.inside * 0.5 * std::max(0.0, levels.inside().variance() - noise_hu_ * noise_hu_),
                    share * outside_.variance(bone.steep))};
@@ -173,7 +176,7 @@ WallGrey WallPicture::grey_at(const PlacedByBore& placed, double blur) const {
 }
 // The mean grey by the distance from the wall, of the cells with marrow beyond it. Each of them puts about
 // as much into every point, so the levels are means of theirs, and wall and rim are theirs.
-std::vector<WallPoint> WallPicture::mean_profile() const {
+std::vector<WallPoint> WallPicture::mean_profile(double least_depth_mm) const {
   std::vector<double> sizes, greys, off_greys;
   for (const WallLevels& levels : levels_) {
     for (std::size_t sector = 0; sector < kSectors; ++sector) {
@@ -187,6 +190,7 @@ std::vector<WallPoint> WallPicture::mean_profile() const {
   const double far_off = std::max(50.0, 3 * geometry::median(std::move(off_greys), 0));
   std::vector<Level> means(static_cast<std::size_t>(std::lround(2 * kProfileTo_mm / kPoint_mm)));
   for (const WallVoxel& voxel : voxels_) {
+    if (voxel.depth_mm < least_depth_mm) continue;
     const auto placed = place(voxel.p_mm);
     if (!placed || !counts(voxel, *placed)) continue;
     const Level& out = levels_[placed->bin].outside(placed->sector(kSectors));

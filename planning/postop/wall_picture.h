@@ -32,6 +32,7 @@ struct FittedVoxel {
   // What is made of its grey.
   struct Model {
     double value = 0, slope = 0;                     // slope: by the distance from the axis
+    double by_blur = 0;                              // without a rim
     Eigen::Vector2d bone = Eigen::Vector2d::Zero();  // by what the bone of its cell is off: level, depth
     double variance = 0;                             // of what neither tells
   };
@@ -66,8 +67,9 @@ class WallPicture {
   [[nodiscard]] std::vector<OwnOfCell> own_of_cells(Eigen::Index numbers) const;
   // The eighth of a stretch in which most of a cell lies.
   [[nodiscard]] std::size_t eighth_of(std::size_t cell) const;
-  // The mean grey by the distance from the wall, of the cells with marrow beyond it.
-  [[nodiscard]] std::vector<WallPoint> mean_profile() const;
+  // The mean grey by the distance from the wall, of the cells with marrow beyond it, of voxels that lie so
+  // deep under the bone's surface.
+  [[nodiscard]] std::vector<WallPoint> mean_profile(double least_depth_mm) const;
 
  private:
   struct PlacedVoxel {

@@ -11,13 +11,16 @@ namespace {
 
 constexpr std::size_t kLeastPoints = 10;
 constexpr double kFirstBlur_mm = 0.45;
-constexpr double kLeastBlur_mm = 0.2, kMostBlur_mm = 1.0, kMostPlainBlur_mm = 1.3, kLeastRim_mm = 0.3,
-                 kLeastLayer_mm = 0.5, kMostRim_mm = 2, kMostOff_mm = 2;
+constexpr double kMostBlur_mm = 1.0, kLeastRim_mm = 0.3, kLeastLayer_mm = 0.5, kMostRim_mm = 2,
+                 kMostOff_mm = 2;
 // Points nearer than this tell the same.
 constexpr double kApart_mm = 0.25;
 // A rim stands out from both sides by so much, and is no denser than cortex. One thinner than the least
 // leaves nothing of its own in the picture.
 constexpr double kRimStep_hu = 30, kMostRim_hu = 1200;
+// One that stands out by less than this times the scatter of one voxel may be grain, of which rings of up to
+// 1.5 times were seen where there was none; rims of 300 to 600 HU stood out by 2.8 times at least.
+constexpr double kClearRim = 2;
 // Of the step from inside to beyond, that a layer between the two is off either.
 constexpr double kLayerStep = 0.15;
 // Of its inner side from what was taken for the wall: half of what is asked of a diameter.
@@ -111,8 +114,8 @@ class Explanation {
           const double by = way % 2 ? step : -step;
           Shape shape = now.shape;
           (way < 2 ? shape.wall_mm : shape.blur_mm) += way < 2 ? by : 0.5 * by;
-          if (std::abs(shape.wall_mm) > kMostOff_mm || shape.blur_mm < kLeastBlur_mm ||
-              shape.blur_mm > (shape.is_sloping ? kMostPlainBlur_mm : kMostBlur_mm))
+          if (std::abs(shape.wall_mm) > kMostOff_mm || shape.blur_mm < kLeastSeenBlur_mm ||
+              shape.blur_mm > (shape.is_sloping ? kMostSeenBlur_mm : kMostBlur_mm))
             continue;
           const Explained tried = levelled(shape);
           if (!(tried.unexplained < now.unexplained * (1 - 1e-6))) continue;
@@ -130,6 +133,13 @@ class Explanation {
 };
 
 }  // namespace
+
+bool WallProfile::is_like(const WallProfile& other) const {
+  constexpr double kApartWall_mm = 0.05, kApartBlur = 0.1;
+  return std::isfinite(wall_sigma_mm + other.wall_sigma_mm) && has_rim() == other.has_rim() &&
+         (!has_rim() || std::abs(wall_mm - other.wall_mm) < kApartWall_mm) &&
+         std::abs(plain_blur_mm - other.plain_blur_mm) < kApartBlur * other.plain_blur_mm;
+}
 
 WallGrey wall_grey(double off_mm, double rim_mm, double blur_mm) {
   const double at_wall = off_mm / blur_mm, at_rim = (off_mm - rim_mm) / blur_mm,
@@ -151,7 +161,7 @@ WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu, 
   // As many points tell something of their own: the likelihood goes with the unexplained to minus half of
   // that. A rim takes two numbers more, thickness and density.
   const double told = (points.back().off_mm - points.front().off_mm) / kApart_mm;
-  const bool has_rim = told * std::log(plain.unexplained / best) > 2 * std::log(told);
+  const bool is_rim_likely = told * std::log(plain.unexplained / best) > 2 * std::log(told);
   // Where the wall lies by all that would do, weighed by how likely that is; against what a rim's two numbers
   // cost, none is favoured by so much as above. Of rims that do alike, the best one is off by chance.
   // `best` is infinite where no rim does at all.
@@ -171,10 +181,11 @@ WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu, 
     return std::isfinite(one.unexplained) ? std::abs(one.shape.wall_mm - mean_mm)
                                           : std::numeric_limits<double>::infinity();
   };
-  const Explained& taken =
-      has_rim ? *std::min_element(rimmed.begin(), rimmed.end(),
-                                  [&](const auto& a, const auto& b) { return off_mean(a) < off_mean(b); })
-              : plain;
+  const Explained& rim = *std::min_element(
+      rimmed.begin(), rimmed.end(), [&](const auto& a, const auto& b) { return off_mean(a) < off_mean(b); });
+  const double rim_step_hu = rim.levels[1] - std::max(rim.levels[0], rim.levels[2]);
+  const bool has_rim = is_rim_likely && rim_step_hu > kClearRim * noise_hu;
+  const Explained& taken = has_rim ? rim : plain;
   const Explained sloping = explanation.sloping();
   WallProfile profile{.wall_mm = taken.shape.wall_mm,
                       .blur_mm = taken.shape.blur_mm,

@@ -7,6 +7,9 @@
 
 namespace arthronaut::postop {
 
+// A scanner's blur; the most of a wall without a rim.
+inline constexpr double kLeastSeenBlur_mm = 0.2, kMostSeenBlur_mm = 1.3;
+
 struct WallPoint {
   double off_mm;  // outwards
   double hu;      // mean
@@ -28,6 +31,10 @@ struct WallProfile {
   double layer_mm = 0;
 
   [[nodiscard]] bool has_rim() const { return rim_mm > 0; }
+  // With a rim both or neither, the blur within a tenth, and with a rim the wall within 0.05 mm, a third of
+  // what is asked of a diameter on each side. Without a rim nothing follows from where the profile has the
+  // wall.
+  [[nodiscard]] bool is_like(const WallProfile& other) const;
 };
 
 // The three levels' shares of the grey `off_mm` outwards of the wall, and their slopes there.
@@ -40,9 +47,10 @@ struct WallGrey {
 // Explained with a rim where that explains the points clearly better (Schwarz's criterion, the noise from
 // what is left unexplained), else without one. Of rims that explain them about as well, the one that has the
 // wall where all of them have it in the mean. A rim is 0.3 to 2 mm thick, denser than what is inside and
-// beyond, and no denser than cortex. `noise_hu`: of one voxel; `shared`: how many of them share it, so that
-// the variance of a mean is so much more. Fewer than 10 points explain nothing: no rim, and `wall_sigma_mm`
-// is infinite.
+// beyond, by more than twice `noise_hu`, and no denser than cortex; a fainter one may be grain, and only
+// makes the wall uncertain. `noise_hu`: of one voxel, with the bone's grain; `shared`: how many of them share
+// it, so that the variance of a mean is so much more. Fewer than 10 points explain nothing: no rim, and
+// `wall_sigma_mm` is infinite.
 [[nodiscard]] WallProfile explain_wall(const std::vector<WallPoint>& points, double noise_hu, double shared);
 
 }  // namespace arthronaut::postop

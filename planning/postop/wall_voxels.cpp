@@ -9,8 +9,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kBesideMetal_mm = 1.5;
-// Near the bone's own surface its own edge is in the picture.
-constexpr double kLeastDepth_mm = 0.9;
+// Near the bone's own surface its own edge is in the picture. Where the bore meets that squarely the edge
+// lies across the wall, and cortex from nearer to it on tells of the entry.
+constexpr double kLeastDepth_mm = 0.9, kLeastSquareDepth_mm = 0.3, kSquare_cos = 0.8;
 // By which the grid's depths may be off.
 constexpr double kGridOff_mm = BoneGrid::kStep_mm;
 
@@ -20,9 +21,12 @@ void VoxelDepths::tell(std::size_t index, WallVoxel& voxel) {
   const auto [known, is_new] = known_.try_emplace(index, Depth{voxel.depth_mm, voxel.deeper});
   Depth& depth = known->second;
   if (is_new) {
-    const Vector3d from_surface = voxel.p_mm - bone_.closest_point(voxel.p_mm).point_mm;
+    const geometry::SurfacePoint nearest = bone_.closest_point(voxel.p_mm);
+    const Vector3d from_surface = voxel.p_mm - nearest.point_mm;
     const double depth_mm = from_surface.norm();
-    if (depth_mm < kDeep_mm && depth_mm > 1e-9)
+    if (from_surface.dot(nearest.normal) > -1e-9)
+      depth.depth_mm = static_cast<float>(-depth_mm);
+    else if (depth_mm < kDeep_mm)
       depth = {static_cast<float>(depth_mm), (from_surface / depth_mm).cast<float>()};
   }
   voxel.depth_mm = depth.depth_mm;
@@ -72,10 +76,14 @@ std::vector<WallVoxel> wall_voxels(const images::Volume& postop,
             (p - bore.entry_mm - along * bore.direction).norm() > reach_mm)
           continue;
         const double depth_mm = grid.depth_at(p);
-        if (depth_mm < kLeastDepth_mm) continue;
+        if (depth_mm < kLeastSquareDepth_mm - kGridOff_mm) continue;
         const float hu = postop.at(i, j, k);
-        voxels.push_back({p, hu, hu > kMetal_hu, has_metal && is_by_metal(i, j, k)});
-        if (depth_mm < kDeep_mm + kGridOff_mm) depths.tell(postop.index(i, j, k), voxels.back());
+        WallVoxel voxel{p, hu, hu > kMetal_hu, false};
+        if (depth_mm < kDeep_mm + kGridOff_mm) depths.tell(postop.index(i, j, k), voxel);
+        const bool is_square = std::abs(voxel.deeper.cast<double>().dot(bore.direction)) > kSquare_cos;
+        if (voxel.depth_mm < (is_square ? kLeastSquareDepth_mm : kLeastDepth_mm)) continue;
+        voxel.is_by_metal = has_metal && is_by_metal(i, j, k);
+        voxels.push_back(voxel);
       }
     }
   }

@@ -16,8 +16,8 @@ inline constexpr double kDeep_mm = 4;
 struct WallVoxel {
   Eigen::Vector3d p_mm;  // in the plan's frame
   float hu;
-  bool is_metal, is_by_metal;                        // denser than bone; or within 1 mm of what is
-  float depth_mm = kDeep_mm;                         // under the bone's surface, at most kDeep_mm
+  bool is_metal, is_by_metal;  // denser than bone; or within 1 mm of what is
+  float depth_mm = kDeep_mm;   // under the bone's surface, at most kDeep_mm; out: negative
   Eigen::Vector3f deeper = Eigen::Vector3f::Zero();  // unit, from the surface on; zero where it is deep
 };
 
@@ -41,7 +41,8 @@ class VoxelDepths {
   std::unordered_map<std::size_t, Depth> known_;
 };
 
-// The voxels within the bone within `reach_mm` of the bore's axis. `depths`: of the bone that `grid` is of.
+// The voxels 0.9 mm or more within the bone and within `reach_mm` of the bore's axis; 0.3 mm where the
+// surface above lies within 37 deg of square to that. `depths`: of the bone that `grid` is of.
 [[nodiscard]] std::vector<WallVoxel> wall_voxels(const images::Volume& postop,
                                                  const geometry::RigidTransform& plan_from_postop,
                                                  const BoneGrid& grid, VoxelDepths& depths, const Bore& bore,

@@ -87,11 +87,11 @@ std::vector<WallVoxel> scanned(const Scan& scan) {
 }
 
 // From a bore that is off by as much as the search leaves it.
-TunnelFit fitted(const Scan& scan) {
+TunnelFit fitted(const Scan& scan, Blur blur = Blur::AsItLooks) {
   const Vector3d u = kDirection.unitOrthogonal();
   return fit_tunnel(scanned(scan),
                     {kEntry + 0.6 * u, (kDirection + 0.03 * u).normalized(), scan.radius_mm - 0.4, 0}, 0,
-                    kLength_mm, Wall::Clear);
+                    kLength_mm, Wall::Clear, {}, blur);
 }
 
 double angle_rad(const TunnelFit& fit) { return geometry::angle_between_rad(fit.direction, kDirection); }
@@ -132,6 +132,29 @@ TEST(TunnelFit, HowWideABoreIsDoesNotHangOnTheBlur) {
     const TunnelFit fit = fitted({.blur_mm = blur_mm, .marrow_hu = kBore_hu + 130});
     EXPECT_NEAR(fit.profile.plain_blur_mm, std::hypot(blur_mm, 0.15), 0.15);
     EXPECT_NEAR(2 * fit.radius_mm, 2 * kRadius_mm, 0.15) << blur_mm;
+  }
+}
+
+// Cortex that lies along a bore in grainy marrow, and rises towards its wall: voxels in that told of the blur
+// and of where the wall lies, which came out 0.17 and 0.23 mm too wide and was said to be known to 0.04 and
+// 0.07. Limit: three sigma.
+TEST(TunnelFit, CortexBesideABoreDoesNotMakeItsDiameterSurer) {
+  for (const double blur_mm : {0.65, 0.8}) {
+    const TunnelFit fit =
+        fitted({.blur_mm = blur_mm, .grain_hu = 30, .slant_rad = 1.2, .towards_rad = 2, .seed = 3});
+    ASSERT_TRUE(fit.is_fitted);
+    EXPECT_LT(std::abs(2 * (fit.radius_mm - kRadius_mm)), 3 * fit.diameter_sigma_mm) << blur_mm;
+  }
+}
+
+// The blur that explains all of the wall, cortex, too, is that of the scanner. Tolerances: a
+// sixth, as it is made of 200 places drawn; a third of what is asked of a diameter.
+TEST(TunnelFit, TheBlurIsFittedToAllOfTheWall) {
+  for (const double blur_mm : {0.3, 0.5, 0.8}) {
+    const TunnelFit fit = fitted({.blur_mm = blur_mm, .marrow_hu = 220, .slant_rad = 0.6}, Blur::Fitted);
+    ASSERT_TRUE(fit.is_fitted);
+    EXPECT_NEAR(fit.profile.blur_mm / std::hypot(blur_mm, 0.12), 1, 1.0 / 6);
+    EXPECT_NEAR(2 * fit.radius_mm, 2 * kRadius_mm, 0.1) << blur_mm;
   }
 }
 
@@ -194,14 +217,15 @@ TEST(TunnelFit, ACortexThatSlantsDoesNotDrawTheAxis) {
   EXPECT_LT(actual, (1 + 4 / std::sqrt(kDraws)) * said);
 }
 
-// In grainy marrow that is hardly denser than the graft the grain can lead the axis astray, by 2.8 deg in one
-// of these draws, which noise of the voxels alone does not tell: wherever it is off by more than the 0.5 deg
-// asked for, half of that is said to be uncertain. A clear contrast leaves it as sure as is needed.
+// In grainy marrow that is hardly denser than the graft the grain can lead the axis astray, which noise of
+// the voxels alone does not tell: wherever it is off by more than the 0.5 deg asked for, half of that is said
+// to be uncertain. A clear contrast leaves it as sure as is needed. In marrow 40 HU denser a ring of grain
+// was taken for a rim, and led it astray by 2.8 deg.
 TEST(TunnelFit, WhereGrainLeadsTheAxisAstrayItsDirectionIsUncertain) {
   const double asked_rad = geometry::rad_from_deg(0.5);
   double most_rad = 0;
   for (unsigned seed = 1; seed <= 4; ++seed) {
-    const TunnelFit fit = fitted({.marrow_hu = kBore_hu + 40, .grain_hu = 35, .seed = seed});
+    const TunnelFit fit = fitted({.marrow_hu = kBore_hu + 20, .grain_hu = 50, .seed = seed});
     ASSERT_TRUE(fit.is_fitted);
     most_rad = std::max(most_rad, angle_rad(fit));
     if (angle_rad(fit) > asked_rad) {
@@ -209,6 +233,9 @@ TEST(TunnelFit, WhereGrainLeadsTheAxisAstrayItsDirectionIsUncertain) {
     }
   }
   EXPECT_GT(most_rad, asked_rad);
+  for (unsigned seed = 1; seed <= 4; ++seed)
+    EXPECT_LT(angle_rad(fitted({.marrow_hu = kBore_hu + 40, .grain_hu = 35, .seed = seed})), asked_rad)
+        << seed;
   const TunnelFit clear = fitted({.marrow_hu = kBore_hu + 100, .grain_hu = 35});
   EXPECT_LT(angle_rad(clear), asked_rad);
   EXPECT_LT(clear.direction_sigma_rad, 0.5 * asked_rad);
