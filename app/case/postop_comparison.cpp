@@ -4,6 +4,7 @@
 #include "planning/geometry/error.h"
 #include "planning/plan_review/plan_review.h"
 #include "planning/plan_review/proposed_landmarks.h"
+#include "planning/postop/achieved_file.h"
 
 namespace arthronaut::open_case {
 
@@ -90,6 +91,21 @@ std::vector<std::string> PostopAnswer::doubts() const {
       reasons.push_back(name + ", tunnel: " + reason);
   }
   return reasons;
+}
+
+std::vector<tunnels::TunnelKey> better_kept_in(
+    const std::filesystem::path& file, const std::map<tunnels::TunnelKey, postop::Comparison>& comparisons) {
+  std::vector<tunnels::TunnelKey> better;
+  try {
+    if (!std::filesystem::is_regular_file(file)) return better;
+    for (const auto& [key, kept] : postop::read_achieved_file(file)) {
+      const auto now = comparisons.find(key);
+      if (kept.tunnel.reliable && now != comparisons.end() && !now->second.tunnel.reliable)
+        better.push_back(key);
+    }
+  } catch (const InvalidInput&) {  // broken: it tells nobody anything
+  }
+  return better;
 }
 
 PostopAnswer compare_with_postop(const PostopQuestion& question) {

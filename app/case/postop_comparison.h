@@ -49,4 +49,9 @@ struct PostopAnswer {
 // that cannot be read or show no bone.
 [[nodiscard]] PostopAnswer compare_with_postop(const PostopQuestion& question);
 
+// Of what was compared, the tunnels that `file` holds relied on and that are not relied on now. None where
+// there is no such file, or it is broken.
+[[nodiscard]] std::vector<tunnels::TunnelKey> better_kept_in(
+    const std::filesystem::path& file, const std::map<tunnels::TunnelKey, postop::Comparison>& comparisons);
+
 }  // namespace arthronaut::open_case

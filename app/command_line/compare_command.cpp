@@ -81,7 +81,11 @@ void compare(Context& context, const CompareArguments& arguments) {
   if (!case_of_output.empty() && !answer.other_patient.empty())
     throw InvalidInput(arguments.source, "",
                        "is of " + answer.other_patient + ": nothing is written into the case; -o elsewhere");
-  postop::write_achieved_file(arguments.output, answer.comparisons, answer.places);
+  const std::vector<tunnels::TunnelKey> better =
+      arguments.output == "-" ? std::vector<tunnels::TunnelKey>{}
+                              : open_case::better_kept_in(arguments.output, answer.comparisons);
+  const bool keeps = !case_of_output.empty() && !better.empty();
+  if (!keeps) postop::write_achieved_file(arguments.output, answer.comparisons, answer.places);
   if (arguments.output != "-") {
     for (const auto& [key, comparison] : answer.comparisons) {
       if (comparison.bone.is_found)
@@ -91,9 +95,13 @@ void compare(Context& context, const CompareArguments& arguments) {
       if (const auto place = answer.places.find(key); place != answer.places.end())
         context.say(place_line(key, place->second));
     }
-    context.say("Wrote " + arguments.output + ".");
+    if (!keeps) context.say("Wrote " + arguments.output + ".");
   }
   auto doubts = answer.doubts();
+  for (const tunnels::TunnelKey& key : better)
+    doubts.push_back(tunnels::name_of(key) + ": " + arguments.output + " held one that is reliable" +
+                     (keeps ? ", which the case keeps; this one is not written: -o elsewhere"
+                            : ", which this one has replaced"));
   if (!answer.other_patient.empty()) doubts.push_back("the images are of " + answer.other_patient);
   if (!doubts.empty()) context.say_unreliable("The comparison", doubts);
 }

@@ -32,6 +32,7 @@ void PostopPage::open(const open_case::PlanModel* model, const std::filesystem::
   read_only_ = read_only;
   run_.reset();
   shown_ = {};
+  better_kept_.clear();
   places_are_of_ = 0;
   which_.clear();
   problem_.clear();
@@ -54,6 +55,7 @@ void PostopPage::compare_with(const std::filesystem::path& source, const std::st
   problem_.clear();
   shown_.other_patient.clear();
   shown_.not_its_bones.clear();
+  better_kept_.clear();
   which_.clear();
   leave_browser();
   source_ = source;
@@ -114,6 +116,7 @@ void PostopPage::take_ended() {
   auto answer = std::move(progress.answer);
   if (answer == nullptr) return;  // stopped, or it asks: what was there stays
   if (!take_answer(std::move(answer), shown_)) return;
+  better_kept_ = std::move(progress.better_kept);
   places_are_of_ = 0;
   if (!shown_.comparisons.empty() && !shown_.comparisons.contains(chosen_))
     chosen_ = shown_.comparisons.begin()->first;
@@ -227,6 +230,8 @@ void PostopPage::draw_head(const widgets::Ui& ui, widgets::Rect area) {
   } else if (shown_.answer == nullptr && !shown_.comparisons.empty()) {
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      "As kept in the case (achieved.json). Its images are read again by a comparison (C).");
+  } else if (!better_kept_.empty()) {
+    widgets::status_row(ui, widgets::Severity::Caution, "Not kept", better_kept_);
   } else if (!read_only_.empty() && shown_.answer != nullptr) {
     widgets::status_row(ui, widgets::Severity::Caution, "Not kept", read_only_);
   }

@@ -102,7 +102,7 @@ class PostopPage {
 
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
-  std::string read_only_, problem_;
+  std::string read_only_, problem_, better_kept_;
   std::function<void()> wake_;
   widgets::ScenePane pane_;
   std::unique_ptr<PostopRun> run_;

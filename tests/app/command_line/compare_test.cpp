@@ -206,6 +206,28 @@ TEST_F(CompareCommand, OneBoneTakesNotTheOthersAway) {
   EXPECT_EQ(files::read_text(folder_ / "achieved.json"), before);
 }
 
+// A poorer comparison took a good one's place without a word. The case's own stays; in another file it is
+// replaced, and that is said.
+TEST_F(CompareCommand, AGoodComparisonIsNotLostWithoutAWord) {
+  scan("postop.nrrd", std::nullopt);
+  postop::Comparison good;
+  good.tunnel.is_found = good.tunnel.reliable = good.bone.is_found = good.bone.reliable = true;
+  good.tunnel.tunnel = knee_.plan.tunnels.at(BoneKind::Femur);
+  good.tunnel.reasons.clear();
+  for (const std::string file : {"knee.arthro/achieved.json", "achieved.json"}) {
+    const bool is_cases = file != "achieved.json";
+    postop::write_achieved_file(folder_ / file, {{tunnels::TunnelKey(BoneKind::Femur), good}});
+    const std::string before = files::read_text(folder_ / file);
+    const auto result = compare("postop.nrrd", file);
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_EQ(files::read_text(folder_ / file) == before, is_cases);
+    EXPECT_THAT(result.errors,
+                AllOf(HasSubstr("femur: "), HasSubstr("achieved.json held one that is reliable"),
+                      HasSubstr(is_cases ? "the case keeps; this one is not written" : "has replaced")));
+    EXPECT_EQ(result.output.find("Wrote") == std::string::npos, is_cases);
+  }
+}
+
 // The drilled bone as a mesh, as the plan's own export makes it. The case has no landmarks: what its shape
 // proposes gives the percentages, and is said to be proposed.
 TEST_F(CompareCommand, TakesAMeshOfTheDrilledBone) {

@@ -72,5 +72,33 @@ TEST_F(ForeignImages, TakeNothingAwayFromWhatTheCaseKeeps) {
   EXPECT_TRUE(kept_bone());
 }
 
+// A second CT, a poorer one: the good comparison of before was gone without a word.
+TEST(PostopRun, ATunnelThatIsReliedOnStaysKept) {
+  const test::TemporaryFolder folder;
+  const auto answer = [](bool is_reliable) {
+    open_case::PostopAnswer made;
+    postop::Comparison& femur = made.comparisons[bones::BoneKind::Femur];
+    femur.bone.is_found = femur.bone.reliable = true;
+    femur.tunnel.is_found = true;
+    femur.tunnel.reliable = is_reliable;
+    femur.tunnel.tunnel.diameter_mm = is_reliable ? 9 : 8;
+    femur.tunnel.reasons.clear();
+    return made;
+  };
+  const auto kept_mm = [&] {
+    return postop::read_achieved_file(achieved_file(folder.path()))
+        .at(bones::BoneKind::Femur)
+        .tunnel.tunnel.diameter_mm;
+  };
+  EXPECT_TRUE(keep(answer(false), folder.path()));
+  EXPECT_EQ(better_kept(answer(true).comparisons, folder.path()), "");
+  EXPECT_TRUE(keep(answer(true), folder.path()));
+  EXPECT_FALSE(keep(answer(false), folder.path()));
+  EXPECT_EQ(kept_mm(), 9);
+  EXPECT_EQ(better_kept(answer(false).comparisons, folder.path()),
+            "the case keeps a comparison that is reliable for femur, as this is not");
+  EXPECT_TRUE(keep(answer(true), folder.path()));
+}
+
 }  // namespace
 }  // namespace arthronaut::review
