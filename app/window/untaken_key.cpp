@@ -9,6 +9,7 @@ namespace arthronaut::window {
 namespace {
 
 constexpr double kUntakenSaid_s = 5, kPastSaid_s = 1.5;
+constexpr const char* kPedal = "navigate.next";  // does the step that is next
 
 }  // namespace
 
@@ -32,7 +33,14 @@ void UntakenKey::note(const widgets::KeyPress& press, const widgets::Actions& ac
                                [&](std::string_view prefix) { return action.id.starts_with(prefix); });
   };
   const auto its = std::ranges::find_if(actions.all(), is_its);
-  if (its == actions.all().end()) return;
+  if (its == actions.all().end()) {
+    // A foot on the pedal does not see that its mode is not in front, as after a crash.
+    const bool is_pedal = std::ranges::any_of(actions.all(), [&](const widgets::Action& action) {
+      return action.key == press.key && action.mods == press.mods && action.id == kPedal;
+    });
+    if (is_pedal) words_ = name + " did nothing: the pedal leads in Navigate (F2)";
+    return;
+  }
   // Of a key that does one thing here and another there nobody knows which was meant.
   const bool is_one = std::ranges::none_of(actions.all(), [&](const widgets::Action& other) {
     return is_its(other) && other.label != its->label;

@@ -41,6 +41,12 @@ TEST_F(UntakenKeys, NeedNoWordsWhereTheyAreForNothing) {
   EXPECT_EQ(after(GLFW_KEY_LEFT_SHIFT, true), "");
 }
 
+// After a crash the program begins in Plan: whoever steps on the pedal learns where it leads.
+TEST_F(UntakenKeys, OfThePedalSayWhereItLeads) {
+  actions_.add({"navigate.next", "Next", "", GLFW_KEY_SPACE, 0, false, [] { return true; }, {}, {}});
+  EXPECT_EQ(after(GLFW_KEY_SPACE), "Space did nothing: the pedal leads in Navigate (F2)");
+}
+
 // Words that do not hold any more stay as long as they take to read, and no longer.
 TEST_F(UntakenKeys, GoOnceTheyDoNotHold) {
   bool can_run = false;

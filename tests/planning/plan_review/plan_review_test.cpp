@@ -259,6 +259,13 @@ TEST_F(PlanReview, AGraftGoesFromBundleToBundle) {
     EXPECT_EQ(end->tunnel.key(), tunnels::TunnelKey(BoneKind::Tibia, bundle));
   }
   EXPECT_EQ(other_end(BoneKind::Femur, review.tunnels()), nullptr);
+  // A single tunnel beside them has no graft, and the two that are there are not called missing.
+  for (const Bundle bundle : {Bundle::Anteromedial, Bundle::Posterolateral})
+    knee_.plan.remove({BoneKind::Tibia, bundle});
+  const cases::Case single = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "single");
+  knee_.plan.put(single.plan.tunnels.at(BoneKind::Tibia), "");
+  EXPECT_EQ(named(CaseReview(knee_).checks(BoneKind::Tibia), "Bend at the tibia").text,
+            "not checked: the femoral tunnel, as one of two bundles is planned there, is missing");
 }
 
 }  // namespace
