@@ -144,11 +144,16 @@ std::optional<DrillDepth> nearest_drill(const GuidanceInput& input) {
   if (input.plan == nullptr || missing_world(input) != GuidanceState::Valid ||
       !input.world_marker_per_camera_error)
     return std::nullopt;
-  std::optional<DrillDepth> nearest;
+  std::optional<DrillDepth> nearest, before;
   for (const DrillInput& seen : input.drills) {
     const std::optional<DrillDepth> drill = seen_drill(input, seen);
     if (drill && (!nearest || from_tunnel_mm(*drill) < from_tunnel_mm(*nearest))) nearest = drill;
+    if (drill && input.drill_before == drill->marker_id) before = drill;
   }
+  constexpr double kClearlyNearer_mm = 2;
+  const bool hides_another = nearest && before && nearest->depth_mm > 0 && before->depth_mm <= 0;
+  if (before && !hides_another && from_tunnel_mm(*before) - from_tunnel_mm(*nearest) < kClearlyNearer_mm)
+    nearest = before;
   if (nearest && input.bone != nullptr) hold_against(*input.bone, *nearest);
   return nearest;
 }

@@ -53,8 +53,10 @@ struct GuidanceInput {
   geometry::TrackedPose camera_from_guide;
   const tools::ToolAxis* axis = nullptr;  // of the guide, in its marker frame; null: NoGuide
   // Without one nothing is said about depth; of several it is said of the one that is seen, of more than one
-  // of the one whose tip is nearest to the planned tunnel.
+  // of the one whose tip is nearest to the planned tunnel. The one that was told of before (its marker) stays
+  // where another one is nearer by little, unless that one is in the tunnel, and it is not.
   std::span<const DrillInput> drills = {};
+  std::optional<int> drill_before = std::nullopt;
   const geometry::Surface* bone = nullptr;  // in its frame; null: the drill's exit is the plan's alone
   bool lens_is_stale = false;
   std::int64_t now_ns = 0;

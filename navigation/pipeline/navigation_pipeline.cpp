@@ -199,12 +199,14 @@ struct NavigationPipeline::State {
       drills_in_frame[i] = {&options.tools.tools[drills[i]], pose_of_body(result, body_of_tool(drills[i])),
                             camera_error(result, drills[i])};
     input.drills = drills_in_frame;
+    input.drill_before = told_drill;
     input.bone = bone.get();
     input.known_errors = &known_errors;
     input.world_marker_per_camera_error = camera_error_of_world(result);
     input.lens_is_stale = !is_outside() && !result.intrinsics_are_known;
     input.now_ns = result.timestamp_ns;
     result.guidance = guidance::compute_guidance(input);
+    if (result.guidance.drill) told_drill = result.guidance.drill->marker_id;
     // Whatever else is missing: what is wrong with the picture itself is the first thing to say.
     if (result.is_frozen || (result.is_torn && !is_outside())) {
       result.guidance = {};
@@ -220,6 +222,7 @@ struct NavigationPipeline::State {
   std::optional<std::size_t> probe, guide;  // indices into the tools
   std::vector<std::size_t> drills;          // likewise
   std::vector<guidance::DrillInput> drills_in_frame;
+  std::optional<int> told_drill;  // the marker of the one that was told of last
   markers::SeenBodies bodies;
   std::vector<std::vector<Eigen::Vector3d>> corners_mm;  // of each body
   landmarks::AnatomicalAxes axes;

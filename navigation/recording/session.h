@@ -142,7 +142,8 @@ class SessionRecorder {
   SessionRecorder& operator=(const SessionRecorder&) = delete;
 
   // Keeps the video of a file source: copies it (or every still of a printf pattern) as it is. Waits for the
-  // disk; where it takes no copy that is video_trouble(), and what was said of the video before stands.
+  // disk; where it takes no copy, or has no room beside what DiskLimits keep free of a video, that is
+  // video_trouble(), and what was said of the video before stands.
   void copy_video(const std::filesystem::path& video_or_pattern);
   // Keeps only where the video is.
   void refer_to_video(const std::filesystem::path& video_or_pattern);

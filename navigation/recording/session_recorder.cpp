@@ -99,7 +99,7 @@ struct SessionRecorder::State {
       const std::string why = files::within_folder(folder, failure.what());
       if (!stop_video(why)) return;
       SessionEvent event{last_timestamp_ns, std::string(kVideoStoppedEvent), why, last_frame};
-      (void)(waits ? queue.push(std::move(event)) : queue.try_push(std::move(event)));
+      (void)(waits ? queue.push(std::move(event)) : queue.push_at_once(std::move(event)));
     }
   }
 
@@ -228,6 +228,13 @@ SessionRecorder::~SessionRecorder() {
 
 void SessionRecorder::copy_video(const std::filesystem::path& video_or_pattern) {
   state_->with_video([&] {
+    const std::uintmax_t bytes = video_bytes(video_or_pattern),
+                         free = state_->limits.free_bytes(state_->folder),
+                         stays_free = state_->limits.video_stops_below_bytes;
+    if (free < stays_free || free - stays_free < bytes)
+      throw IoError(state_->folder, "not copied: it takes " + size_text(bytes) + ", and of the " +
+                                        size_text(free) + " that are free on the disk " +
+                                        size_text(stays_free) + " stay free");
     const std::string name = copy_video_into(state_->folder, video_or_pattern);
     state_->copied = video_files(state_->folder, name);
     state_->rewrite_header([&](SessionHeader& header) { header.video = name; });

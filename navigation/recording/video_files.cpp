@@ -30,7 +30,35 @@ bool matches(const std::string& name, const std::string& head, const std::string
   return number.find_first_not_of("0123456789") == std::string::npos;
 }
 
+// The stills of a printf pattern, in no order. Throws IoError.
+std::vector<fs::path> stills_of(const fs::path& pattern) {
+  const std::string name = pattern.filename().string();
+  const std::size_t percent = name.find('%');
+  const std::size_t letter = percent == std::string::npos ? percent : name.find('d', percent);
+  if (letter == std::string::npos) throw IoError(pattern, "no such video");
+  std::vector<fs::path> stills;
+  for (const auto& entry : fs::directory_iterator(pattern.has_parent_path() ? pattern.parent_path() : "."))
+    if (matches(entry.path().filename().string(), name.substr(0, percent), name.substr(letter + 1)))
+      stills.push_back(entry.path());
+  return stills;
+}
+
 }  // namespace
+
+std::uintmax_t video_bytes(const fs::path& video_or_pattern) {
+  std::uintmax_t bytes = 0;
+  const auto add = [&bytes](const fs::path& file) {
+    std::error_code error;  // what cannot be read is said when it is copied
+    const std::uintmax_t size = fs::file_size(file, error);
+    if (!error) bytes += size;
+  };
+  if (fs::exists(video_or_pattern)) {
+    add(video_or_pattern);
+  } else {
+    for (const fs::path& still : stills_of(video_or_pattern)) add(still);
+  }
+  return bytes;
+}
 
 std::string copy_video_into(const fs::path& session_folder, const fs::path& video_or_pattern) {
   if (fs::exists(video_or_pattern)) {
@@ -38,19 +66,17 @@ std::string copy_video_into(const fs::path& session_folder, const fs::path& vide
     copy_one(video_or_pattern, session_folder / name);
     return name;
   }
-  const std::string pattern = video_or_pattern.filename().string();
-  const std::size_t percent = pattern.find('%');
-  const std::size_t letter = percent == std::string::npos ? percent : pattern.find('d', percent);
-  if (letter == std::string::npos) throw IoError(video_or_pattern, "no such video");
-  const fs::path from = video_or_pattern.has_parent_path() ? video_or_pattern.parent_path() : fs::path(".");
-  fs::create_directory(session_folder / "pictures");
-  for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
-    const std::string name = entry.path().filename().string();
-    if (matches(name, pattern.substr(0, percent), pattern.substr(letter + 1))) {
-      copy_one(entry.path(), session_folder / "pictures" / name);
-    }
+  const fs::path pictures = session_folder / "pictures";
+  const std::vector<fs::path> stills = stills_of(video_or_pattern);
+  fs::create_directory(pictures);
+  try {
+    for (const fs::path& still : stills) copy_one(still, pictures / still.filename());
+  } catch (const IoError&) {
+    std::error_code ignored;
+    fs::remove_all(pictures, ignored);  // a part of them would pass for all
+    throw;
   }
-  return "pictures/" + pattern;
+  return "pictures/" + video_or_pattern.filename().string();
 }
 
 std::vector<std::string> video_files(const fs::path& session_folder, const std::string& video) {

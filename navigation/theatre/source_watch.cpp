@@ -65,7 +65,15 @@ bool SourceWatch::silence(const std::string& why, std::int64_t now_ns) {
     last_picture_ns_ = now_ns;
   }
   if (now_ns - last_picture_ns_ < silence_ns() && why.empty()) return false;
-  return set(SourceTrouble::NoPicture, why.empty() ? "No picture comes" : "No picture comes: " + why);
+  const std::string words = why.empty() ? "No picture comes" : "No picture comes: " + why;
+  // Its reason may change with every attempt to connect again: it is news once a second at most, and the one
+  // that stays is told then.
+  const bool is_news = set(SourceTrouble::NoPicture, words) ||
+                       (words != silence_said_ && now_ns - silence_said_ns_ >= kSaidAnew_ns);
+  if (!is_news) return false;
+  silence_said_ = words;
+  silence_said_ns_ = now_ns;
+  return true;
 }
 
 bool SourceWatch::picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns,

@@ -37,7 +37,8 @@ class SourceWatch {
   // next picture whether the source is too slow: half of six were drawn when they were too old. For as long
   // as that goes on what guides would come and go with every picture. Over once none was for two seconds.
   void shown_until(double age_ms, std::int64_t now_ns);
-  // None came since the last call; why, as the source says it.
+  // None came since the last call; why, as the source says it. True: it is silent now, or for another reason,
+  // which is said once a second.
   bool silence(const std::string& why, std::int64_t now_ns);
 
   [[nodiscard]] SourceTrouble trouble() const { return trouble_; }
@@ -50,7 +51,8 @@ class SourceWatch {
 
   double late_after_ms_ = 1000 * kLateAfter_s;
   SourceTrouble trouble_ = SourceTrouble::None;
-  std::string words_;
+  std::string words_, silence_said_;
+  std::int64_t silence_said_ns_ = 0;
   std::int64_t last_picture_ns_ = 0, torn_ns_ = 0, late_ns_ = 0, late_said_ns_ = 0, slow_ns_ = 0;
   double late_ms_ = 0, gap_ms_ = 0;  // between pictures, lately
   double replaced_ms_ = 0;           // how old one that was too old was when the next one was shown

@@ -26,6 +26,29 @@ TEST_F(OperationRules, VerificationIsAskedForAndSkippingItIsRecorded) {
   EXPECT_EQ(run_.count(JournalKind::Verified), 1);
 }
 
+// A drill with a marker of its own that stands at the plan guides as well: the hand follows its numbers,
+// whatever keeps the guide's away.
+TEST_F(OperationRules, ADrillAtThePlanSkipsTheVerificationToo) {
+  give();
+  run_.apply(Draw{false});
+  const auto show_drill = [&](double beside_mm) {
+    const PlannedTunnel plan = test::phantom_plan();
+    const Eigen::Vector3d beside = beside_mm * plan.tunnel.direction.unitOrthogonal();
+    pipeline::FrameResult frame = run_.frame();
+    frame.guidance.state = guidance::GuidanceState::GuideLost;
+    frame.guidance.timestamp_ns = frame.timestamp_ns;
+    frame.guidance.drill = guidance::drill_depth(plan.tunnel, plan.length_mm,
+                                                 plan.tunnel.entry_mm + beside - plan.tunnel.direction,
+                                                 plan.tunnel.direction, 0.3);
+    run_.show(frame);
+  };
+  show_drill(60);
+  EXPECT_EQ(run_.count(JournalKind::VerificationSkipped), 0) << "it lies in its tray";
+  for (int i = 0; i < 3; ++i) show_drill(1);
+  EXPECT_EQ(run_.state()->verification, Verification::Skipped);
+  EXPECT_EQ(run_.count(JournalKind::VerificationSkipped), 1);
+}
+
 // Enough places were touched, one of them 1.2 mm off the bone: no touch more can verify, and none is asked
 // for. More strokes may, and then all of them are registered.
 TEST_F(OperationRules, TouchesThatDenyARegistrationAskForStrokesAndNotForTouches) {

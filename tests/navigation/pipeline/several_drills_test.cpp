@@ -85,5 +85,17 @@ TEST_F(SeveralDrills, Hazard7OfTwoThatAreSeenTheOneInTheTunnelIsToldOf) {
   EXPECT_EQ(deep->breakout, guidance::Breakout::Through);
 }
 
+// Two that are as near as each other: what is told of does not change with the noise of their poses, but when
+// another one is clearly the one that drills, and at once when it is in the tunnel and the other one is not.
+TEST_F(SeveralDrills, Hazard7OfTwoThatAreAsNearOneIsToldOf) {
+  ASSERT_EQ(told(drill(kFirst, 12, 0.5), drill(kSecond, 12, 0.7))->marker_id, kFirst);
+  for (int i = 0; i < 10; ++i)
+    EXPECT_EQ(told(drill(kFirst, 12, 0.7 - 0.2 * (i % 2)), drill(kSecond, 12, 0.6))->marker_id, kFirst) << i;
+  EXPECT_EQ(told(drill(kFirst, 12, 4), drill(kSecond, 12, 0.6))->marker_id, kSecond);
+  EXPECT_EQ(told(drill(kFirst, 12, 0.5), drill(kSecond, 12, 0.6))->marker_id, kSecond);
+  EXPECT_EQ(told(drill(kFirst, 12, 0.5), drill(kSecond, -1, 0.6))->marker_id, kFirst);
+  EXPECT_EQ(told(away(kFirst), drill(kSecond, -1, 0.6))->marker_id, kSecond);
+}
+
 }  // namespace
 }  // namespace arthronaut

@@ -175,6 +175,41 @@ TEST_F(BoundedRecording, EndsAPartOfTheVideoWhileTheDiskHangs) {
                                             "ended video_2.mkv"}));
 }
 
+// What is kept free on the disk is kept free of a video that is copied at the end, too: it stays where it is,
+// and the record is whole.
+TEST_F(BoundedRecording, LeavesAVideoThatTheDiskHasNoRoomFor) {
+  const fs::path video = folder_ / "came.mp4";
+  std::ofstream(video) << std::string(3 << 20, 'x');
+  const fs::path session = folder_ / "session";
+  fs::create_directory(session);
+  *free_ = limits_.video_stops_below_bytes + (std::uintmax_t{2} << 20);
+  recording::SessionRecorder recorder(session, test::session_header(), options_, limits_);
+  recorder.refer_to_video(video);
+  for (int i = 0; i < 10; ++i) recorder.append(test::frame_result(i));
+  recorder.copy_video(video);
+  EXPECT_NE(recorder.video_trouble().find("2.0 GiB"), std::string::npos) << recorder.video_trouble();
+  EXPECT_NO_THROW(recorder.finish());
+  EXPECT_FALSE(fs::exists(session / "video.mp4"));
+  const recording::RecordedSession record(session);
+  EXPECT_TRUE(record.was_finished());
+  EXPECT_EQ(record.video(), video);
+}
+
+// Half of the stills would pass for all of them.
+TEST_F(BoundedRecording, LeavesNoPartOfStillsThatCouldNotBeCopied) {
+  const fs::path stills = folder_ / "stills", session = folder_ / "session";
+  for (const fs::path& made : {stills, session}) fs::create_directory(made);
+  for (int i = 0; i < 3; ++i) std::ofstream(stills / ("f_" + std::to_string(i) + ".png")) << "x";
+  fs::create_directory(stills / "f_3.png");  // no file: it cannot be copied
+  recording::SessionRecorder recorder(session, test::session_header(), options_, limits_);
+  recorder.refer_to_video(stills / "f_%d.png");
+  recorder.append(test::frame_result(0));
+  recorder.copy_video(stills / "f_%d.png");
+  EXPECT_NE(recorder.video_trouble(), "");
+  recorder.finish();
+  EXPECT_FALSE(fs::exists(session / "pictures"));
+}
+
 // A recorder that cannot begin says so at once, with the folder's name: there is no thread behind it that
 // could stop anything else.
 TEST_F(BoundedRecording, SaysAtOnceThatItCannotBegin) {

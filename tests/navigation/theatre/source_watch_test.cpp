@@ -43,6 +43,27 @@ TEST_F(SourceWatchTest, SilenceIsToldWithinHalfASecond) {
   EXPECT_EQ(watch_.words(), "");
 }
 
+// What the record is told of a silence goes with its reason, and not with every attempt to connect again.
+TEST_F(SourceWatchTest, AReasonOfASilenceThatChangesIsNews) {
+  pictures(well_, 1000);
+  std::vector<std::string> news;
+  const auto silent = [&](int ms, const auto& why) {
+    for (const std::int64_t end = now_ns_ + ms * kMs; now_ns_ < end; now_ns_ += 100 * kMs)
+      if (watch_.silence(why(), now_ns_)) news.push_back(watch_.words());
+  };
+  silent(1500, [] { return ""; });
+  silent(1500, [] { return "the scope's cable is out"; });
+  const std::vector<std::string> expected{"No picture comes", "No picture comes: the scope's cable is out"};
+  EXPECT_EQ(news, expected);
+  news.clear();
+  int attempts = 0;
+  silent(10'000, [&] { return "attempt " + std::to_string(++attempts); });
+  EXPECT_LE(news.size(), 10U);
+  ASSERT_FALSE(news.empty());
+  silent(1100, [] { return "another camera is there"; });
+  EXPECT_EQ(news.back(), "No picture comes: another camera is there");
+}
+
 // Pictures come, and others were lost: that is no silence, whatever the rate.
 TEST_F(SourceWatchTest, LostPicturesAreToldWhileOthersCome) {
   const std::string lost = "camera 0: 31 of the last 120 pictures were lost";
