@@ -93,14 +93,19 @@ std::vector<std::string> PostopAnswer::doubts() const {
   return reasons;
 }
 
-std::vector<tunnels::TunnelKey> better_kept_in(
-    const std::filesystem::path& file, const std::map<tunnels::TunnelKey, postop::Comparison>& comparisons) {
+std::vector<tunnels::TunnelKey> better_kept_in(const std::filesystem::path& file,
+                                               const PostopAnswer& answer) {
+  const auto is_relied_on = [](const postop::Comparison& one) {
+    return one.bone.reliable && one.tunnel.reliable;
+  };
   std::vector<tunnels::TunnelKey> better;
   try {
     if (!std::filesystem::is_regular_file(file)) return better;
     for (const auto& [key, kept] : postop::read_achieved_file(file)) {
-      const auto now = comparisons.find(key);
-      if (kept.tunnel.reliable && now != comparisons.end() && !now->second.tunnel.reliable)
+      const auto now = answer.comparisons.find(key);
+      if (now == answer.comparisons.end() || !is_relied_on(kept) || is_relied_on(now->second)) continue;
+      const auto plan = answer.planned.find(key);
+      if (plan == answer.planned.end() || postop::is_against(kept.tunnel, plan->second))
         better.push_back(key);
     }
   } catch (const InvalidInput&) {  // broken: it tells nobody anything
@@ -112,6 +117,7 @@ PostopAnswer compare_with_postop(const PostopQuestion& question) {
   const cases::Case knee = cases::load_case(question.case_folder);
   const auto plan = planned(knee, question);
   PostopAnswer answer;
+  for (const tunnels::Tunnel& tunnel : plan) answer.planned.emplace(tunnel.key(), tunnel);
   postop::PostopSourceOptions options;
   options.series = question.series;
   options.labels = question.labels;

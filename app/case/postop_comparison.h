@@ -36,8 +36,9 @@ struct PostopAnswer {
       comparisons;  // one for each planned tunnel that was asked for
   // Of those that were found, by the case's landmarks, or where these give no grid by what is proposed.
   std::map<tunnels::TunnelKey, postop::AchievedPlace> places;
-  images::Volume images;     // as they were read
-  bool was_stopped = false;  // then there may be fewer comparisons
+  std::map<tunnels::TunnelKey, tunnels::Tunnel> planned;  // what each was compared with
+  images::Volume images;                                  // as they were read
+  bool was_stopped = false;                               // then there may be fewer comparisons
   std::string
       other_patient;  // whose the images are where that is another patient than the case's; else empty
   // Why it must not be relied on, each sentence beginning with the tunnel: "femur: ..."; empty: reliable.
@@ -49,9 +50,9 @@ struct PostopAnswer {
 // that cannot be read or show no bone.
 [[nodiscard]] PostopAnswer compare_with_postop(const PostopQuestion& question);
 
-// Of what was compared, the tunnels that `file` holds relied on and that are not relied on now. None where
-// there is no such file, or it is broken.
-[[nodiscard]] std::vector<tunnels::TunnelKey> better_kept_in(
-    const std::filesystem::path& file, const std::map<tunnels::TunnelKey, postop::Comparison>& comparisons);
+// Of what was compared, the tunnels that `file` holds relied on, against the same plan, and that are not
+// relied on now. None where there is no such file, or it is broken.
+[[nodiscard]] std::vector<tunnels::TunnelKey> better_kept_in(const std::filesystem::path& file,
+                                                             const PostopAnswer& answer);
 
 }  // namespace arthronaut::open_case

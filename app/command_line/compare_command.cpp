@@ -81,9 +81,9 @@ void compare(Context& context, const CompareArguments& arguments) {
   if (!case_of_output.empty() && !answer.other_patient.empty())
     throw InvalidInput(arguments.source, "",
                        "is of " + answer.other_patient + ": nothing is written into the case; -o elsewhere");
-  const std::vector<tunnels::TunnelKey> better =
-      arguments.output == "-" ? std::vector<tunnels::TunnelKey>{}
-                              : open_case::better_kept_in(arguments.output, answer.comparisons);
+  const std::vector<tunnels::TunnelKey> better = arguments.output == "-"
+                                                     ? std::vector<tunnels::TunnelKey>{}
+                                                     : open_case::better_kept_in(arguments.output, answer);
   const bool keeps = !case_of_output.empty() && !better.empty();
   if (!keeps) postop::write_achieved_file(arguments.output, answer.comparisons, answer.places);
   if (arguments.output != "-") {

@@ -90,14 +90,13 @@ std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction ac
 
 std::string words_beside_no_picture(theatre::SourceTrouble trouble, NextAction action) {
   if (action != NextAction::ConfirmTimeOut && action != NextAction::RecordDrilled) return "";
-  const std::string words = words_of(action);
   switch (trouble) {
     case theatre::SourceTrouble::NoPicture:
-      return "no picture comes; " + words;
+      return "no picture comes; ";
     case theatre::SourceTrouble::Plain:
-      return "the picture is plain; " + words;
+      return "the picture is plain; ";
     case theatre::SourceTrouble::Frozen:
-      return "the picture is frozen; " + words;
+      return "the picture is frozen; ";
     default:
       return "";
   }

@@ -21,8 +21,8 @@ namespace arthronaut::navigate {
 // where that is no hindrance.
 [[nodiscard]] std::string words_without_pictures(theatre::SourceTrouble trouble,
                                                  operation::NextAction action);
-// The same where the step can be done all the same, as it takes somebody's word: "no picture comes; when the
-// tunnel is drilled: say so". Empty while pictures come, and for all other steps.
+// What stands before the step's own words where it can be done all the same, as it takes somebody's word: "no
+// picture comes; ". Empty while pictures come, and for all other steps.
 [[nodiscard]] std::string words_beside_no_picture(theatre::SourceTrouble trouble,
                                                   operation::NextAction action);
 // What was asked for a moment ago and not done, with why: "no touch: the probe moves". Short enough to stand

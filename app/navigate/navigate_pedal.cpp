@@ -102,9 +102,7 @@ std::string NavigateView::next_step() {
     return started_.stops_once_open() ? "wait: it stops once it is open" : "wait for the first picture";
   if (is_in_wrong_medium()) return "wrong medium: hold Esc, then M for the other one, then start again";
   if (const std::string wait = words_without_pictures(); !wait.empty()) return wait;
-  if (is_running())
-    if (const std::string words = words_beside_no_picture(live_->trouble, action); !words.empty())
-      return words;
+  const std::string beside = is_running() ? words_beside_no_picture(live_->trouble, action) : "";
   if (takes_guide_in_simulation()) return "take the guide (simulation)";
   if (action == NextAction::CheckWorldMarker && registration().must_be_found_anew())
     return place_anew_words(registration().way_out());
@@ -112,9 +110,9 @@ std::string NavigateView::next_step() {
   if (action == NextAction::CheckControlPoint) return words_of_checking(*live_->operation);
   if (action == NextAction::RegisterAnew) return words_of_registering_anew(*live_->operation);
   if (action == NextAction::RecordDrilled && guided->bundle != norms::Bundle::Whole)
-    return "when the tunnel " + tunnels::name_of(*guided) + " is drilled: say so";
+    return beside + "when the tunnel " + tunnels::name_of(*guided) + " is drilled: say so";
   const bool starts = action == NextAction::StartSource || action == NextAction::PlanTunnel;
-  if (!starts) return words_of(action);
+  if (!starts) return beside + words_of(action);
   if (must_set_up()) return "calibrate camera and tools in Set up";
   const bool have_ended = live_->phase == Phase::Ended && live_->picture != nullptr;
   return (have_ended ? "the pictures have ended: " : "") + words_of_start();

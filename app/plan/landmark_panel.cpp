@@ -66,6 +66,9 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
   if (rows.empty()) return clicked;
   widgets::text_in(ui.theme.body, widgets::kQuietText, confirmed_in_words(rows));
   const LandmarkRow& row = rows[std::min(selected, rows.size() - 1)];
+  const auto is_far = [&](const std::string& name) {
+    return off_proposal_mm(model, bone, name).value_or(0) > landmarks::kFarFromShape_mm;
+  };
   const std::string about = row.title + ": " + row.meaning + ".";
   // Below the list: what the selected one means, of however many lines, its state, the buttons.
   const float lines =
@@ -87,9 +90,8 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
       draw.AddRectFilled(at, {at.x + width, at.y + height},
                          i == selected ? IM_COL32(28, 74, 104, 255) : IM_COL32(38, 47, 57, 255),
                          ui.theme.px(6));
-    const bool is_far = off_proposal_mm(model, bone, rows[i].name).value_or(0) > landmarks::kFarFromShape_mm;
     const auto severity = rows[i].state == LandmarkRow::State::Missing ? widgets::Severity::Quiet
-                          : rows[i].state == LandmarkRow::State::Proposed || is_far
+                          : rows[i].state == LandmarkRow::State::Proposed || is_far(rows[i].name)
                               ? widgets::Severity::Caution
                               : widgets::Severity::Good;
     widgets::draw_sign(draw, {at.x + ui.theme.px(14), at.y + height / 2}, ui.theme.px(8), severity);
@@ -103,10 +105,10 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
   ImGui::EndChild();
   widgets::text_in(ui.theme.body, widgets::kText, about);
   const std::string word = state_in_words(row.state, off_proposal_mm(model, bone, row.name));
-  const bool is_far = off_proposal_mm(model, bone, row.name).value_or(0) > landmarks::kFarFromShape_mm;
   widgets::text_in(
       ui.theme.body,
-      row.state == LandmarkRow::State::Proposed || is_far ? widgets::kCaution : widgets::kQuietText, word);
+      row.state == LandmarkRow::State::Proposed || is_far(row.name) ? widgets::kCaution : widgets::kQuietText,
+      word);
   ui.log.note_state("landmark_state", word);
   return clicked;
 }

@@ -40,14 +40,14 @@ bool keep(const open_case::PostopAnswer& answer, const std::filesystem::path& ca
   const std::filesystem::path file = achieved_file(case_folder);
   if (!answer.other_patient.empty()) return false;
   if (!has_a_bone(answer.comparisons) && has_a_bone(kept_in(file))) return false;
-  if (!better_kept(answer.comparisons, case_folder).empty()) return false;
+  if (!better_kept(answer, case_folder).empty()) return false;
   postop::write_achieved_file(file, answer.comparisons, answer.places);
   return true;
 }
 
-std::string better_kept(const Comparisons& comparisons, const std::filesystem::path& case_folder) {
+std::string better_kept(const open_case::PostopAnswer& answer, const std::filesystem::path& case_folder) {
   std::string names;
-  for (const tunnels::TunnelKey& key : open_case::better_kept_in(achieved_file(case_folder), comparisons))
+  for (const tunnels::TunnelKey& key : open_case::better_kept_in(achieved_file(case_folder), answer))
     names += (names.empty() ? "" : ", ") + tunnels::name_of(key);
   return names.empty() ? ""
                        : "the case keeps a comparison that is reliable for " + names + ", as this is not";
@@ -156,7 +156,7 @@ PostopRun::PostopRun(const std::filesystem::path& case_folder, const std::filesy
             }
             auto answer = open_case::compare_with_postop(question);
             if (answer.was_stopped || inbox.stops()) return;
-            if (writes) progress.better_kept = better_kept(answer.comparisons, case_folder);
+            if (writes) progress.better_kept = better_kept(answer, case_folder);
             if (writes) keep(answer, case_folder);
             progress.answer = std::make_shared<const open_case::PostopAnswer>(std::move(answer));
             inbox.publish(progress);

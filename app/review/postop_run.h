@@ -55,7 +55,7 @@ using Comparisons = std::map<tunnels::TunnelKey, postop::Comparison>;
 bool keep(const open_case::PostopAnswer& answer, const std::filesystem::path& case_folder);
 
 // In words, that the case keeps tunnels that are relied on and are not in this comparison; empty: none.
-[[nodiscard]] std::string better_kept(const Comparisons& comparisons,
+[[nodiscard]] std::string better_kept(const open_case::PostopAnswer& answer,
                                       const std::filesystem::path& case_folder);
 
 // What is told of images after the operation.

@@ -30,7 +30,8 @@ TEST(WordsWithoutPictures, TakeThePlaceOfWhatNeedsThem) {
 TEST(WordsWithoutPictures, StandBesideWhatIsTakenOnSomebodysWord) {
   using operation::NextAction;
   using theatre::SourceTrouble;
-  EXPECT_EQ(words_beside_no_picture(SourceTrouble::NoPicture, NextAction::RecordDrilled),
+  EXPECT_EQ(words_beside_no_picture(SourceTrouble::NoPicture, NextAction::RecordDrilled) +
+                words_of(NextAction::RecordDrilled),
             "no picture comes; when the tunnel is drilled: say so");
   EXPECT_EQ(words_beside_no_picture(SourceTrouble::Frozen, NextAction::ConfirmTimeOut)
                 .find("the picture is frozen; "),

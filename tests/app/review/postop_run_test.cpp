@@ -91,13 +91,17 @@ TEST(PostopRun, ATunnelThatIsReliedOnStaysKept) {
         .tunnel.tunnel.diameter_mm;
   };
   EXPECT_TRUE(keep(answer(false), folder.path()));
-  EXPECT_EQ(better_kept(answer(true).comparisons, folder.path()), "");
+  EXPECT_EQ(better_kept(answer(true), folder.path()), "");
   EXPECT_TRUE(keep(answer(true), folder.path()));
   EXPECT_FALSE(keep(answer(false), folder.path()));
   EXPECT_EQ(kept_mm(), 9);
-  EXPECT_EQ(better_kept(answer(false).comparisons, folder.path()),
+  EXPECT_EQ(better_kept(answer(false), folder.path()),
             "the case keeps a comparison that is reliable for femur, as this is not");
   EXPECT_TRUE(keep(answer(true), folder.path()));
+  // Of an earlier plan it tells nothing of this one.
+  open_case::PostopAnswer of_another_plan = answer(false);
+  of_another_plan.planned[bones::BoneKind::Femur].entry_mm = {0, 0, 5};
+  EXPECT_TRUE(keep(of_another_plan, folder.path()));
 }
 
 }  // namespace
