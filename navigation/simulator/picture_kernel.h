@@ -72,6 +72,26 @@ struct BoardNumbers {
 // Parts of plate and board, counted from the first; a rod is all one.
 enum Region : std::int32_t { kPaper, kInk, kSide, kRegions };
 
+// Rays within a pixel: that of its middle, and by how much they turn from its left side to its right one, and
+// from its upper side to its lower one.
+struct PixelRays {
+  float middle[2] = {}, along[2] = {}, down[2] = {};
+};
+// Where a pixel is sampled: px, about its middle.
+struct SamplePlaces {
+  const float *x = nullptr, *y = nullptr;
+};
+// What samples of a pixel have met of one part.
+struct PartCount {
+  std::int32_t part = 0, first_sample = 0, count = 0;
+};
+
+// Bit k: of the pixel in column first + k.
+struct Seams {
+  std::uint32_t is_seam = 0;  // its corners have met different parts
+  std::uint32_t is_face = 0;  // they have all met the same one, which is not 0
+};
+
 // A triangle in one row of the picture: shares of its second and third corner, and depth by shares.
 struct TriangleRow {
   std::int32_t triangle = 0;
@@ -105,6 +125,17 @@ struct PictureKernel {
   void (*meet_rod)(const RodNumbers& rod, const RayRow& rays, int count, int first_part, const MetRow& met);
   void (*meet_board)(const BoardNumbers& board, const RayRow& rays, int count, int first_part,
                      const MetRow& met);
+  // The rays of a pixel's samples, at one distance from the bone, which have met nothing yet.
+  void (*begin_samples)(const PixelRays& pixel, const SamplePlaces& places, int count, float ground_mm,
+                        float nothing_mm, float* x, float* y, float* grounds_mm, const MetRow& met);
+  // Counts the samples that met each part, in the order in which the parts were met first, of part 0 none.
+  // Of any count up to kMostSamples, of arrays that go on to the packet's end. Returns how many parts, of
+  // which those beyond `room` are left out.
+  int (*count_parts)(const std::int32_t* parts, int count, int room, PartCount* counts);
+  static constexpr int kMostSamples = 64;
+  // Of the pixels in kTogether columns by what their upper and lower left corners met, which go on by one
+  // beyond them.
+  Seams (*seams)(const std::int32_t* upper, const std::int32_t* lower);
   // Light of what was met, pixel by pixel, blue green red; looks by part. Of rays that met nothing it is any.
   void (*light_parts)(const PartLook* looks, const RayRow& rays, int count, const MetRow& met, float exposure,
                       float* bgr);

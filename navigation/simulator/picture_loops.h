@@ -28,11 +28,15 @@ inline Lit lit(const Vectors& point, const Vectors& normal, float exposure) {
           larger(dot(normal, half), Floats{})};
 }
 
+// Pixel by pixel: the first two colours are joined, and the third put between them.
 inline void store_bgr(const Floats (&light)[3], float* bgr) {
-  float planes[3][kTogether];
-  for (int c = 0; c < 3; ++c) store(light[c], planes[c]);
-  for (int k = 0; k < kTogether; ++k)
-    for (int c = 0; c < 3; ++c) bgr[3 * k + c] = planes[c][k];
+  const Floats &b = light[0], &g = light[1], &r = light[2];
+  const Floats low = __builtin_shufflevector(b, g, 0, 8, 1, 1, 9, 2, 2, 10);
+  const Floats middle = __builtin_shufflevector(b, g, 10, 3, 11, 11, 4, 12, 12, 5);
+  const Floats high = __builtin_shufflevector(b, g, 13, 5, 6, 14, 6, 7, 15, 7);
+  store(__builtin_shufflevector(low, r, 0, 1, 8, 3, 4, 9, 6, 7), bgr);
+  store(__builtin_shufflevector(middle, r, 10, 1, 2, 11, 4, 5, 12, 7), bgr + kTogether);
+  store(__builtin_shufflevector(high, r, 0, 13, 2, 3, 14, 5, 6, 15), bgr + 2 * kTogether);
 }
 
 // The looks of a packet's pixels, which nearly always are one.
@@ -41,10 +45,8 @@ struct Looks {
   Ints doublings;
 };
 inline Looks looks_of(const PartLook* looks, const std::int32_t* parts) {
-  bool is_one = true;
-  for (int k = 1; k < kTogether; ++k) is_one = is_one && parts[k] == parts[0];
   Looks all;
-  if (is_one) {
+  if (!any(load(parts) != parts[0])) {
     const PartLook& look = looks[parts[0]];
     for (int c = 0; c < 3; ++c) all.albedo[c] = Floats{} + look.albedo_bgr[c];
     all.specular = Floats{} + look.specular;
@@ -69,8 +71,11 @@ void light_parts(const PartLook* looks, const RayRow& rays, int count, const Met
     const Lit light = lit(point, normal, exposure);
     const Looks look = looks_of(looks, met.part + i);
     Floats highlight = light.highlight;
-    for (int k = 0; k < PartLook::kMostDoublings; ++k)
-      highlight = look.doublings > k ? highlight * highlight : highlight;
+    for (int k = 0; k < PartLook::kMostDoublings; ++k) {
+      const Ints goes_on = look.doublings > k;
+      if (!any(goes_on)) break;
+      highlight = goes_on ? highlight * highlight : highlight;
+    }
     Floats out[3];
     for (int c = 0; c < 3; ++c)
       out[c] = light.irradiance * (light.diffuse * look.albedo[c] + look.specular * highlight);
@@ -266,9 +271,9 @@ void expose(const ToneNumbers& tone, const float* light, const float* deviates, 
   }
 }
 
-constexpr PictureKernel kKernel{&meet_plate,    &meet_rod,    &meet_board, &light_parts,
-                                &draw_triangle, &noise_at,    &light_bone, &light_backdrop,
-                                &list_breaks,   &blur_across, &blur_along, &expose};
+constexpr PictureKernel kKernel{&meet_plate,     &meet_rod,    &meet_board,    &begin_samples, &count_parts,
+                                &seams,          &light_parts, &draw_triangle, &noise_at,      &light_bone,
+                                &light_backdrop, &list_breaks, &blur_across,   &blur_along,    &expose};
 
 }  // namespace
 }  // namespace arthronaut::simulator

@@ -26,11 +26,23 @@ inline Ints load(const std::int32_t* from) {
 }
 inline void store(const Floats& v, float* to) { __builtin_memcpy(to, &v, sizeof v); }
 inline void store(const Ints& v, std::int32_t* to) { __builtin_memcpy(to, &v, sizeof v); }
-inline bool any(const Ints& mask) {
-  std::int64_t parts[4];
-  __builtin_memcpy(parts, &mask, sizeof parts);
-  return (parts[0] | parts[1] | parts[2] | parts[3]) != 0;
+// Bit k: whether the mask's value k, which is 0 or -1, is -1.
+inline std::uint32_t bits_of(const Ints& mask) {
+#if defined(__AVX__)
+  __m256 values;
+  __builtin_memcpy(&values, &mask, sizeof values);
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(values));
+#elif defined(__SSE2__)
+  __m128 halves[2];
+  __builtin_memcpy(halves, &mask, sizeof halves);
+  return static_cast<std::uint32_t>(_mm_movemask_ps(halves[0]) | _mm_movemask_ps(halves[1]) << 4);
+#else
+  std::uint32_t bits = 0;
+  for (int k = 0; k < kTogether; ++k) bits |= (mask[k] & 1U) << k;
+  return bits;
+#endif
 }
+inline bool any(const Ints& mask) { return bits_of(mask) != 0; }
 inline Floats floats(const Ints& v) { return __builtin_convertvector(v, Floats); }
 inline Ints truncated(const Floats& v) { return __builtin_convertvector(v, Ints); }
 inline Ints floor_of(const Floats& v) {

@@ -1,6 +1,7 @@
 #include "navigation/simulator/solid_layer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace arthronaut::simulator {
@@ -16,12 +17,12 @@ constexpr double kR2X = 0.7548776662466927, kR2Y = 0.5698402909980532;
 
 constexpr int kBlockRows = 16;  // rows that are searched for solids as one
 
-struct SamplePlaces {
-  alignas(32) float x[padded(kSamples)] = {}, y[padded(kSamples)] = {};  // px, about the centre
+struct R2Places {
+  alignas(32) float x[padded(kSamples)] = {}, y[padded(kSamples)] = {};
 };
-const SamplePlaces& sample_places() {
-  static const SamplePlaces kPlaces = [] {
-    SamplePlaces places;
+SamplePlaces sample_places() {
+  static const R2Places kPlaces = [] {
+    R2Places places;
     double u = 0.5, v = 0.5;
     for (int i = 0; i < kSamples; i += 2) {
       u += kR2X;
@@ -36,7 +37,7 @@ const SamplePlaces& sample_places() {
     }
     return places;
   }();
-  return kPlaces;
+  return {kPlaces.x, kPlaces.y};
 }
 
 PartLook numbers_of(const Skin& skin) {
@@ -124,6 +125,20 @@ MetRow SolidLayer::Corners::met(int first) {
           {normal[0].data() + first, normal[1].data() + first, normal[2].data() + first}};
 }
 
+void SolidLayer::Corners::resize(std::size_t size) {
+  part.resize(size, 0);
+  for (auto* values : {&x, &y, &depth_mm, &normal[0], &normal[1], &normal[2]}) values->resize(size, 0.0f);
+}
+
+void SolidLayer::Corners::push_back(float at_x, float at_y, float at_depth_mm, std::int32_t met_part,
+                                    const std::array<float, 3>& met_normal) {
+  x.push_back(at_x);
+  y.push_back(at_y);
+  depth_mm.push_back(at_depth_mm);
+  part.push_back(met_part);
+  for (std::size_t axis = 0; axis < 3; ++axis) normal[axis].push_back(met_normal[axis]);
+}
+
 // From the leftmost to the rightmost pixel that a solid may cover in a block of rows, with one to spare each
 // way.
 std::array<int, 2> SolidLayer::span_of_block(int block) const {
@@ -164,15 +179,8 @@ void SolidLayer::trace_corners(int row, const std::array<int, 2>& span, const Bo
 void SolidLayer::draw_rows(int first, int end, const BoneRows& bone_rows, Memory& memory,
                            float* light) const {
   if (candidates_.empty()) return;
-  const auto room = static_cast<std::size_t>(padded(area_.width + 1));
-  for (Corners* corners : {&memory.above_, &memory.below_}) {
-    corners->part.resize(room);
-    for (auto* values : {&corners->x, &corners->y, &corners->depth_mm, &corners->normal[0],
-                         &corners->normal[1], &corners->normal[2]})
-      values->resize(room);
-  }
-  memory.lit_.resize(3 * kTogether);
-  memory.counts_.assign(looks_.size(), 0);
+  const auto room = static_cast<std::size_t>(padded(area_.width + 1) + kTogether);
+  for (Corners* corners : {&memory.above_, &memory.below_}) corners->resize(room);
   std::array<int, 2> span{0, -1};
   for (int row = first; row < end; ++row) {
     if (row == first || row % kBlockRows == 0) {
@@ -183,38 +191,43 @@ void SolidLayer::draw_rows(int first, int end, const BoneRows& bone_rows, Memory
     }
     if (span[1] < span[0]) continue;
     trace_corners(row + 1, span, bone_rows, memory.below_);
-    draw_row(row, span, bone_rows, memory, light + static_cast<std::ptrdiff_t>(3) * area_.width * row);
+    float* const out = light + static_cast<std::ptrdiff_t>(3) * area_.width * row;
+    draw_row(row, span, bone_rows, memory, out);
+    mix_samples(memory, out);
   }
 }
 
+// Faces are lit at once; pixels where parts meet are sampled, and wait for mix_samples.
 void SolidLayer::draw_row(int row, const std::array<int, 2>& span, const BoneRows& bone_rows, Memory& memory,
                           float* out) const {
-  Corners &above = memory.above_, &below = memory.below_;
-  const std::int32_t *upper = above.part.data(), *lower = below.part.data();
+  Corners& above = memory.above_;
+  const PictureKernel& kernel = picture_kernel();
+  constexpr std::uint32_t kAll = (1U << kTogether) - 1;
   for (int first = span[0] / kTogether * kTogether; first <= span[1]; first += kTogether) {
-    const int from = std::max(first, span[0]), last = std::min(first + kTogether - 1, span[1]);
-    std::int32_t met = 0;
-    for (int i = from; i <= last + 1; ++i) met |= upper[i] | lower[i];
-    if (met == 0) continue;
+    const int from = std::max(first, span[0]) - first, last = std::min(kTogether - 1, span[1] - first);
+    const std::uint32_t within = kAll >> (kTogether - 1 - last) & kAll << from;
+    auto [is_seam, is_face] = kernel.seams(above.part.data() + first, memory.below_.part.data() + first);
+    is_seam &= within;
+    is_face &= within;
     // Inside a face light changes slowly: that of the corner will do.
-    float* const lit = memory.lit_.data();
-    picture_kernel().light_parts(looks_.data(), {above.x.data() + first, above.y.data() + first, nullptr},
-                                 kTogether, above.met(first), exposure_, lit);
-    for (int i = from; i <= last; ++i) {
-      float* const bgr = out + static_cast<std::ptrdiff_t>(3) * i;
-      const std::int32_t part = upper[i];
-      if (part != upper[i + 1] || part != lower[i] || part != lower[i + 1]) {
-        supersample(row, i, bone_rows.depth_mm(row)[i], memory, bgr);
-      } else if (part != 0) {
-        std::copy_n(lit + static_cast<std::ptrdiff_t>(3) * (i - first), 3, bgr);
-      }
+    if (is_face != 0) {
+      float* const bgr = out + static_cast<std::ptrdiff_t>(3) * first;
+      float lit[3 * kTogether];
+      kernel.light_parts(looks_.data(), {above.x.data() + first, above.y.data() + first, nullptr}, kTogether,
+                         above.met(first), exposure_, is_face == kAll ? bgr : lit);
+      if (is_face != kAll)
+        for (; is_face != 0; is_face &= is_face - 1)
+          std::copy_n(lit + 3 * std::countr_zero(is_face), 3, bgr + 3 * std::countr_zero(is_face));
+    }
+    for (; is_seam != 0; is_seam &= is_seam - 1) {
+      const int column = first + std::countr_zero(is_seam);
+      sample(row, column, bone_rows.depth_mm(row)[column], memory);
     }
   }
 }
 
-// Mean light over the pixel's area; linear, so that an edge lies where its blurred profile says. A part of
-// the pixel that is all one is shaded once. bgr: the ground's light, and then the mean.
-void SolidLayer::supersample(int row, int column, float ground_mm, Memory& memory, float* bgr) const {
+// What is in a pixel, by samples. Of each part one ray is kept to be shaded, the first that met it.
+void SolidLayer::sample(int row, int column, float ground_mm, Memory& memory) const {
   const Corners &above = memory.above_, &below = memory.below_;
   const auto left = static_cast<std::size_t>(column), right = left + 1;
   const auto has_print = [&](const Corners& corners) {
@@ -224,74 +237,66 @@ void SolidLayer::supersample(int row, int column, float ground_mm, Memory& memor
   const int count = has_print(above) || has_print(below) ? kSamples : kPlainSamples, room = padded(count);
 
   // Within a pixel rays turn evenly: by what the corners' say.
-  const auto middle = [&](const std::vector<float>& a, const std::vector<float>& b) {
-    return 0.25f * (a[left] + a[right] + b[left] + b[right]);
+  PixelRays pixel;
+  const auto put = [&](int axis, const std::vector<float>& a, const std::vector<float>& b) {
+    pixel.middle[axis] = 0.25f * (a[left] + a[right] + b[left] + b[right]);
+    pixel.along[axis] = 0.5f * (a[right] - a[left] + b[right] - b[left]);
+    pixel.down[axis] = 0.5f * (b[left] - a[left] + b[right] - a[right]);
   };
-  const auto along = [&](const std::vector<float>& a, const std::vector<float>& b) {
-    return 0.5f * (a[right] - a[left] + b[right] - b[left]);
-  };
-  const auto down = [&](const std::vector<float>& a, const std::vector<float>& b) {
-    return 0.5f * (b[left] - a[left] + b[right] - a[right]);
-  };
-  const float x0 = middle(above.x, below.x), x_along = along(above.x, below.x),
-              x_down = down(above.x, below.x);
-  const float y0 = middle(above.y, below.y), y_along = along(above.y, below.y),
-              y_down = down(above.y, below.y);
+  put(0, above.x, below.x);
+  put(1, above.y, below.y);
   constexpr int kRoom = padded(kSamples);
   alignas(32) float x[kRoom], y[kRoom], ground[kRoom], depth[kRoom], normal[3][kRoom];
   alignas(32) std::int32_t part[kRoom];
-  const SamplePlaces& places = sample_places();
-  for (int i = 0; i < room; ++i) {
-    x[i] = x0 + places.x[i] * x_along + places.y[i] * x_down;
-    y[i] = y0 + places.x[i] * y_along + places.y[i] * y_down;
-    ground[i] = ground_mm;
-    depth[i] = kFar_mm;
-    part[i] = 0;
-  }
   const MetRow met{depth, part, {normal[0], normal[1], normal[2]}};
+  const PictureKernel& kernel = picture_kernel();
+  kernel.begin_samples(pixel, sample_places(), room, ground_mm, kFar_mm, x, y, ground, met);
   for (const Candidate& candidate : candidates_) {
     const auto& span = candidate.spans[static_cast<std::size_t>(row)];
     if (column < span[0] || column > span[1]) continue;
     candidate.solid->meet({x, y, ground}, room, candidate.first_part, met);
   }
 
-  // One ray of each part is shaded, the first that met it.
-  constexpr int kMostParts = kTogether;
-  int firsts[kMostParts] = {}, part_count = 0;
-  for (int i = 0; i < count; ++i) {
-    int& met_count = memory.counts_[static_cast<std::size_t>(part[i])];
-    if (met_count++ > 0 || part[i] == 0) continue;
-    if (part_count < kMostParts) firsts[part_count++] = i;
-  }
-  if (part_count == 0) {
-    memory.counts_[0] = 0;
-    return;
-  }
-  alignas(32) float px[kTogether], py[kTogether], pdepth[kTogether], pnormal[3][kTogether];
-  alignas(32) std::int32_t pparts[kTogether];
-  float lit[3 * kTogether];
-  for (int k = 0; k < kTogether; ++k) {
-    const int i = firsts[k < part_count ? k : 0];
-    px[k] = x[i];
-    py[k] = y[i];
-    pdepth[k] = depth[i];
-    pparts[k] = part[i];
-    for (int axis = 0; axis < 3; ++axis) pnormal[axis][k] = normal[axis][i];
-  }
-  picture_kernel().light_parts(looks_.data(), {px, py, nullptr}, kTogether,
-                               {pdepth, pparts, {pnormal[0], pnormal[1], pnormal[2]}}, exposure_, lit);
-  int covered = 0;
-  float sum[3] = {};
+  // Of more parts than are kept the ground stands in for the others.
+  constexpr int kMostParts = 8;
+  PartCount counts[kMostParts];
+  const int part_count = kernel.count_parts(part, count, kMostParts, counts);
+  if (part_count == 0) return;
+  memory.sampled_.push_back({column, count, part_count});
   for (int k = 0; k < part_count; ++k) {
-    int& met_count = memory.counts_[static_cast<std::size_t>(pparts[k])];
-    covered += met_count;
-    for (int c = 0; c < 3; ++c) sum[c] += static_cast<float>(met_count) * lit[3 * k + c];
-    met_count = 0;
+    const auto i = static_cast<std::size_t>(counts[k].first_sample);
+    memory.counts_.push_back(counts[k].count);
+    memory.kept_.push_back(x[i], y[i], depth[i], part[i], {normal[0][i], normal[1][i], normal[2][i]});
   }
-  // Of more parts than are shaded the ground stands in for the others.
-  for (int i = 0; i < count; ++i) memory.counts_[static_cast<std::size_t>(part[i])] = 0;
-  for (int c = 0; c < 3; ++c)
-    bgr[c] = (sum[c] + static_cast<float>(count - covered) * bgr[c]) / static_cast<float>(count);
+}
+
+// Mean light over the area of each sampled pixel, of its parts and the ground's, which `out` holds; linear,
+// so that an edge lies where its blurred profile says.
+void SolidLayer::mix_samples(Memory& memory, float* out) const {
+  const int kept_count = static_cast<int>(memory.counts_.size());
+  if (kept_count == 0) return;
+  Corners& kept = memory.kept_;
+  kept.resize(static_cast<std::size_t>(padded(kept_count)));  // what is beyond is of part 0
+  memory.lit_.resize(3 * kept.part.size());
+  picture_kernel().light_parts(looks_.data(), {kept.x.data(), kept.y.data(), nullptr}, padded(kept_count),
+                               kept.met(0), exposure_, memory.lit_.data());
+  const float* lit = memory.lit_.data();
+  const int* count = memory.counts_.data();
+  for (const Sampled& pixel : memory.sampled_) {
+    float* const bgr = out + static_cast<std::ptrdiff_t>(3) * pixel.column;
+    int covered = 0;
+    float sum[3] = {};
+    for (int k = 0; k < pixel.part_count; ++k, lit += 3, ++count) {
+      covered += *count;
+      for (int c = 0; c < 3; ++c) sum[c] += static_cast<float>(*count) * lit[c];
+    }
+    for (int c = 0; c < 3; ++c)
+      bgr[c] = (sum[c] + static_cast<float>(pixel.sample_count - covered) * bgr[c]) /
+               static_cast<float>(pixel.sample_count);
+  }
+  memory.sampled_.clear();
+  memory.counts_.clear();
+  kept.resize(0);
 }
 
 }  // namespace arthronaut::simulator

@@ -18,19 +18,29 @@ class SolidLayer {
   SolidLayer(const std::vector<std::unique_ptr<Solid>>& solids, const PixelArea& area, const RayTable& rays,
              float exposure);
 
-  // What the rays through one row of pixel corners meet.
+  // What rays meet, of one row of pixel corners or kept of samples.
   struct Corners {
     std::vector<float> x, y, depth_mm, normal[3];
     std::vector<std::int32_t> part;
     [[nodiscard]] MetRow met(int first);
+    void resize(std::size_t size);
+    void push_back(float at_x, float at_y, float at_depth_mm, std::int32_t met_part,
+                   const std::array<float, 3>& met_normal);
+  };
+  struct Sampled {
+    int column = 0, sample_count = 0, part_count = 0;
   };
   // Memory of one thread.
   class Memory {
    private:
     friend class SolidLayer;
     Corners above_, below_;
-    std::vector<float> lit_;   // of a packet
-    std::vector<int> counts_;  // by part
+    // Of a row: its sampled pixels, what is kept of their parts, one pixel's after the other's, how many
+    // samples met each, and its light.
+    std::vector<Sampled> sampled_;
+    Corners kept_;
+    std::vector<int> counts_;
+    std::vector<float> lit_;
   };
 
   // Draws over rows [first, end) of the area's light, row after row, three values a pixel. bone_rows: the
@@ -52,7 +62,8 @@ class SolidLayer {
                      Corners& corners) const;
   void draw_row(int row, const std::array<int, 2>& span, const BoneRows& bone_rows, Memory& memory,
                 float* out) const;
-  void supersample(int row, int column, float ground_mm, Memory& memory, float* bgr) const;
+  void sample(int row, int column, float ground_mm, Memory& memory) const;
+  void mix_samples(Memory& memory, float* out) const;
 
   const PixelArea& area_;
   const RayTable& rays_;

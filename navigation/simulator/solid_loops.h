@@ -198,5 +198,40 @@ void meet_board(const BoardNumbers& board, const RayRow& row, int count, int fir
   }
 }
 
+void begin_samples(const PixelRays& pixel, const SamplePlaces& places, int count, float ground_mm,
+                   float nothing_mm, float* x, float* y, float* grounds_mm, const MetRow& met) {
+  for (int i = 0; i < count; i += kTogether) {
+    const Floats along = load(places.x + i), down = load(places.y + i);
+    store(pixel.middle[0] + along * pixel.along[0] + down * pixel.down[0], x + i);
+    store(pixel.middle[1] + along * pixel.along[1] + down * pixel.down[1], y + i);
+    store(Floats{} + ground_mm, grounds_mm + i);
+    store(Floats{} + nothing_mm, met.depth_mm + i);
+    store(Ints{}, met.part + i);
+  }
+}
+
+int count_parts(const std::int32_t* parts, int count, int room, PartCount* counts) {
+  static_assert(PictureKernel::kMostSamples == 64);
+  std::uint64_t left = ~std::uint64_t{0} >> (64 - count);
+  int found = 0;
+  while (left != 0 && found < room) {
+    const int first = __builtin_ctzll(left);
+    const std::int32_t part = parts[first];
+    std::uint64_t same = 0;
+    for (int i = first / kTogether * kTogether; i < count; i += kTogether)
+      same |= std::uint64_t{bits_of(load(parts + i) == part)} << i;
+    same &= left;
+    left &= ~same;
+    if (part != 0) counts[found++] = {part, first, __builtin_popcountll(same)};
+  }
+  return found;
+}
+
+Seams seams(const std::int32_t* upper, const std::int32_t* lower) {
+  const Ints part = load(upper);
+  const Ints is_one = (part == load(upper + 1)) & (part == load(lower)) & (part == load(lower + 1));
+  return {bits_of(~is_one), bits_of(is_one & (part != 0))};
+}
+
 }  // namespace
 }  // namespace arthronaut::simulator

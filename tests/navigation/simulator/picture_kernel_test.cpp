@@ -60,6 +60,14 @@ std::vector<float> drawn_by(const PictureKernel& kernel, unsigned seed) {
   keep(part);
   keep(depth);
   for (const auto& axis : normal) keep(axis);
+  for (int i = 0; i + 2 * kTogether < kCount; i += kTogether) {
+    PartCount counts[3];
+    const int found = kernel.count_parts(part.data(), kCount - i, 3, counts);
+    for (int k = 0; k < found; ++k)
+      keep(std::vector<int>{counts[k].part, counts[k].first_sample, counts[k].count});
+    const Seams seams = kernel.seams(part.data() + i, part.data() + i + kTogether);
+    keep(std::vector<std::uint32_t>{seams.is_seam, seams.is_face});
+  }
   std::vector<PartLook> looks(13);
   for (std::size_t i = 0; i < looks.size(); ++i)
     looks[i] = {{0.1f, 0.2f, 0.05f * static_cast<float>(i)}, 0.5f, static_cast<int>(i % 7)};
@@ -68,6 +76,12 @@ std::vector<float> drawn_by(const PictureKernel& kernel, unsigned seed) {
   keep(bgr);
   kernel.light_backdrop(rays, kCount, 300, bgr.data());
   keep(bgr);
+  std::vector<float> sample_x(kCount), sample_y(kCount), sample_ground(kCount);
+  const PixelRays pixel{{0.1f, -0.2f}, {0.0011f, 0.0002f}, {-0.0001f, 0.0012f}};
+  kernel.begin_samples(pixel, {x.data(), y.data()}, kCount, 21, 1e9f, sample_x.data(), sample_y.data(),
+                       sample_ground.data(), met);
+  for (const auto* values : {&sample_x, &sample_y, &sample_ground, &depth}) keep(*values);
+  keep(part);
 
   std::vector<std::int32_t> triangles(kCount, -1);
   depth = numbers.between(10, 40);
@@ -117,6 +131,37 @@ TEST(PictureKernel, DrawsTheSameBitsOnEveryProcessor) {
   if (!draws_by_avx2()) GTEST_SKIP() << "no AVX2 here";
   for (unsigned seed = 0; seed < 20; ++seed)
     EXPECT_EQ(drawn_by(plain_picture_kernel(), seed), drawn_by(avx2_picture_kernel(), seed)) << seed;
+}
+
+// Parts in the order in which they were met, up to the last sample and to as many as there is room for.
+TEST(PictureKernel, CountsTheSamplesOfEachPart) {
+  std::vector<std::int32_t> parts(PictureKernel::kMostSamples, 9);
+  const std::vector<std::int32_t> met{0, 4, 4, 0, 2, 4, 2, 2, 2, 7, 0, 4};
+  std::copy(met.begin(), met.end(), parts.begin());
+  for (const PictureKernel* kernel : {&plain_picture_kernel(), &picture_kernel()}) {
+    PartCount counts[4];
+    ASSERT_EQ(kernel->count_parts(parts.data(), 12, 4, counts), 3);
+    const PartCount expected[] = {{4, 1, 4}, {2, 4, 4}, {7, 9, 1}};
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(counts[k].part, expected[k].part);
+      EXPECT_EQ(counts[k].first_sample, expected[k].first_sample);
+      EXPECT_EQ(counts[k].count, expected[k].count);
+    }
+    EXPECT_EQ(kernel->count_parts(parts.data(), 12, 2, counts), 2);
+    EXPECT_EQ(kernel->count_parts(parts.data(), 1, 4, counts), 0);
+    ASSERT_EQ(kernel->count_parts(parts.data(), PictureKernel::kMostSamples, 4, counts), 4);
+    EXPECT_EQ(counts[3].count, PictureKernel::kMostSamples - 12);
+  }
+}
+
+// A pixel of nothing is neither; one whose corners differ anywhere is a seam.
+TEST(PictureKernel, TellsSeamsFromFaces) {
+  const std::vector<std::int32_t> upper{0, 0, 3, 3, 3, 5, 5, 5, 5}, lower{0, 0, 3, 3, 3, 5, 5, 6, 5};
+  for (const PictureKernel* kernel : {&plain_picture_kernel(), &picture_kernel()}) {
+    const Seams seams = kernel->seams(upper.data(), lower.data());
+    EXPECT_EQ(seams.is_seam, 0b11010010U);
+    EXPECT_EQ(seams.is_face, 0b00101100U);
+  }
 }
 
 // Noise is the lattice's own at its nodes, between its neighbours elsewhere, and goes on beyond its end.
