@@ -34,7 +34,12 @@ namespace arthronaut::contour {
 struct ContourOptions {
   // An outline bends as the lens goes round the bone, and what lies behind it changes: more has to speak for
   // a drift than of the surface, which is compared with itself.
-  DriftTestOptions outline = {.lead_pieces = 3, .lead_share = 0.3, .holds_s = 0.5};
+  DriftTestOptions outline = {.lead_pieces = 3,
+                              .lead_share = 0.3,
+                              .fits_share = 0,
+                              .seen_pieces = 3,
+                              .seen_share = 0.3,
+                              .holds_s = 0.5};
   DriftTestOptions surface;
   KnockOptions knock;
   double settle_s = 1.0;  // with pictures that show enough; a gap between two is not looked at

@@ -41,7 +41,8 @@ DriftTest::DriftTest(const DriftTestOptions& options) : options_(options) {
 void DriftTest::clear() {
   std::fill(frame_.begin(), frame_.end(), 0.0f);
   std::fill(score_.begin(), score_.end(), 0.0f);
-  weight_ = led_for_s_ = 0;
+  weight_ = pieces_ = led_for_s_ = 0;
+  frame_pieces_ = 0;
   verdict_ = {};
   set_reference(Eigen::Vector3d::Zero());
 }
@@ -64,6 +65,7 @@ void DriftTest::classify() {
 }
 
 void DriftTest::add(const EdgeProfile& profile) {
+  ++frame_pieces_;
   const Eigen::Vector3f per_step = profile.normal_in_bone / static_cast<float>(kStep_mm);
   for (std::size_t i = 0; i < displacements_.size(); ++i) {
     const int place = static_cast<int>(displacements_[i].dot(per_step) + (kSteps + 0.5f));
@@ -72,6 +74,7 @@ void DriftTest::add(const EdgeProfile& profile) {
 }
 
 void DriftTest::add(const ShiftMap& map) {
+  ++frame_pieces_;
   for (std::size_t i = 0; i < displacements_.size(); ++i) {
     const Eigen::Vector2f shift = map.shift_per_mm * displacements_[i];
     const float u = std::clamp(shift.x() + kShifts, 0.0f, kShiftSide - 1.001f),
@@ -88,6 +91,8 @@ const DriftVerdict& DriftTest::judge(double elapsed_s) {
   const double elapsed = std::clamp(elapsed_s, 0.0, kLongestGap_s);
   const auto kept = static_cast<float>(std::exp(-elapsed / options_.memory_s));
   weight_ = kept * weight_ + (1 - kept);
+  pieces_ = kept * pieces_ + (1 - kept) * frame_pieces_;
+  frame_pieces_ = 0;
   float null = -1e9f, drift = -1e9f;
   for (std::size_t i = 0; i < score_.size(); ++i) {
     score_[i] = kept * score_[i] + (1 - kept) * frame_[i];
@@ -97,11 +102,14 @@ const DriftVerdict& DriftTest::judge(double elapsed_s) {
   }
   const double weight = std::max(weight_, 1e-9);
   const float best = std::max(null, drift);
-  const double needed = std::max(options_.lead_pieces, options_.lead_share * std::abs(best) / weight);
+  const double spoken = std::abs(best) / weight;
+  const double needed = std::max(options_.lead_pieces, options_.lead_share * spoken),
+               to_see = std::max(options_.seen_pieces, options_.seen_share * spoken);
   verdict_.lead = (drift - null) / weight;
-  verdict_.share_seen = share_seen(best, needed * weight);
+  verdict_.share_seen = share_seen(best, to_see * weight);
   verdict_.is_checked = weight_ > kLeastWeight && verdict_.share_seen >= options_.least_share_seen;
-  const bool leads = weight_ > kLeastWeight && verdict_.lead > needed;
+  const bool fits = drift >= options_.fits_share * pieces_;
+  const bool leads = weight_ > kLeastWeight && verdict_.lead > needed && fits;
   led_for_s_ = leads ? led_for_s_ + elapsed : 0;
   verdict_.has_drifted = led_for_s_ >= options_.holds_s;
   verdict_.offset_in_bone_mm = nearest_of_best(drift > null ? Kind::Drift : Kind::Null, best);

@@ -24,7 +24,13 @@ struct DriftTestOptions {
   double drift_radius_mm = 0.7;  // from the reference on it is a drift
   // By how much the best drift leads before it counts, in pieces of outline or surface that speak for it, and
   // as a share of what speaks for the null.
-  double lead_pieces = 0.6, lead_share = 0.15;
+  double lead_pieces = 0.3, lead_share = 0.03;
+  // And what it comes to by piece, of 1: below it nothing fits, under blood or smoke, and what leads is
+  // chance.
+  double fits_share = 0.12;
+  // By how much a drift would have to lead for its direction to count as checked: by more, so that a view
+  // that is going is not called checked to its last.
+  double seen_pieces = 0.6, seen_share = 0.15;
   double holds_s = 0.3;  // that it leads without a break
   // Of all directions, a drift by 1 mm: the share that would be told, below which nothing is checked.
   double least_share_seen = 0.2;
@@ -71,6 +77,8 @@ class DriftTest {
   std::vector<Kind> kinds_;
   std::vector<std::uint8_t> at_1_mm_;  // from the reference, about
   Eigen::Vector3d reference_ = Eigen::Vector3d::Zero();
+  int frame_pieces_ = 0;
+  double pieces_ = 0;  // in the memory, of a frame
   double weight_ = 0, led_for_s_ = 0;
   DriftVerdict verdict_;
 };

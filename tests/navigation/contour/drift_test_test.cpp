@@ -79,6 +79,57 @@ TEST(DriftTest, WhatTheContourCannotSeeIsNoDrift) {
   EXPECT_LT(line.verdict().share_seen, ring.verdict().share_seen - 0.15);
 }
 
+// A piece of surface, seen along z, as it is found again of a bone that lies `drift` further: soft grain.
+ShiftMap piece_at(const Eigen::Vector3d& drift_mm, double peak = 0.6) {
+  constexpr double kWidth_mm = 0.7;
+  ShiftMap map;
+  float mean = 0;
+  for (int v = 0; v < kShiftSide; ++v) {
+    for (int u = 0; u < kShiftSide; ++u) {
+      const Eigen::Vector2d off_mm =
+          kPieceStep_mm * Eigen::Vector2d(u - kShifts, v - kShifts) - drift_mm.head<2>();
+      const auto likeness =
+          static_cast<float>(peak * std::exp(-off_mm.squaredNorm() / (2 * kWidth_mm * kWidth_mm)));
+      map.likeness[static_cast<std::size_t>(v * kShiftSide + u)] = likeness;
+      mean += likeness / (kShiftSide * kShiftSide);
+    }
+  }
+  for (float& likeness : map.likeness) likeness -= mean;
+  map.shift_per_mm(0, 0) = map.shift_per_mm(1, 1) = static_cast<float>(1 / kPieceStep_mm);
+  return map;
+}
+
+// Of a millimetre aslant about half is seen, and many pieces of soft grain lead by little: what they were
+// compared with is they themselves, so that little is enough. A third of a millimetre is still none.
+TEST(DriftTest, TellsASurfaceThatMovedAslantAndNotAThirdOfAMillimetre) {
+  const auto is_told = [](const Eigen::Vector3d& drift_mm) {
+    DriftTest test;
+    for (int i = 0; i < 120; ++i) {
+      for (int k = 0; k < 24; ++k) test.add(piece_at(i < 60 ? Eigen::Vector3d::Zero() : drift_mm));
+      const bool has_drifted = test.judge(kFrame_s).has_drifted;
+      EXPECT_FALSE(has_drifted && i < 60) << "frame " << i;
+      if (has_drifted) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(is_told({0.55, 0, 0.83}));
+  EXPECT_TRUE(is_told({0, -0.55, -0.83}));
+  EXPECT_FALSE(is_told({0.35, 0, 0}));
+  EXPECT_FALSE(is_told({0, 0.35, 0.9}));
+  EXPECT_FALSE(is_told({-0.25, 0.25, 0}));
+}
+
+// Under blood no place fits, and the best of them is one by chance.
+TEST(DriftTest, WhatFitsNowhereIsNoDrift) {
+  DriftTest test;
+  for (int i = 0; i < 180; ++i) {
+    for (int k = 0; k < 24; ++k)
+      test.add(i < 60 ? piece_at(Eigen::Vector3d::Zero()) : piece_at({0.9, 0, 0}, 0.12));
+    EXPECT_FALSE(test.judge(kFrame_s).has_drifted) << "frame " << i;
+  }
+  EXPECT_GT(test.verdict().lead, DriftTestOptions().lead_pieces);
+}
+
 TEST(DriftTest, NothingSeenIsNotChecked) {
   DriftTest test;
   for (int i = 0; i < 60; ++i) (void)test.judge(kFrame_s);
