@@ -197,6 +197,12 @@ bool explain(NavigateDisplay& display, const theatre::LiveState& live) {
       display.headline = "Too near the rim";
       display.detail = "How far off the pose is cannot be said there: bone marker and guide into the middle";
       break;
+    case GuidanceState::PictureLate:
+      tell(display, {"Picture late", live.trouble_words});
+      break;
+    case GuidanceState::PicturesSlow:
+      tell(display, {headline_of(theatre::SourceTrouble::Slow), live.trouble_words});
+      break;
     case GuidanceState::LensStale:
       display.headline = "Lens angle unknown";
       display.detail = trouble_of(result.lens).advice;
@@ -274,9 +280,7 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
     return display;
   }
   display.age_s = now_s - live->captured_s;
-  // Of a slow source each picture is too old to guide by before the next one: nothing of it guides, not even
-  // while it is young, so that nothing comes and goes ten times a second. That it has stopped is told by
-  // trouble.
+  // That a slow source has stopped is told by trouble.
   const bool is_slow = live->trouble == theatre::SourceTrouble::Slow;
   if (!theatre::is_of_now(display.age_s, live->trouble, live->stale_after_s)) {
     const bool is_short = display.age_s < 1;
@@ -303,8 +307,10 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   display.overlay_is_valid =
       result.camera_from_world.is_valid && result.intrinsics_are_known && !result.is_frozen && !is_revoked;
   // What was not confirmed may be of another knee: no number, and none of the plan's lines.
-  const bool may_guide =
-      standing == operation::Standing::Stands && state.time_out != operation::TimeOut::Due && !is_slow;
+  // Nor is there any where the pictures do not come in time, which the operation has judged.
+  const bool may_guide = standing == operation::Standing::Stands &&
+                         state.time_out != operation::TimeOut::Due &&
+                         state.timing == operation::PictureTiming::InTime;
   display.plan_is_valid = display.overlay_is_valid && may_guide;
   display.is_unverified = may_guide && state.verification == operation::Verification::Skipped;
   // An outside tracker's numbers hang on no picture, and nothing of theirs lies over one.
@@ -317,8 +323,9 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   if (display.guidance_is_valid) {
     display.guidance = result.guidance;
     display.grades = state.grades;
-  } else if (!explain(display, *live) && is_slow && standing == operation::Standing::Stands) {
-    tell(display, {headline_of(live->trouble), live->trouble_words});
+  } else if (!explain(display, *live) && state.timing == operation::PictureTiming::Slow &&
+             standing == operation::Standing::Stands) {
+    tell(display, {headline_of(theatre::SourceTrouble::Slow), live->trouble_words});
   }
   return display;
 }

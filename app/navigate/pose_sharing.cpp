@@ -44,16 +44,12 @@ void PoseSharing::tell(const theatre::LiveState& live) {
   const double now_s = theatre::LiveOperation::now_s();
   const NavigateDisplay display = display_of(&live, now_s);
   const bool is_new = live.picture != nullptr && live.picture != state_->last;
-  const bool is_slow = live.trouble == theatre::SourceTrouble::Slow;
   if (display.is_live && is_new) {
-    state_->server->publish(live.operation, utc_now_s() - (now_s - live.captured_s), live.picture,
-                            is_slow ? display.headline : "");
+    state_->server->publish(live.operation, utc_now_s() - (now_s - live.captured_s), live.picture);
   } else if (!display.is_live) {
     state_->server->tell({false, display.headline}, utc_now_s());
   } else {  // between its pictures
-    state_->server->tell(
-        is_slow ? openigtlink::Status{false, display.headline} : openigtlink::status_of(*live.operation),
-        utc_now_s(), live.operation);
+    state_->server->tell(openigtlink::status_of(*live.operation), utc_now_s(), live.operation);
   }
   state_->last = live.picture;
 }

@@ -190,6 +190,10 @@ std::string_view to_text(GuidanceState state) {
       return "picture torn";
     case GuidanceState::ErrorUnknown:
       return "error of the pose not known";
+    case GuidanceState::PictureLate:
+      return "picture too late";
+    case GuidanceState::PicturesSlow:
+      return "pictures come too slowly";
   }
   return "unknown";
 }

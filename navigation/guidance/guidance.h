@@ -33,8 +33,10 @@ enum class GuidanceState {
   GuideNotChecked,  // a live operation's guide is nominal and was not held against a known point yet
   PictureTorn,      // it is of two moments: its parts are not to be set against each other
   ErrorUnknown,     // a marker stands where nobody can say what the camera's error does to its pose
+  PictureLate,      // a live picture that was too old to guide by before its numbers were known
+  PicturesSlow,     // each live picture is too old to guide by before the next one is shown
 };
-inline constexpr GuidanceState kLastGuidanceState = GuidanceState::ErrorUnknown;  // records keep the number
+inline constexpr GuidanceState kLastGuidanceState = GuidanceState::PicturesSlow;  // records keep the number
 [[nodiscard]] std::string_view to_text(GuidanceState state);
 
 // A drill with a marker of its own, in this frame.

@@ -305,8 +305,8 @@ std::size_t IgtlServer::client_count() const {
 }
 
 void IgtlServer::publish(const operation::OperationStatePtr& state, double captured_utc_s,
-                         const camera::FramePtr& picture, const std::string& withheld) {
-  const Status status = withheld.empty() ? status_of(*state) : Status{false, withheld};
+                         const camera::FramePtr& picture) {
+  const Status status = status_of(*state);
   const std::lock_guard lock(state_->mutex);
   state_->let_ended_go();
   for (const auto& client : state_->clients) {

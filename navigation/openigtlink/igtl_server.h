@@ -36,10 +36,9 @@ class IgtlServer {
   [[nodiscard]] int port() const;
   [[nodiscard]] std::size_t client_count() const;
   // To all clients. Never waits for one; from any thread. captured_utc_s: when the picture was taken, seconds
-  // since 1970, as the messages carry it. picture: of that state, null when there is none. withheld: why the
-  // screen does not guide by it all the same; STATUS says that then.
+  // since 1970, as the messages carry it. picture: of that state, null when there is none.
   void publish(const operation::OperationStatePtr& state, double captured_utc_s,
-               const camera::FramePtr& picture = nullptr, const std::string& withheld = "");
+               const camera::FramePtr& picture = nullptr);
   // Without poses, while there is no picture that could be published, or between two. still: whose poses,
   // published before, hold; null: none does.
   void tell(const Status& status, double utc_s, const operation::OperationStatePtr& still = nullptr);

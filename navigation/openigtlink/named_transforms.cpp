@@ -90,7 +90,11 @@ Status status_of(const operation::OperationState& state) {
   const bool is_simulated = state.source != nullptr && state.source->kind == sources::SourceKind::Simulation;
   const std::string drill = drill_words(state);
   if (guidance.is_valid()) return {true, (is_simulated ? "OK, simulation" : "OK") + drill};
-  return {false, std::string(guidance::to_text(guidance.state)) + drill};
+  // No guide that is brought would help.
+  const bool is_slow = state.timing == operation::PictureTiming::Slow &&
+                       state.registration->in_force.standing == operation::Standing::Stands;
+  const auto why = is_slow ? guidance::GuidanceState::PicturesSlow : guidance.state;
+  return {false, std::string(guidance::to_text(why)) + drill};
 }
 
 }  // namespace arthronaut::openigtlink

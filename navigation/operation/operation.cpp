@@ -54,6 +54,7 @@ void Operation::start_source(const SourceSetup& source) {
   p.bone_watch.on_source(source.pipeline.calibration.image_size_px);
   p.frame = {};
   p.frame_count = 0;
+  p.timing = PictureTiming::InTime;
   p.note(JournalKind::SourceStarted);
   p.tip.clear();
   p.drilling.on_source(p.plan);
@@ -106,9 +107,11 @@ void Operation::end_source() {
   p.medium.on_source_end();
 }
 
-void Operation::process(const camera::Frame& frame, const tracker::TrackerPoses* outside) {
+void Operation::process(const camera::Frame& frame, const tracker::TrackerPoses* outside,
+                        const AskTiming& timing) {
   parts_->take_seen();
   parts_->pipeline->process(frame, parts_->frame, outside);
+  parts_->timing = timing ? timing(parts_->frame) : PictureTiming::InTime;
   parts_->check_medium();
   parts_->take_frame();
   parts_->watch_bone(frame);
@@ -118,6 +121,7 @@ void Operation::heed_pictures() { parts_->take_seen(); }
 
 void Operation::process_recorded(const pipeline::FrameResult& result) {
   parts_->frame = result;
+  parts_->timing = timing_of(result.guidance.state);
   parts_->take_frame();
 }
 
@@ -190,6 +194,7 @@ OperationStatePtr Operation::state() {
   state->source = p.source;
   state->frame_count = p.frame_count;
   state->frame = p.frame;
+  state->timing = p.timing;
   state->draws = p.draws;
   state->registration = p.registration_state();
   p.changed = false;

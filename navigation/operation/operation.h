@@ -25,6 +25,7 @@
 #include "navigation/operation/journal_entry.h"
 #include "navigation/operation/medium_look.h"
 #include "navigation/operation/operation_state.h"
+#include "navigation/operation/picture_timing.h"
 #include "navigation/operation/registration_work.h"
 #include "navigation/operation/seen_drift.h"
 
@@ -66,8 +67,10 @@ class Operation {
   // No more frames: nothing of the last one is valid any more. No effect without a source.
   void end_source();
   // Frames in order of time. Throws InvalidInput when the frame's size is not the camera's.
-  // Precondition: a source was started. outside: as NavigationPipeline::process() takes it.
-  void process(const camera::Frame& frame, const tracker::TrackerPoses* outside = nullptr);
+  // Precondition: a source was started. outside: as NavigationPipeline::process() takes it. timing: empty: in
+  // time, as what is not live always is.
+  void process(const camera::Frame& frame, const tracker::TrackerPoses* outside = nullptr,
+               const AskTiming& timing = {});
   // Never throws: what can't be done now changes nothing, or says so in the state.
   void apply(const Command& command);
   // The newest one that the registration has published; one that was taken in already changes nothing. Null

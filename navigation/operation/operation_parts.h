@@ -196,6 +196,7 @@ struct Operation::Parts {
   std::unique_ptr<pipeline::NavigationPipeline> pipeline;
   bool has_source = false, draws = false;
   pipeline::FrameResult frame;
+  PictureTiming timing = PictureTiming::InTime;  // of that frame
   std::int64_t frame_count = 0;
 
   OutcomePtr outcome;  // the newest that was taken in

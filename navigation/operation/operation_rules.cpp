@@ -109,8 +109,9 @@ void Operation::Parts::take_frame() {
   ++frame_count;
   ledger.set_time(frame.timestamp_ns);
   // A drill with a marker of its own is seen, and said, without the guide.
-  if ((frame.guidance.is_valid() || frame.guidance.drill) && time_out() == TimeOut::Due)
-    hide_guidance(guidance::GuidanceState::NotConfirmed);
+  const auto guides = [this] { return frame.guidance.is_valid() || frame.guidance.drill; };
+  if (guides() && time_out() == TimeOut::Due) hide_guidance(guidance::GuidanceState::NotConfirmed);
+  if (guides() && timing != PictureTiming::InTime) hide_guidance(hidden_as(timing));
   if (frame.guidance.is_valid() && !guide_check.state().may_guide()) hide_guide();
   const double time_s = static_cast<double>(frame.timestamp_ns) * 1e-9;
   guide_check.add(frame);

@@ -15,6 +15,7 @@
 #include "navigation/operation/command.h"
 #include "navigation/operation/guidance_grades.h"
 #include "navigation/operation/guide_check.h"
+#include "navigation/operation/picture_timing.h"
 #include "navigation/operation/registration_ledger.h"
 #include "navigation/operation/stroke_book.h"
 #include "navigation/pipeline/medium_check.h"
@@ -137,6 +138,7 @@ struct OperationState {
   std::int64_t frame_count = 0;  // of this source
   // The newest picture and everything known about it; meaningful when frame_count > 0.
   pipeline::FrameResult frame;
+  PictureTiming timing = PictureTiming::InTime;  // of that picture; what follows from it is in its guidance
   bool draws = false;
   RegistrationStatePtr registration = std::make_shared<const RegistrationState>();  // never null
   Verification verification = Verification::NotYet;
@@ -179,9 +181,10 @@ using OperationStatePtr = std::shared_ptr<const OperationState>;
 enum class Unverified { Nothing, Touches, ControlPoint, GuideCheck };
 [[nodiscard]] Unverified unverified_of(const OperationState& state);
 
-// Numbers over everything in the state but `contour` (what follows from that is in them): two runs with the
-// same numbers did the same. The first to the last bit of every pose and covariance of the frame; the second
-// of everything else: registration, touches, alarms, plan, steps. 64-bit FNV-1a over the binary values.
+// Numbers over everything in the state but `contour` and `timing` (what follows from them is in): two runs
+// with the same numbers did the same. The first to the last bit of every pose and covariance of the frame;
+// the second of everything else: registration, touches, alarms, plan, steps. 64-bit FNV-1a over the binary
+// values.
 [[nodiscard]] std::uint64_t digest_of_frame(const OperationState& state);
 [[nodiscard]] std::uint64_t digest_of_decisions(const OperationState& state);
 

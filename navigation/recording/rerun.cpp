@@ -118,7 +118,9 @@ void Rerun::play_rest() {
 }
 
 operation::OperationStatePtr Rerun::process(const camera::Frame& picture, const RecordedFrame& recorded) {
-  operation_.process(picture, &recorded.outside);
+  operation_.process(picture, &recorded.outside, [&](const pipeline::FrameResult&) {
+    return operation::timing_of(recorded.guidance.state);
+  });
   const operation::OperationStatePtr state = operation_.state();
   if (auto request = operation_.take_look_request())
     looks_[picture.index] = look_work_.look(std::move(*request), picture);

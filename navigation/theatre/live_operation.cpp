@@ -101,7 +101,9 @@ class Loop {
         run_(options.operation,
              registration_beside(options.bone, operation::work_options(options.operation),
                                  [&inbox] { inbox.post(FollowRegistration{}); }),
-             options.make_session_folder, looks_beside()) {}
+             options.make_session_folder, looks_beside()) {
+    run_.late_after(options.live_stale_after_s);
+  }
 
   void run() {
     publish();

@@ -60,6 +60,7 @@ void OperationRun::start(const TheatreSource& source) {
   theatre_source_ = source;
   source_ = std::move(opened);
   live_ = Live();
+  live_.watch = SourceWatch(1000 * late_after_s_);
   frame_state_ = nullptr;  // what is told before its first frame has no time of the source before it
   refusal_.words.clear();
   outside_.tracker = std::move(tracker);
@@ -147,7 +148,14 @@ OperationRun::Step OperationRun::step() {
     if (is_live && !next.has_ended && live_.watch.silence(source_->trouble(), taken_ns)) note_trouble();
     return {nullptr, next.has_ended};
   }
-  operation_.process(*next.frame, ask_tracker());
+  live_.taken_ns = taken_ns;
+  live_.is_news = false;
+  const tracker::TrackerPoses* const outside = ask_tracker();
+  if (is_live)
+    operation_.process(*next.frame, outside,
+                       [this, &frame = *next.frame](const auto& view) { return timing_of(frame, view); });
+  else
+    operation_.process(*next.frame, outside);
   frame_state_ = operation_.state();
   if (theatre_source_.watch) theatre_source_.watch(*frame_state_);
   measure(*next.frame, taken_ns);
@@ -158,8 +166,7 @@ OperationRun::Step OperationRun::step() {
       record.add_latency(
           {l.capture_ms, l.decode_ms, l.queue_ms, l.tracking_ms, l.operation_ms, l.guidance_ms});
     });
-    if (live_.watch.picture(frame_state_->frame, live_.newest.guidance_ms, taken_ns, source_->remark()))
-      note_trouble();
+    if (live_.is_news) note_trouble();
   }
   if (auto look = operation_.take_look_request()) looks_->post(std::move(*look), next.frame);
   pass_on();
@@ -190,6 +197,20 @@ void OperationRun::note_tracker() {
   write([&](recording::OperationRecord& record) {
     record.add_event(recording::kTrackerTroubleEvent, outside_.trouble, at_ns);
   });
+}
+
+// Of a picture whose numbers are just known. What is shown is as old as the oldest thing in it.
+operation::PictureTiming OperationRun::timing_of(const camera::Frame& frame,
+                                                 const pipeline::PictureObservation& view) {
+  const std::int64_t now_ns = sources::steady_now_ns();
+  const bool is_dated = frame.captured_ns > 0 && now_ns >= frame.captured_ns;
+  const double guidance_ms = is_dated ? static_cast<double>(now_ns - frame.captured_ns) * 1e-6 : -1;
+  live_.is_news = live_.watch.picture(view, guidance_ms, live_.taken_ns, source_->remark());
+  if (live_.watch.trouble() == SourceTrouble::Slow) return operation::PictureTiming::Slow;
+  const double now_s = static_cast<double>(now_ns) * 1e-9;
+  const double oldest_s = oldest_pose_s(is_dated ? static_cast<double>(frame.captured_ns) * 1e-9 : now_s);
+  const bool is_late = now_s - oldest_s > late_after_s_ || guidance_ms > 1000 * late_after_s_;
+  return is_late ? operation::PictureTiming::Late : operation::PictureTiming::InTime;
 }
 
 void OperationRun::measure(const camera::Frame& frame, std::int64_t taken_ns) {

@@ -63,6 +63,8 @@ class OperationRun {
   // throws: there is nothing to be done then but end_source().
   // Precondition: has_source().
   [[nodiscard]] Step step();
+  // A live picture older than that when its numbers are known guides nobody; from the next source on.
+  void late_after(double age_s) { late_after_s_ = age_s; }
   // Ends the source and its record. A disk that fails is told by record_trouble().
   void end_source();
 
@@ -115,6 +117,8 @@ class OperationRun {
   void begin_record();
   [[nodiscard]] const tracker::TrackerPoses* ask_tracker();
   void note_tracker();
+  [[nodiscard]] operation::PictureTiming timing_of(const camera::Frame& frame,
+                                                   const pipeline::PictureObservation& view);
   void measure(const camera::Frame& frame, std::int64_t taken_ns);
   [[nodiscard]] double picture_age_ms() const;  // below 0 where nobody knows, or no live source runs
   void note_trouble();
@@ -150,7 +154,10 @@ class OperationRun {
     LatencyMeter meter;
     FrameLatency newest;
     std::int64_t captured_ns = 0;  // of the newest picture, on the steady clock; 0: nobody knows
+    std::int64_t taken_ns = 0;     // when that was taken up
+    bool is_news = false;          // what is wrong with the source has changed with it
   } live_;
+  double late_after_s_ = kLateAfter_s;
 };
 
 }  // namespace arthronaut::theatre

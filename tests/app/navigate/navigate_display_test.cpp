@@ -39,8 +39,8 @@ TEST(NavigateDisplay, EveryInvalidStateHidesTheNumbersAndSaysWhy) {
   for (const GuidanceState state :
        {GuidanceState::NoPlan, GuidanceState::NoRegistration, GuidanceState::RegistrationUnreliable,
         GuidanceState::WorldMarkerLost, GuidanceState::GuideLost, GuidanceState::LensStale,
-        GuidanceState::Stale, GuidanceState::NoGuide, GuidanceState::PictureTorn,
-        GuidanceState::ErrorUnknown}) {
+        GuidanceState::Stale, GuidanceState::NoGuide, GuidanceState::PictureTorn, GuidanceState::ErrorUnknown,
+        GuidanceState::PictureLate, GuidanceState::PicturesSlow}) {
     const NavigateDisplay display =
         display_after([&](Shown& shown) { shown.operation.frame.guidance.state = state; });
     EXPECT_FALSE(display.guidance_is_valid) << to_text(state);
@@ -301,11 +301,13 @@ TEST(NavigateDisplay, Hazard3ASlowSourceHidesGuidanceSteadily) {
       return display_after([&](Shown& shown) {
         shown.live.trouble = theatre::SourceTrouble::Slow;
         shown.live.trouble_words = "10 a second are too few";
+        shown.operation.timing = operation::PictureTiming::Slow;
+        shown.operation.frame.guidance.state = GuidanceState::PicturesSlow;
         shown.live.captured_s = kNow_s - age_s;
         change(shown);
       });
     };
-    const NavigateDisplay display = slow([](Shown& s) { s.operation.frame.guidance.drill.emplace(); });
+    const NavigateDisplay display = slow([](Shown&) {});
     EXPECT_FALSE(display.guidance_is_valid || display.plan_is_valid || display.tip_is_valid || display.drill);
     EXPECT_EQ(display.is_live && display.overlay_is_valid, age_s < 0.3) << "no touch is taken of older ones";
     EXPECT_EQ(display.headline, "Pictures come too slowly");

@@ -136,13 +136,20 @@ TEST_F(PoseSharingTest, Hazard49APoseThatWasSentIsTakenBack) {
 TEST_F(PoseSharingTest, Hazard3StatusSaysThatASlowSourceDoesNotGuide) {
   theatre::LiveState live = running(bones::BoneKind::Femur);
   live.trouble = theatre::SourceTrouble::Slow;
+  operation::OperationState state = *live.operation;
+  state.timing = operation::PictureTiming::Slow;
+  operation::RegistrationState registration;
+  registration.in_force.standing = operation::Standing::Stands;
+  state.registration = std::make_shared<const operation::RegistrationState>(registration);
+  live.operation = std::make_shared<const operation::OperationState>(state);
   sharing_.tell(live);
   const std::vector<std::string> heard = listener_.until_status();
   EXPECT_NE(std::find(heard.begin(), heard.end(), "WorldFemur"), heard.end());
   const NavigateDisplay display = display_of(&live, theatre::LiveOperation::now_s());
-  EXPECT_EQ(heard.back(), "STATUS: " + display.headline);
+  EXPECT_EQ(display.headline, "Pictures come too slowly");
+  EXPECT_EQ(heard.back(), "STATUS: pictures come too slowly");
   sharing_.tell(live);  // no other picture yet
-  EXPECT_EQ(listener_.until_status(), std::vector<std::string>{"STATUS: " + display.headline});
+  EXPECT_EQ(listener_.until_status(), std::vector<std::string>{"STATUS: pictures come too slowly"});
 }
 
 // Of two operations the one that gives pictures is told: what becomes of the other one is no news.

@@ -9,6 +9,7 @@
 #include "navigation/recording/recorded_pictures.h"
 #include "navigation/recording/replay.h"
 #include "navigation/recording/session_database.h"
+#include "navigation/sources/capture_time.h"
 #include "planning/files/atomic_file.h"
 #include "tests/navigation/simulator/phantom_options.h"
 #include "tests/navigation/theatre/theatre_sources.h"
@@ -340,6 +341,82 @@ TEST_F(ReplayedOperation, EveryNumberAndDecisionThatDiffersIsToldOnAnotherBuild)
   database.execute(
       "INSERT INTO events(after_frame, timestamp_ns, kind, text) VALUES(3, 0, 'alarm', 'moved')");
   EXPECT_EQ(whats_of(), changed);
+}
+
+// The simulator's drill guide at its plan, as a live source whose pictures are so old when they are taken up.
+class AgedOperation : public simulator::SimulatedOperation {
+ public:
+  AgedOperation(const simulator::SimulationOptions& options, std::int64_t age_ns)
+      : SimulatedOperation(options, simulator::Phase::Drill), age_ns_(age_ns) {}
+  [[nodiscard]] camera::FramePtr next() override {
+    const camera::FramePtr made = SimulatedOperation::next();
+    if (made == nullptr) return nullptr;
+    auto frame = std::make_shared<camera::Frame>(*made);
+    frame->decoded_ns = sources::steady_now_ns();
+    frame->captured_ns = frame->received_ns = frame->decoded_ns - age_ns_;
+    return frame;
+  }
+
+ private:
+  std::int64_t age_ns_;
+};
+
+// What the screen does not show, since pictures come too slowly or too late, is in no record, is no evidence
+// of a drilled tunnel, and is hidden again when the record is run again.
+TEST_F(ReplayedOperation, Hazard3WhatCameTooLateToBeShownIsRecordedAsHidden) {
+  constexpr std::int64_t kMinute_ns = 60'000'000'000;  // ahead: no busy machine makes them old
+  constexpr int kFrames = 30;
+  simulator::SimulationOptions options = simulator::phantom_options();
+  options.frame_count = kFrames;
+  struct Kind {
+    std::string name;
+    std::int64_t age_ns;
+    bool is_slow, guides;
+  };
+  int session = 0;
+  for (const Kind& kind : {Kind{"in time", -kMinute_ns, false, true}, Kind{"slow", -kMinute_ns, true, false},
+                           Kind{"late", kMinute_ns, false, false}}) {
+    SCOPED_TRACE(kind.name);
+    TheatreSource source;
+    source.setup.kind = sources::SourceKind::Live;
+    source.setup.pipeline.calibration = options.camera;
+    source.setup.pipeline.tools = options.tools;
+    source.setup.pipeline.refractive_index = options.refractive_index;
+    source.open = [=] { return std::make_unique<AgedOperation>(options, kind.age_ns); };
+    {
+      OperationRun run(setup_, test::at_once(setup_), folders());
+      run.start(source);
+      run.keep_video(true);
+      run.apply(operation::ConfirmTimeOut{});
+      run.apply(operation::TrustGuide{});
+      operation::GiveRegistration known =
+          test::true_registration(trial_, operation::provenance_of(setup_, source.setup));
+      known.registration.marker_from_bone =
+          simulator::SimulatedOperation(options, simulator::Phase::Drill).marker_from_bone();
+      run.apply(known);
+      const auto draw_too_late = [&] { run.shown_until(120, sources::steady_now_ns()); };
+      for (int i = 0; kind.is_slow && i < 3; ++i) draw_too_late();
+      long guided = 0;
+      for (OperationRun::Step step; !step.has_ended;) {
+        if (kind.is_slow) draw_too_late();
+        step = run.step();
+        if (step.picture != nullptr) guided += run.state_of_frame()->frame.guidance.is_valid() ? 1 : 0;
+      }
+      EXPECT_EQ(guided > 5, kind.guides) << guided;
+      EXPECT_EQ(guided == 0, !kind.guides) << guided;
+      EXPECT_EQ(run.state()->verification == operation::Verification::Skipped, kind.guides)
+          << "it guided nobody";
+      run.end_source();
+    }
+    const std::string name = "session" + std::to_string(++session);
+    long valid = 0;
+    const recording::RecordedSession recorded(folder_ / name);
+    for (const recording::RecordedFrame& frame : recorded.frames())
+      valid += frame.guidance.is_valid() ? 1 : 0;
+    EXPECT_EQ(valid > 5, kind.guides) << valid;
+    EXPECT_EQ(valid == 0, !kind.guides) << valid;
+    expect_replays(name, static_cast<long>(recorded.frames().size()));
+  }
 }
 
 // Second looks that come when they come, as from a thread: each is handed out so many frames after it was
