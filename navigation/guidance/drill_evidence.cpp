@@ -45,6 +45,8 @@ std::string_view to_text(EvidenceOutcome outcome) {
       return "guide or drill stood at the planned entry too shortly";
     case EvidenceOutcome::Seen:
       return "seen";
+    case EvidenceOutcome::NoPicture:
+      return "no picture came when it was said";
   }
   return "unknown";
 }

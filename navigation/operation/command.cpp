@@ -75,6 +75,10 @@ void add(Json& json, const GiveRegistration& give) {
 void add(Json& json, const ConfirmTimeOut& time_out) {
   json["patient_was_shown"] = time_out.patient_was_shown;
 }
+// Where pictures came, nothing: such commands stay as they were.
+void add(Json& json, const TunnelDrilled& drilled) {
+  if (drilled.without_picture_s > 0) json["without_picture_s"] = drilled.without_picture_s;
+}
 void add(Json& json, const ResumeOperation& resume) {
   json["session"] = resume.session;
   json["of"] = registration::to_json(resume.of);
@@ -206,6 +210,8 @@ Command read_command(const std::string& text, const std::string& name) {
     choose->entry = static_cast<std::size_t>(json.integer("entry"));
   }
   if (auto* stop = std::get_if<ReadDepthStop>(&command)) stop->depth_mm = json.number("depth_mm");
+  if (auto* drilled = std::get_if<TunnelDrilled>(&command); drilled && json.has("without_picture_s"))
+    drilled->without_picture_s = json.number("without_picture_s");
   if (std::holds_alternative<OfferPlan>(command))
     command = OfferPlan{plan_from(json), moves_target_from(json)};
   if (auto* time_out = std::get_if<ConfirmTimeOut>(&command))

@@ -46,17 +46,19 @@ void Drilling::add(const guidance::GuidanceNumbers& guidance, std::int64_t now_n
 
 // That a tunnel was drilled is the surgeon's word; where it runs is what was seen meanwhile, or not known.
 std::optional<JournalEntry> Drilling::say_drilled(const std::optional<PlannedTunnel>& plan,
-                                                  const geometry::Surface* surface) {
-  const guidance::DrillEvidenceSummary seen =
-      evidence_ ? evidence_->summary() : guidance::DrillEvidenceSummary();
+                                                  const geometry::Surface* surface,
+                                                  double without_picture_s) {
+  constexpr double kNoPicture_s = 1;  // less is a pause of a source, and no hand drills in it
+  guidance::DrillEvidenceSummary seen = evidence_ ? evidence_->summary() : guidance::DrillEvidenceSummary();
+  if (without_picture_s > kNoPicture_s) seen.outcome = guidance::EvidenceOutcome::NoPicture;
   if (said_.tunnel && !seen.is_usable()) return std::nullopt;
   said_ = {};
   said_.outcome = DrilledState::Outcome::NoEvidence;
   if (!evidence_) return std::nullopt;
   said_.evidence = seen.outcome;
   if (!seen.is_usable())
-    return entry_of(JournalKind::Note,
-                    "drilled, by the surgeon's word; " + std::string(guidance::to_text(seen.outcome)));
+    return entry_of(JournalKind::DrilledByWord, tunnels::name_of(plan->tunnel.key()) + ": " +
+                                                    std::string(guidance::to_text(seen.outcome)));
   AchievedTunnel tunnel;
   tunnel.planned = plan->tunnel;
   tunnel.measured = plan->tunnel;  // bone and diameter: the drill is the planned one

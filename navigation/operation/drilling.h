@@ -40,10 +40,12 @@ class Drilling {
   void read_depth_stop(std::optional<double> depth_mm) { depth_stop_mm_ = depth_mm; }
   // The surgeon's word that it is drilled: recorded where enough was seen meanwhile. Said once more, with
   // nothing new seen, the tunnel that is recorded stays as it is. surface: null: the entry stays where the
-  // poses were compared. What the journal is to say; empty: nothing. Precondition: on_plan() or on_source()
-  // was told of `plan` last.
+  // poses were compared. without_picture_s: see TunnelDrilled; what was seen before stays for a word that is
+  // said while pictures come again. What the journal is to say; empty: nothing. Precondition: on_plan() or
+  // on_source() was told of `plan` last.
   [[nodiscard]] std::optional<JournalEntry> say_drilled(const std::optional<PlannedTunnel>& plan,
-                                                        const geometry::Surface* surface);
+                                                        const geometry::Surface* surface,
+                                                        double without_picture_s = 0);
   // And that it is not: said too early, maybe while another source ran.
   [[nodiscard]] std::optional<JournalEntry> take_back(bool is_planned);
 

@@ -37,13 +37,15 @@ enum class JournalKind {
   GuideChecked,      // text: how far its tip was off, or that nobody checked it
   Plan,              // in force from now on: plan, or none
   Drilled,           // achieved is set
+  DrilledByWord,     // without poses; text: "femur AM: " and why
   DrilledTakenBack,  // the one of before; achieved is set where a tunnel was recorded
   Note,
 };
 
 struct JournalEntry {
   std::int64_t after_frame = -1;  // index of the last frame before it; -1: none of this source yet
-  std::int64_t timestamp_ns = 0;  // of that frame
+  std::int64_t timestamp_ns =
+      0;  // of that frame; the operation has no clock, and whoever has one may date it
   JournalKind kind = JournalKind::Note;
   std::string text;
   RegistrationPtr registration;  // with RegistrationInForce

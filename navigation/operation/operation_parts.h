@@ -170,8 +170,9 @@ struct Operation::Parts {
   void apply(const MarkerPlacedAnew&) { find_anew("the world marker was placed anew"); }
   void apply(const MarkerOut&);
   void apply(const ReadDepthStop& stop) { drilling.read_depth_stop(stop.depth_mm); }
-  void apply(const TunnelDrilled&) {
-    if (auto entry = drilling.say_drilled(plan, setup.surface.get())) note(std::move(*entry));
+  void apply(const TunnelDrilled& drilled) {
+    if (auto entry = drilling.say_drilled(plan, setup.surface.get(), drilled.without_picture_s))
+      note(std::move(*entry));
   }
   void apply(const TakeBackDrilled&) {
     marker_is_out = false;  // it is wanted again

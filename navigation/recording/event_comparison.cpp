@@ -29,6 +29,7 @@ constexpr std::array kDecisions = {kAlarmEvent,
                                    kRegistrationEvent,
                                    kGivenRegistrationEvent,
                                    kDrilledEvent,
+                                   kDrilledByWordEvent,
                                    kDrilledTakenBackEvent};
 
 struct Decision {

@@ -79,6 +79,8 @@ std::string_view kind_of(JournalKind kind) {
       return kPlanEvent;
     case JournalKind::Drilled:
       return kDrilledEvent;
+    case JournalKind::DrilledByWord:
+      return kDrilledByWordEvent;
     case JournalKind::DrilledTakenBack:
       return kDrilledTakenBackEvent;
     case JournalKind::Note:

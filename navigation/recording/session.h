@@ -98,6 +98,8 @@ inline constexpr std::string_view kBoneLooksEvent = "bone looks";        // text
 inline constexpr std::string_view kMediumWrongEvent = "medium wrong";    // text: operation::SeenMedium
 inline constexpr std::string_view kGuideCheckedEvent = "guide checked";  // text: how far its tip was off
 inline constexpr std::string_view kDrilledEvent = "tunnel drilled";      // text: the file that holds it
+inline constexpr std::string_view kDrilledByWordEvent =
+    "tunnel drilled by word";  // no pose shows where; text: "femur AM: " and why
 inline constexpr std::string_view kDrilledTakenBackEvent =
     "tunnel not drilled";  // text: the file that held it; empty: it was drilled by word alone
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier

@@ -26,6 +26,7 @@ constexpr std::array kNames{
     Name{kVoidEvent, "registration void", Gravity::Alarm, true, false},
     Name{kTimeOutConfirmedEvent, "time-out confirmed", Gravity::Step, true, false},
     Name{kDrilledEvent, "tunnel drilled", Gravity::Step, true, true},
+    Name{kDrilledByWordEvent, "tunnel drilled, by word alone", Gravity::Step, true, false},
     Name{kDrilledTakenBackEvent, "said too early: not drilled", Gravity::Step, true, true},
     Name{kDroppedPicturesEvent, "pictures dropped", Gravity::Alarm, false, false},
     Name{kVideoStoppedEvent, "video stopped", Gravity::Alarm, false, false},

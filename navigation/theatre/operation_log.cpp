@@ -65,6 +65,8 @@ std::string what_of(const JournalEntry& entry) {
       return entry.plan ? "plan in force" : "no plan in force";
     case JournalKind::Drilled:
       return "tunnel drilled";
+    case JournalKind::DrilledByWord:
+      return "tunnel drilled, by the surgeon's word alone";
     case JournalKind::DrilledTakenBack:
       return "tunnel not drilled after all";
     case JournalKind::Note:

@@ -102,14 +102,16 @@ void OperationRun::write(const What& what) {
 }
 
 // What the operation asks for and what it has to tell.
-void OperationRun::pass_on() {
+void OperationRun::pass_on(std::int64_t since_picture_ns) {
   auto requests = operation_.take_requests();
   if (!requests.empty()) registration_->post(std::move(requests));
   auto journal = operation_.take_journal();
   if (journal.empty()) return;
   log_entries(journal);
-  for (operation::JournalEntry& entry : journal)
+  for (operation::JournalEntry& entry : journal) {
     if (entry.achieved && theatre_source_.truth) entry.achieved->truth = theatre_source_.truth();
+    entry.timestamp_ns += since_picture_ns;
+  }
   if (record_ != nullptr) return write([&](recording::OperationRecord& record) { record.add(journal); });
   // Before the first source: it goes to the record of that one.
   if (make_session_folder_ && session_folder_.empty() && record_trouble_.empty())
@@ -145,7 +147,8 @@ OperationRun::Step OperationRun::step() {
   const std::int64_t taken_ns = sources::steady_now_ns();
   (void)follow_registration();
   if (next.frame == nullptr) {
-    if (is_live && !next.has_ended && live_.watch.silence(source_->trouble(), taken_ns)) note_trouble();
+    if (is_live && !next.has_ended && live_.watch.silence(source_->trouble(), taken_ns))
+      note_trouble(silence_ns());
     return {nullptr, next.has_ended};
   }
   live_.taken_ns = taken_ns;
@@ -231,8 +234,9 @@ void OperationRun::measure(const camera::Frame& frame, std::int64_t taken_ns) {
 }
 
 // In the record and the log, when it begins, changes and ends.
-void OperationRun::note_trouble() {
-  const std::int64_t at_ns = frame_state_ != nullptr ? frame_state_->frame.timestamp_ns : 0;
+void OperationRun::note_trouble(std::int64_t since_picture_ns) {
+  const std::int64_t at_ns =
+      frame_state_ != nullptr ? frame_state_->frame.timestamp_ns + since_picture_ns : 0;
   if (live_.watch.words().empty())
     log::info("source: all is well again");
   else
@@ -248,13 +252,26 @@ double OperationRun::picture_age_ms() const {
   return static_cast<double>(sources::steady_now_ns() - live_.captured_ns) * 1e-6;
 }
 
-void OperationRun::apply(const operation::Command& command) {
+std::int64_t OperationRun::silence_ns() const {
+  if (theatre_source_.setup.kind != sources::SourceKind::Live || live_.taken_ns <= 0) return 0;
+  const std::int64_t since_ns =
+      sources::steady_now_ns() - (live_.captured_ns > 0 ? live_.captured_ns : live_.taken_ns);
+  return since_ns > static_cast<std::int64_t>(1e6 * kHandRests_ms) ? since_ns : 0;
+}
+
+void OperationRun::apply(const operation::Command& given) {
+  const std::int64_t since_picture_ns = silence_ns();
+  operation::Command command = given;
+  // The pictures of one that has ended showed what they showed; of one that is silent nobody knows.
+  if (auto* const drilled = std::get_if<operation::TunnelDrilled>(&command); drilled && has_source())
+    drilled->without_picture_s = static_cast<double>(since_picture_ns) * 1e-9;
   if (const double age_ms = picture_age_ms(); age_ms > kHandRests_ms && is_of_this_moment(command)) {
     const std::string text = files::format("%s: the newest picture is %.0f ms old",
                                            std::string(operation::name_of(command)).c_str(), age_ms);
     log::warning("refused: " + text);
     write([&](recording::OperationRecord& record) {
-      record.add_event(recording::kCommandRefusedEvent, text, frame_state_->frame.timestamp_ns);
+      record.add_event(recording::kCommandRefusedEvent, text,
+                       frame_state_->frame.timestamp_ns + since_picture_ns);
     });
     ++refusal_.count;
     refusal_.words = files::format("%s: picture %.1f s old",
@@ -270,7 +287,7 @@ void OperationRun::apply(const operation::Command& command) {
   if (may_be_refused && operation_.state()->touch_refusal != operation::TouchRefusal::None) ++refusal_.count;
   if (resume != nullptr && !had_resumed && operation_.state()->resumed != nullptr)
     continues_ = resume->session;
-  pass_on();
+  pass_on(since_picture_ns);
 }
 
 void OperationRun::end_source() {

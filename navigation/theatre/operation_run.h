@@ -70,7 +70,8 @@ class OperationRun {
 
   // What is of this moment (a stroke begins, a tip rests) is not done where the newest picture of a live
   // source is older than a hand rests before it presses: it would be taken where the probe was, not where it
-  // is. That is recorded, and told by refusal().
+  // is. That is recorded, and told by refusal(). What is given while no picture of a live source comes, or
+  // after it, is recorded with its own time, on the pictures' clock.
   void apply(const operation::Command& command);
   // Takes in what the registration has found and what was seen of the medium meanwhile; true when the first
   // is something new. step() does it too.
@@ -121,10 +122,12 @@ class OperationRun {
                                                    const pipeline::PictureObservation& view);
   void measure(const camera::Frame& frame, std::int64_t taken_ns);
   [[nodiscard]] double picture_age_ms() const;  // below 0 where nobody knows, or no live source runs
-  void note_trouble();
+  // Since the newest picture of the live source that runs, or ran last, for as long as none comes; else 0.
+  [[nodiscard]] std::int64_t silence_ns() const;
+  void note_trouble(std::int64_t since_picture_ns = 0);
   template <typename What>
   void write(const What& what);  // what(record), while there is one; its failure is told and ends it
-  void pass_on();
+  void pass_on(std::int64_t since_picture_ns = 0);
   [[nodiscard]] recording::KeepVideo way_to_keep() const;
 
   operation::Operation operation_;

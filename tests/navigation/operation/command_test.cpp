@@ -69,6 +69,7 @@ const std::vector<Command>& all_commands() {
                                              MarkerPlacedAnew{},
                                              ReadDepthStop{1.0 / 3},
                                              TunnelDrilled{},
+                                             TunnelDrilled{29.25},
                                              TakeBackDrilled{},
                                              MarkerOut{},
                                              given(),

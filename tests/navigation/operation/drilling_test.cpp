@@ -79,6 +79,21 @@ TEST_F(DrillingTest, ThroughTheWrongMediumNothingWasSeen) {
   EXPECT_TRUE(has_read() && has_said());
 }
 
+// Where the guide stood before the pictures stayed away tells nothing of what was drilled since.
+TEST_F(DrillingTest, Hazard29SaidWithoutAPictureItRestsOnNoPose) {
+  see_guide();
+  const auto entry = drilling_.say_drilled(plan_, nullptr, 29);
+  ASSERT_TRUE(entry);
+  EXPECT_EQ(entry->kind, JournalKind::DrilledByWord);
+  EXPECT_FALSE(entry->achieved);
+  EXPECT_EQ(entry->text, "femur: no picture came when it was said");
+  EXPECT_EQ(drilling_.state().outcome, DrilledState::Outcome::NoEvidence);
+  EXPECT_EQ(drilling_.state().evidence, guidance::EvidenceOutcome::NoPicture);
+  // A pause of the source is no silence; nor is what was seen gone.
+  ASSERT_TRUE(drilling_.say_drilled(plan_, nullptr, 0.5));
+  EXPECT_TRUE(has_said());
+}
+
 TEST_F(DrillingTest, AReadingIsOfOneHole) {
   drilling_.read_depth_stop(24);
   see_guide();

@@ -134,6 +134,41 @@ TEST_F(OperationRunTest, Hazard3NoTouchAndNoStrokeIsTakenOfAnOldPicture) {
   EXPECT_EQ(refused[0].find("touch: the newest picture is "), 0U) << refused[0];
 }
 
+// What is pressed while no picture comes, and after the end of the source, has its own time in the record,
+// and a tunnel that is said to be drilled while none comes has no pose to rest on.
+TEST_F(OperationRunTest, Hazard29WhatIsSaidWithoutAPictureIsDatedWhenItIsSaid) {
+  const fs::path session = folder_ / "session";
+  fs::create_directory(session);
+  OperationRun run(setup_, test::at_once(setup_), [&] { return session; });
+  TheatreSource source = test::plain_source(0, false, sources::SourceKind::Live);
+  source.open = [] { return std::make_unique<AgedSource>(6, -60'000, 29'000); };
+  run.start(source);
+  while (run.step().picture->index < 4) {
+  }
+  run.apply(operation::ReadDepthStop{20});
+  while (run.step().picture->index < 5) {
+  }
+  const std::int64_t last_ns = run.state_of_frame()->frame.timestamp_ns;
+  run.apply(operation::TunnelDrilled{});
+  EXPECT_EQ(run.state()->drilled.evidence, guidance::EvidenceOutcome::NoPicture);
+  run.end_source();
+  run.apply(operation::ReadDepthStop{21});
+  std::vector<std::int64_t> said_ns;
+  const recording::RecordedSession recorded(session);
+  for (const recording::SessionEvent& event : recorded.events())
+    if (event.kind == recording::kCommandEvent) said_ns.push_back(event.timestamp_ns);
+  ASSERT_EQ(said_ns.size(), 3U);
+  EXPECT_LT(said_ns[0], last_ns) << "of the picture that was there";
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  EXPECT_NEAR(static_cast<double>(said_ns[1] - last_ns) / kSecond_ns, 29, 5);
+  EXPECT_GE(said_ns[2], said_ns[1]);
+  const auto word = std::find_if(
+      recorded.events().begin(), recorded.events().end(),
+      [](const recording::SessionEvent& event) { return event.kind == recording::kDrilledByWordEvent; });
+  ASSERT_NE(word, recorded.events().end());
+  EXPECT_EQ(word->timestamp_ns, said_ns[1]);
+}
+
 // Once the source has ended, that there is none is the reason, not how old its last picture is.
 TEST_F(OperationRunTest, AfterALiveSourceATouchIsRefusedForWantOfOne) {
   OperationRun run(setup_, test::at_once(setup_), {});

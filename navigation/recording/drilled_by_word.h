@@ -1,0 +1,24 @@
+// Which tunnels a session says were drilled without a pose that shows where they run: the surgeon's word is
+// all that there is of them, and no number.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "navigation/recording/session.h"
+
+namespace arthronaut::recording {
+
+struct DrilledByWord {
+  std::string tunnel;             // as tunnels::name_of() names it
+  std::string why;                // no pose shows it
+  std::int64_t timestamp_ns = 0;  // when it was said
+};
+
+// In the order in which it was said. Not among them: what was taken back, and what was recorded by its poses
+// since. Records of before there was this event have none.
+[[nodiscard]] std::vector<DrilledByWord> drilled_by_word(const std::vector<SessionEvent>& events,
+                                                         bones::BoneKind bone);
+
+}  // namespace arthronaut::recording
