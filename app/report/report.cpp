@@ -132,7 +132,8 @@ class Report {
   void navigate_page();
   void registration_section(const registration::RegistrationSummary& registration);
   void time_line_section(const recording::RecordedSession& session);
-  void result_section(const operation::AchievedTunnel& achieved);
+  // is_own: drilled in the session that is told of.
+  void result_section(const operation::AchievedTunnel& achieved, bool is_own);
   void result_pictures();
 
   const Content& content_;
@@ -230,10 +231,8 @@ void Report::time_line_section(const recording::RecordedSession& session) {
     pages_.sentence("NOT READABLE: " + content_.marks_problem, {.ink = kWarning});
 }
 
-void Report::result_section(const operation::AchievedTunnel& achieved) {
-  pages_.heading(achieved.planned.bundle == norms::Bundle::Whole
-                     ? "Planned against achieved"
-                     : "Planned against achieved: " + tunnels::name_of(achieved.planned.key()));
+void Report::result_section(const operation::AchievedTunnel& achieved, bool is_own) {
+  pages_.heading("Planned against achieved: " + tunnels::name_of(achieved.planned.key()));
   if (const std::string since = changed_since(content_, achieved.planned); !since.empty())
     pages_.sentence(since, {.bold = true, .ink = kWarning});
   const auto planned_measured = operation::compare(achieved.planned, achieved.measured);
@@ -262,7 +261,8 @@ void Report::result_section(const operation::AchievedTunnel& achieved) {
       "Depth reached " + (achieved.depth_mm ? number(*achieved.depth_mm, " mm") : "not known") +
           ". Predicted error of these figures, one sigma: " + number(achieved.sigma_offset_mm, " mm", 2) +
           ", " + number(achieved.sigma_angle_deg, "°", 2) + ". Median of " +
-          std::to_string(achieved.pose_count) + " poses of the guide while drilling.",
+          std::to_string(achieved.pose_count) + " poses of guide or drill at the planned entry" +
+          (is_own ? seen_and_said(*content_.session, achieved) : "") + ".",
       {.size_pt = 8.5, .ink = kGray});
 }
 
@@ -315,14 +315,16 @@ void Report::navigate_page() {
     pages_.sentence("NOT READABLE: the registration: " + content_.registration_problem,
                     {.bold = true, .ink = kWarning});
   time_line_section(session);
-  for (const operation::AchievedTunnel& achieved : content_.achieved) result_section(achieved);
+  for (const operation::AchievedTunnel& achieved : content_.achieved) result_section(achieved, true);
   for (const Content::Earlier& earlier : content_.earlier) {
-    result_section(earlier.achieved);
+    result_section(earlier.achieved, false);
     pages_.sentence("Drilled in " +
                         (earlier.session.empty() ? "an earlier session" : "the session " + earlier.session) +
                         ".",
                     {.size_pt = 8.5, .ink = kGray});
   }
+  for (const Content::ByWord& said : content_.by_word)
+    pages_.sentence(in_words(said), {.bold = true, .ink = kWarning});
   draw_postop_section(pages_, content_);
 }
 

@@ -11,7 +11,9 @@
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/recording/cut_short.h"
+#include "navigation/recording/drilled_by_word.h"
 #include "navigation/recording/recording_lock.h"
+#include "navigation/recording/session_overview.h"
 #include "navigation/registration/provenance.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/files/format.h"
@@ -99,26 +101,55 @@ bool is_of_another_surface(const Content& content) {
          recording::is_of_another_surface(header, bones::mesh_sha256(bone->second.mesh));
 }
 
-// The newest of each bundle that is planned and not among the session's own.
+// Whether a tunnel that was drilled then, in an earlier session, is a part of what `content` tells of.
+bool belongs_to(const Content& content, const recording::SessionHeader& then) {
+  const recording::SessionHeader& now = content.session->header();
+  if (then.source_kind != now.source_kind) return false;
+  if (then.bone == now.bone) return !recording::is_of_another_surface(then, now.mesh_sha256);
+  const auto bone = content.knee.bones.find(then.bone);
+  return bone != content.knee.bones.end() &&
+         !recording::is_of_another_surface(then, bones::mesh_sha256(bone->second.mesh));
+}
+
+// The newest of each tunnel that is planned and not among the session's own.
 void add_earlier(const std::vector<std::filesystem::path>& sessions, Content& content) {
   if (content.achieved.empty()) return;
-  const bones::BoneKind bone = content.achieved.front().planned.bone;
   std::set<tunnels::TunnelKey> known;
   for (const auto& achieved : content.achieved) known.insert(achieved.planned.key());
-  if (known.contains(tunnels::TunnelKey(bone))) return;  // a single tunnel: what was before it is not planned
   for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
     unless_unreadable(*it, content, [&] {
       for (const auto& file : operation::achieved_files(*it)) {
         auto achieved = operation::read_achieved_file(file);
         const tunnels::TunnelKey key = achieved.planned.key();
-        if (key.bone != bone || !content.knee.plan.tunnels.contains(key) || known.contains(key)) continue;
-        const recording::RecordedSession before(*it);
-        const recording::SessionHeader &then = before.header(), &now = content.session->header();
-        if (then.source_kind != now.source_kind || recording::is_of_another_surface(then, now.mesh_sha256))
-          continue;
+        // Beside a bone's single tunnel what was before it is not planned.
+        const bool is_told = known.contains(key) || known.contains(tunnels::TunnelKey(key.bone));
+        if (is_told || !content.knee.plan.tunnels.contains(key)) continue;
+        if (!belongs_to(content, recording::RecordedSession(*it).header())) continue;
         known.insert(key);
         content.earlier.push_back({std::move(achieved), it->filename().string()});
       }
+    });
+  }
+}
+
+// Of each tunnel the newest session that says anything of it decides.
+void add_by_word(const std::vector<std::filesystem::path>& sessions, Content& content) {
+  if (content.session == nullptr) return;
+  std::set<std::string> known;
+  for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
+    if (!std::filesystem::exists(*it / "session.json")) continue;
+    unless_unreadable(*it, content, [&] {
+      const recording::SessionOverview then = recording::read_overview(*it);
+      const bool is_own = content.session->folder() == *it;
+      if (!is_own && !belongs_to(content, then.header)) return;
+      for (const recording::DrilledByWord& said : recording::drilled_by_word(then.events, then.header.bone)) {
+        if (!known.insert(said.tunnel).second) continue;
+        content.by_word.push_back(
+            {said.tunnel, said.why, it->filename().string(),
+             is_own ? std::optional(time_s(*content.session, said.timestamp_ns)) : std::nullopt});
+      }
+      for (const auto& file : operation::achieved_files(*it))
+        known.insert(tunnels::name_of(operation::read_achieved_file(file).planned.key()));
     });
   }
 }
@@ -209,6 +240,7 @@ void blank_for_strangers(Content& content) {
   content.started_utc.clear();
   if (!content.cut_short.empty()) content.cut_short = std::string("why is ") + kNotTold;
   for (Content::Earlier& earlier : content.earlier) earlier.session.clear();
+  for (Content::ByWord& said : content.by_word) said.session.clear();
   if (content.camera && !content.camera->date_utc.empty()) content.camera->date_utc = kNotTold;
   for (auto& [session, reason] : content.unreadable) {
     session.clear();
@@ -227,6 +259,14 @@ void blank_for_strangers(Content& content) {
 }
 
 }  // namespace
+
+std::string in_words(const Content::ByWord& said) {
+  const std::string when = said.at_s              ? ", at " + clock_text(*said.at_s)
+                           : said.session.empty() ? ", in an earlier session"
+                                                  : ", in the session " + said.session;
+  return "DRILLED BY WORD ALONE: the " + said.tunnel + " tunnel was said to be drilled" + when +
+         ", and no pose shows where it runs (" + said.why + "): no number is told of it.";
+}
 
 std::vector<std::string> shortcomings_of(const Content& content) {
   std::vector<std::string> sentences;
@@ -308,6 +348,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
                   .cut_short = {},
                   .achieved = {},
                   .earlier = {},
+                  .by_word = {},
                   .unreadable = {},
                   .marks = {},
                   .marks_problem = {},
@@ -335,6 +376,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   content.review = std::make_unique<const plan_review::CaseReview>(content.knee);
   content.is_of_another_surface = is_of_another_surface(content);
   add_earlier(sessions, content);
+  add_by_word(sessions, content);
   add_postoperative(content);
   add_places(content);
   add_camera(content);

@@ -40,13 +40,21 @@ struct Content {
   bool is_of_another_surface = false;
   std::string cut_short = {};                       // why its record is not whole; empty: it is
   std::vector<operation::AchievedTunnel> achieved;  // in `session`
-  // Tunnels of other bundles of that bone, drilled in sessions before it: after each start of a source there
-  // is another. Of the same kind of source alone: a rehearsal says nothing of the patient.
+  // Planned tunnels of other bundles and of the other bone, drilled in sessions before it: after each start
+  // of a source there is another. Of the same kind of source alone: a rehearsal says nothing of the patient.
   struct Earlier {
     operation::AchievedTunnel achieved;
     std::string session;
   };
   std::vector<Earlier> earlier = {};
+  // Those of which the last that was said, in `session` or before it, is that they are drilled, and no pose
+  // shows where: no number is told of them. at_s: from the beginning of `session`; empty: said in another
+  // one.
+  struct ByWord {
+    std::string tunnel, why, session;
+    std::optional<double> at_s;
+  };
+  std::vector<ByWord> by_word = {};
   // Sessions that may have been the one that matters, and cannot be read: their folders' names, and why; for
   // strangers both empty.
   std::vector<std::pair<std::string, std::string>> unreadable = {};
@@ -70,6 +78,9 @@ struct Content {
 // For strangers it names no patient, no session and no day, whatever is drawn of it. Throws IoError or
 // InvalidInput (file, place, reason).
 [[nodiscard]] Content gather(const std::filesystem::path& folder, const ReportOptions& options);
+
+// That it was said, when, and why no number is told of it.
+[[nodiscard]] std::string in_words(const Content::ByWord& said);
 
 // What the report tells less of than was recorded, or tells of what was not: a sentence each.
 [[nodiscard]] std::vector<std::string> shortcomings_of(const Content& content);

@@ -199,6 +199,10 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
     json["achieved"].push_back(json_of(content, achieved, if_told(content.session_name)));
   for (const Content::Earlier& earlier : content.earlier)
     json["achieved"].push_back(json_of(content, earlier.achieved, if_told(earlier.session)));
+  json["drilled_by_word"] = ordered_json::array();
+  for (const Content::ByWord& said : content.by_word)
+    json["drilled_by_word"].push_back(
+        {{"tunnel", said.tunnel}, {"session", if_told(said.session)}, {"reason", said.why}});
   json["postoperative"] = postoperative_of(content);
   if (!content.postoperative_problem.empty()) json["postoperative_problem"] = content.postoperative_problem;
   json["versions"] = ordered_json::object();

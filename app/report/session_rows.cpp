@@ -156,6 +156,16 @@ std::string clock_text(double seconds) {
   return files::format("%ld:%02ld.%ld", tenths / 600, tenths / 10 % 60, tenths % 10);
 }
 
+std::string seen_and_said(const recording::RecordedSession& session,
+                          const operation::AchievedTunnel& achieved) {
+  std::string words = ", the last at " + clock_text(time_s(session, achieved.timestamp_ns));
+  const std::string file = operation::achieved_file_name(achieved.planned.key());
+  for (auto it = session.events().rbegin(); it != session.events().rend(); ++it)
+    if (it->kind == recording::kDrilledEvent && it->text == file)
+      return words + "; said to be drilled at " + clock_text(time_s(session, it->timestamp_ns));
+  return words;
+}
+
 std::vector<Step> steps_of(const recording::RecordedSession& session) {
   struct Run {
     std::string words;

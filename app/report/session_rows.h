@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/told_events.h"
 
@@ -43,6 +44,10 @@ struct SessionFigures {
 [[nodiscard]] double time_s(const recording::RecordedSession& session, std::int64_t timestamp_ns);
 // "1:02.3"
 [[nodiscard]] std::string clock_text(double seconds);
+// When the last pose of a tunnel was seen that was drilled in this session, and when it was said to be: what
+// was seen is not of all the time between them. ", the last at 0:54.2; said to be drilled at 1:23.0".
+[[nodiscard]] std::string seen_and_said(const recording::RecordedSession& session,
+                                        const operation::AchievedTunnel& achieved);
 
 // A step of the operation on its time line: registered, verified, confirmed, drilled; and what stood against
 // one, in capitals: an alarm, a registration that is void.

@@ -110,6 +110,67 @@ TEST_F(Report, NamesTheTunnelOfTheOtherBundleThatWasDrilledInASessionBefore) {
   EXPECT_EQ(pdf_text().find("Planned against achieved: femur AM"), std::string::npos);
 }
 
+// The femur in one session, the tibia in the next one: the operation's report holds both.
+TEST_F(Report, TellsOfBothBonesThoughEachWasDrilledInASessionOfItsOwn) {
+  std::vector<std::string> sessions;
+  for (const auto& [bone, off_mm] :
+       {std::pair{bones::BoneKind::Femur, 1.25}, std::pair{bones::BoneKind::Tibia, 0.75}}) {
+    const tunnels::Tunnel planned = knee_.plan.tunnels.at(bone);
+    const auto folder = cases::create_session_folder(knee_folder());
+    sessions.push_back(folder.filename().string());
+    recording::SessionHeader header;
+    header.id = sessions.back();
+    header.bone = bone;
+    header.source_kind = "live";
+    pipeline::PipelineOptions options;
+    options.bone = bone;
+    options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+    options.tools = tools::standard_tools();
+    recording::SessionRecorder(folder, header, options).finish();
+    tunnels::Tunnel measured = planned;
+    measured.entry_mm += off_mm * planned.direction.unitOrthogonal();
+    operation::write_achieved_file(
+        folder / operation::achieved_file_name(planned.key()),
+        {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = {}});
+  }
+  write(pdf());
+  const std::string text = pdf_text();
+  expect_contains(text, "Planned against achieved: tibia");
+  expect_contains(text, "0.75 mm");
+  expect_contains(text, "Planned against achieved: femur");
+  expect_contains(text, "1.25 mm");
+  expect_contains(text, "Drilled in the session " + sessions.front());
+  const auto json = knee_folder().parent_path() / "report.json";
+  write(json);
+  const auto told = nlohmann::json::parse(files::read_text(json)).at("achieved");
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_EQ(told[0].at("session"), sessions.back());
+  EXPECT_EQ(told[1].at("session"), sessions.front());
+  // Of the session that is asked for, and what came before it.
+  write(json, {.session = sessions.front()});
+  EXPECT_EQ(nlohmann::json::parse(files::read_text(json)).at("achieved").size(), 1U);
+}
+
+// No number stands for a tunnel that no pose shows: that it was said to be drilled does, and why that is all.
+TEST_F(Report, Hazard29NamesTheTunnelThatWasDrilledByWordAlone) {
+  EXPECT_EQ(text_of_session("live", {{"tunnel drilled by word", "femur: no picture came when it was said"},
+                                     {recording::kDrilledTakenBackEvent, ""}})
+                .find("DRILLED BY WORD ALONE"),
+            std::string::npos)
+      << "said too early";
+  const std::string text =
+      text_of_session("live", {{"tunnel drilled by word", "femur: no picture came when it was said"}});
+  expect_contains(text, "DRILLED BY WORD ALONE: the femur tunnel");
+  expect_contains(text, "no picture came when it was said");
+  EXPECT_EQ(text.find("Planned against achieved: femur"), std::string::npos);
+  const auto json = knee_folder().parent_path() / "report.json";
+  write(json);
+  const auto report = nlohmann::json::parse(files::read_text(json));
+  EXPECT_TRUE(report.at("achieved").empty());
+  ASSERT_EQ(report.at("drilled_by_word").size(), 1U);
+  EXPECT_EQ(report.at("drilled_by_word")[0].at("tunnel"), "femur");
+}
+
 // Of the sessions of a case the one that is asked for is told, whatever came after it.
 TEST_F(Report, TellsTheSessionThatIsAskedFor) {
   (void)text_of_session("live", {});
