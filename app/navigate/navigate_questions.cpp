@@ -40,8 +40,6 @@ Question NavigateView::question() {
 
 bool NavigateView::draw_questions(const widgets::Ui& ui, const TheatreLayout& layout) {
   const widgets::Rect& area = layout.block;
-  // What is read out has the states' line, too: until it is confirmed nothing guides by them.
-  const widgets::Rect sheet{area.x, area.y, area.width, layout.states.y + layout.states.height - area.y};
   switch (choices_.asked) {
     case Question::None:
       break;
@@ -54,7 +52,9 @@ bool NavigateView::draw_questions(const widgets::Ui& ui, const TheatreLayout& la
       break;
     }
     case Question::TimeOut:
-      draw_card(ui, sheet, time_out_card(*live_->operation, patient_));
+      // The states' line stays beside it: nobody confirms what a dead picture is of without seeing that it
+      // is.
+      draw_card(ui, area, time_out_card(*live_->operation, patient_));
       break;
     case Question::Finish:
       draw_card(ui, area, {"navigate.finish", "Finish", finish_list(finished_bones()).lines, ""});

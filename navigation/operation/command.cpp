@@ -74,6 +74,7 @@ void add(Json& json, const GiveRegistration& give) {
 }
 void add(Json& json, const ConfirmTimeOut& time_out) {
   json["patient_was_shown"] = time_out.patient_was_shown;
+  if (!time_out.beside.empty()) json["beside"] = time_out.beside;
 }
 // Where pictures came, nothing: such commands stay as they were.
 void add(Json& json, const TunnelDrilled& drilled) {
@@ -214,8 +215,10 @@ Command read_command(const std::string& text, const std::string& name) {
     drilled->without_picture_s = json.number("without_picture_s");
   if (std::holds_alternative<OfferPlan>(command))
     command = OfferPlan{plan_from(json), moves_target_from(json)};
-  if (auto* time_out = std::get_if<ConfirmTimeOut>(&command))
+  if (auto* time_out = std::get_if<ConfirmTimeOut>(&command)) {
     time_out->patient_was_shown = json.boolean("patient_was_shown");
+    if (json.has("beside")) time_out->beside = json.text("beside");
+  }
   if (std::holds_alternative<ResumeOperation>(command)) command = resume_from(json);
   if (std::holds_alternative<GiveRegistration>(command)) command = registration_from(json);
   return command;

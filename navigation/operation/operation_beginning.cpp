@@ -30,8 +30,10 @@ std::string in_words(const SourceSetup& source, const registration::Provenance& 
 void Operation::Parts::apply(const ConfirmTimeOut& time_out_of) {
   if (time_out() != TimeOut::Due) return;
   confirmed.confirm(ledger.now(), plan);
-  note(JournalKind::TimeOutConfirmed,
-       in_words(*source, ledger.now(), confirmed.guides_now(), plan, time_out_of.patient_was_shown));
+  std::string words =
+      in_words(*source, ledger.now(), confirmed.guides_now(), plan, time_out_of.patient_was_shown);
+  if (!time_out_of.beside.empty()) words = "BESIDE " + time_out_of.beside + "; " + words;
+  note(JournalKind::TimeOutConfirmed, std::move(words));
 }
 
 // Held against the control point by the one guide that this source has; what it shows guides from the next

@@ -259,12 +259,21 @@ std::int64_t OperationRun::silence_ns() const {
   return since_ns > static_cast<std::int64_t>(1e6 * kHandRests_ms) ? since_ns : 0;
 }
 
+std::string OperationRun::wrong_with_picture() const {
+  const SourceTrouble trouble = live_.watch.trouble();
+  const bool shows_nothing = trouble == SourceTrouble::NoPicture || trouble == SourceTrouble::Plain ||
+                             trouble == SourceTrouble::Frozen;
+  return shows_nothing ? std::string(to_text(trouble)) : "";
+}
+
 void OperationRun::apply(const operation::Command& given) {
   const std::int64_t since_picture_ns = silence_ns();
   operation::Command command = given;
   // The pictures of one that has ended showed what they showed; of one that is silent nobody knows.
   if (auto* const drilled = std::get_if<operation::TunnelDrilled>(&command); drilled && has_source())
     drilled->without_picture_s = static_cast<double>(since_picture_ns) * 1e-9;
+  if (auto* const time_out = std::get_if<operation::ConfirmTimeOut>(&command); time_out && has_source())
+    time_out->beside = wrong_with_picture();
   if (const double age_ms = picture_age_ms(); age_ms > kHandRests_ms && is_of_this_moment(command)) {
     const std::string text = files::format("%s: the newest picture is %.0f ms old",
                                            std::string(operation::name_of(command)).c_str(), age_ms);

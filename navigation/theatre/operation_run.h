@@ -124,6 +124,8 @@ class OperationRun {
   [[nodiscard]] double picture_age_ms() const;  // below 0 where nobody knows, or no live source runs
   // Since the newest picture of the live source that runs, or ran last, for as long as none comes; else 0.
   [[nodiscard]] std::int64_t silence_ns() const;
+  // "no picture", "plain picture", "frozen picture"; empty: it shows what there is.
+  [[nodiscard]] std::string wrong_with_picture() const;
   void note_trouble(std::int64_t since_picture_ns = 0);
   template <typename What>
   void write(const What& what);  // what(record), while there is one; its failure is told and ends it

@@ -74,6 +74,7 @@ const std::vector<Command>& all_commands() {
                                              MarkerOut{},
                                              given(),
                                              ConfirmTimeOut{true},
+                                             ConfirmTimeOut{true, "no picture"},
                                              CheckGuide{},
                                              TrustGuide{},
                                              ConfirmTimeOut{false},

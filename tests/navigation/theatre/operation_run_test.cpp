@@ -169,6 +169,42 @@ TEST_F(OperationRunTest, Hazard29WhatIsSaidWithoutAPictureIsDatedWhenItIsSaid) {
   EXPECT_EQ(word->timestamp_ns, said_ns[1]);
 }
 
+// A time-out that is confirmed while the picture shows nothing is recorded as such.
+TEST_F(OperationRunTest, Hazard20ATimeOutBesideADeadPictureIsRecordedAsSuch) {
+  class PlainPictures : public test::PlainSource {
+   public:
+    PlainPictures() : PlainSource(3, false) {}
+    [[nodiscard]] camera::FramePtr next() override {
+      const camera::FramePtr plain = PlainSource::next();
+      if (plain == nullptr) return nullptr;
+      auto frame = std::make_shared<camera::Frame>(*plain);
+      std::fill(frame->bgr.begin(), frame->bgr.end(), std::uint8_t{0});
+      return frame;
+    }
+  };
+  for (const bool is_dead : {true, false}) {
+    const fs::path session = folder_ / (is_dead ? "dead" : "seen");
+    fs::create_directory(session);
+    OperationRun run(setup_, test::at_once(setup_), [&] { return session; });
+    TheatreSource source = test::plain_source(0, false, sources::SourceKind::Live);
+    source.open = [=]() -> std::unique_ptr<sources::FrameSource> {
+      if (is_dead) return std::make_unique<PlainPictures>();
+      return std::make_unique<AgedSource>(3, -60'000, 0);
+    };
+    run.start(source);
+    while (run.step().picture->index < 2) {
+    }
+    run.apply(operation::ConfirmTimeOut{});
+    EXPECT_EQ(run.state()->time_out, operation::TimeOut::Confirmed);
+    run.end_source();
+    std::string text;
+    const recording::RecordedSession recorded(session);
+    for (const recording::SessionEvent& event : recorded.events())
+      if (event.kind == recording::kTimeOutConfirmedEvent) text = event.text;
+    EXPECT_EQ(text.starts_with("BESIDE plain picture; "), is_dead) << text;
+  }
+}
+
 // Once the source has ended, that there is none is the reason, not how old its last picture is.
 TEST_F(OperationRunTest, AfterALiveSourceATouchIsRefusedForWantOfOne) {
   OperationRun run(setup_, test::at_once(setup_), {});
