@@ -132,21 +132,31 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
       (!screen.display.is_live || !screen.display.world_is_placed) && screen.display.headline != state.name;
   if (is_told) {
     const bool is_amiss = screen.display.has_picture;  // before there is one nothing is
-    put(is_amiss ? widgets::Severity::Caution : widgets::Severity::Quiet,
-        is_amiss ? widgets::kCaution : widgets::kText, screen.display.headline);
-    put(widgets::Severity::Quiet, widgets::kText, screen.display.detail);
+    const bool is_put = put(is_amiss ? widgets::Severity::Caution : widgets::Severity::Quiet,
+                            is_amiss ? widgets::kCaution : widgets::kText, screen.display.headline);
+    // Why is never left out: rather in smaller letters, and nothing more.
+    if (!is_put || !put(widgets::Severity::Quiet, widgets::kText, screen.display.detail)) {
+      const std::string& why = screen.display.detail;
+      widgets::draw_afar(ui, rest, widgets::kText,
+                         is_put ? widgets::sentence(why) : screen.display.headline + ": " + why);
+      rest.height = 0;
+    }
     (void)rest.cut_top(ui.theme.px(12));
   }
-  // That strokes are collected is no word to put behind why none can be; and a bar without its word says
-  // nothing.
+  ui.log.note_state("reason", is_told ? screen.display.detail : "");
+  // That strokes are collected, or a registration confirmed, is no word to put behind why nothing can be done
+  // with it; and a bar without its word says nothing.
   const bool is_quiet = state.severity == widgets::Severity::Quiet;
+  const bool is_well = is_quiet || state.severity == widgets::Severity::Good;
   const bool is_named =
-      (!is_told || !is_quiet) &&
+      (!is_told || !is_well) &&
       put(state.severity, is_quiet ? widgets::kText : widgets::color_of(state.severity), state.name);
+  ui.log.note_state("registration_says", is_named ? state.name : "");
   // Of what is bad there is no progress: why, and what to do, has its room, or else why alone.
   const bool is_bad = state.severity == widgets::Severity::Bad;
-  // Without pictures nothing can be done.
-  const bool can_be_done = screen.live->phase != theatre::LiveState::Phase::Ended;
+  // Without pictures nothing can be done, and one order is enough: to look after them.
+  const bool can_be_done = screen.live->phase != theatre::LiveState::Phase::Ended &&
+                           (screen.display.is_live || !screen.display.has_picture);
   if (is_bad && can_be_done && !put(widgets::Severity::Quiet, widgets::kText, state.text)) {
     const auto& in_force = screen.live->operation->registration->in_force.registration;
     if (in_force != nullptr && !in_force->reasons.empty())
