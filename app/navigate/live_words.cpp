@@ -179,7 +179,8 @@ std::string refusal_notice(const theatre::LiveState& live, double now_s) {
   if (live.operation->has_source && live.operation->touch_refusal == operation::TouchRefusal::MarkerIsSeen)
     return "marker not out: it is still seen";
   const std::string why = why_no_touch(*live.operation);
-  return why.empty() ? "" : "no touch: " + why;
+  if (why.empty()) return "";
+  return (live.operation->touch_is_of_guide ? "guide not checked: " : "no touch: ") + why;
 }
 
 namespace {

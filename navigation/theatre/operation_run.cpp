@@ -283,8 +283,12 @@ void OperationRun::apply(const operation::Command& given) {
                        frame_state_->frame.timestamp_ns + since_picture_ns);
     });
     ++refusal_.count;
+    const bool is_of_guide = std::holds_alternative<operation::CheckGuide>(command);
     refusal_.words = files::format("%s: picture %.1f s old",
-                                   begins_to_draw(command) ? "not drawing" : "no touch", age_ms / 1000);
+                                   begins_to_draw(command) ? "not drawing"
+                                   : is_of_guide           ? "guide not checked"
+                                                           : "no touch",
+                                   age_ms / 1000);
     return;
   }
   // The record of what follows goes on with that one's.

@@ -322,6 +322,9 @@ TEST(RefusalNotice, SaysWhatWasNotDoneAndWhy) {
   state.has_source = true;
   state.touch_refusal = operation::TouchRefusal::TipMoves;
   EXPECT_EQ(notice(kNow_s + 1), "no touch: the probe moves");
+  state.touch_is_of_guide = true;  // what was asked for was no touch
+  EXPECT_EQ(notice(kNow_s + 1), "guide not checked: the guide moves");
+  state.touch_is_of_guide = false;
   state.touch_refusal = operation::TouchRefusal::MarkerIsSeen;
   EXPECT_EQ(notice(kNow_s + 1), "marker not out: it is still seen");
   EXPECT_EQ(notice(kNow_s + 9), "");
