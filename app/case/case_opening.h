@@ -83,6 +83,8 @@ class CaseOpening {
   // "is open elsewhere: anna on theatre-2 (process 4711) since ..."; empty when it may be written.
   [[nodiscard]] const std::string& read_only_reason() const { return open_.lock.refusal(); }
   // That it was taken over from a program that had died: news for a minute after it was opened; else empty.
+  // The program that had it last ended without closing it.
+  [[nodiscard]] bool was_left_by_crash() const { return !open_.lock.notice().empty(); }
   [[nodiscard]] std::string notice(Clock::time_point now = Clock::now()) const {
     return now - locked_at_ < std::chrono::minutes(1) ? open_.lock.notice() : "";
   }

@@ -33,6 +33,13 @@ struct OpenCase {
   // Why nothing may be written into the case ("is open elsewhere: ..."): no plan, no set-up, no session.
   // Empty where it may.
   std::string read_only = {};
+  // Whoever had it open last ended without closing it, as by a crash.
+  bool was_left_by_crash = false;
+};
+
+// Keys that do something for as long as they are down, and are no actions.
+struct HeldKeys {
+  std::string keys, words;
 };
 
 class Mode {
@@ -45,6 +52,9 @@ class Mode {
   virtual void add_actions(widgets::Actions& actions) = 0;
   // What the ids of the actions start with whose keys work while this mode is shown.
   [[nodiscard]] virtual std::vector<std::string_view> action_prefixes() const = 0;
+
+  // Of what is shown now, for the list of keys.
+  [[nodiscard]] virtual std::vector<HeldKeys> held_keys() const { return {}; }
 
   // Another case: ends what runs on the one before and forgets it.
   virtual void case_opened(const OpenCase& opened) = 0;
@@ -68,6 +78,9 @@ class Mode {
   [[nodiscard]] virtual bool is_busy() const { return false; }
   // Live pictures are looked at too late to guide: the screen leaves them more of the processor's time.
   [[nodiscard]] virtual bool pictures_are_late() const { return false; }
+  // Something that a crash cut off waits for an answer that stands on this mode's screen: it comes to the
+  // front without being asked for, once after a case was opened. Asked in every frame until then.
+  [[nodiscard]] virtual bool asks_for_front() { return false; }
   // Something runs that the end of the program would cut off: ending it is then guarded.
   [[nodiscard]] virtual bool has_running_work() const { return false; }
   // A text field was opened in this frame and has not the keyboard yet.

@@ -45,6 +45,13 @@ const LeftBehind* NavigateView::left_behind() {
   return has_begun ? nullptr : resume_.of(choices_.bone);
 }
 
+bool NavigateView::asks_for_front() {
+  const bool has_begun = live_->phase != Phase::NoSource || live_->operation->resumed != nullptr;
+  const auto bone = has_begun ? std::nullopt : resume_.cut_off(std::chrono::system_clock::now());
+  if (bone) choices_.bone = *bone;
+  return bone.has_value();
+}
+
 // One step. What is brought back guides nothing until a touch; the source is the next step, of the same kind.
 void NavigateView::resume() {
   const LeftBehind* const left = left_behind();

@@ -48,6 +48,8 @@ class NavigateView : public mode::Mode {
   // While pictures come, or have come, nothing but them and what belongs to them is on the screen.
   [[nodiscard]] std::optional<widgets::Rect> header_in(const widgets::Ui& ui,
                                                        const widgets::Rect& window) const override;
+  // The bone whose operation was cut off is chosen then.
+  [[nodiscard]] bool asks_for_front() override;
   [[nodiscard]] bool is_busy() const override;
   [[nodiscard]] bool has_running_work() const override { return is_running(); }
   [[nodiscard]] bool pictures_are_late() const override { return navigate::pictures_are_late(*live_); }

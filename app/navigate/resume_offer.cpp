@@ -33,8 +33,9 @@ ResumeOffer::ResumeOffer(std::function<void()> wake)
           std::move(wake)) {}
 
 void ResumeOffer::open(const open_case::PlanModel& model, const std::filesystem::path& case_folder,
-                       bool is_read_only) {
+                       bool is_read_only, bool is_after_crash) {
   ++number_;
+  is_after_crash_ = is_after_crash;
   left_.clear();
   answered_.clear();
   is_looking_ = !is_read_only && !case_folder.empty() && has_sessions(case_folder);
@@ -84,6 +85,21 @@ const LeftBehind* ResumeOffer::of(bones::BoneKind bone) {
   follow();
   const auto found = left_.find(bone);
   return found == left_.end() || answered_.contains(bone) ? nullptr : &found->second;
+}
+
+std::optional<bones::BoneKind> ResumeOffer::cut_off(std::chrono::system_clock::time_point now) {
+  constexpr int kStillThere_h = 12;
+  follow();
+  std::optional<bones::BoneKind> newest;
+  for (const auto& [bone, left] : left_) {
+    // Between two sources a crash cuts off no record.
+    const bool is_crash = (is_after_crash_ || !left.found.was_finished) && !left.found.is_being_recorded;
+    if (!is_crash || answered_.contains(bone) ||
+        now - left.found.last_written > std::chrono::hours(kStillThere_h))
+      continue;
+    if (!newest || left.found.last_written > left_.at(*newest).found.last_written) newest = bone;
+  }
+  return newest;
 }
 
 bool ResumeOffer::is_looking() {

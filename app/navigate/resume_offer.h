@@ -4,6 +4,7 @@
 // One thread, the window's; nothing here waits but the destructor, for the search at hand.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -31,10 +32,15 @@ class ResumeOffer {
   explicit ResumeOffer(std::function<void()> wake);
 
   // Another case. Nothing is offered in one that is read-only: what is left there may be going on elsewhere.
-  void open(const open_case::PlanModel& model, const std::filesystem::path& case_folder, bool is_read_only);
+  // is_after_crash: the program that had it last ended without closing it.
+  void open(const open_case::PlanModel& model, const std::filesystem::path& case_folder, bool is_read_only,
+            bool is_after_crash);
   // Null: there is none, it is still looked for, or it was answered.
   [[nodiscard]] const LeftBehind* of(bones::BoneKind bone);
   [[nodiscard]] bool is_looking();
+  // The bone whose operation was cut off last, by a crash that is so short ago that the patient may still lie
+  // there, and that is on offer; empty: none. What was left by closing the window is no crash.
+  [[nodiscard]] std::optional<bones::BoneKind> cut_off(std::chrono::system_clock::time_point now);
   // Resumed, declined, or begun without it: it is not offered again while this case is open.
   void answer(bones::BoneKind bone) { answered_.insert(bone); }
 
@@ -54,7 +60,7 @@ class ResumeOffer {
   void follow();
 
   int number_ = 0;  // of the newest search
-  bool is_looking_ = false;
+  bool is_looking_ = false, is_after_crash_ = false;
   std::map<bones::BoneKind, LeftBehind> left_;
   std::set<bones::BoneKind> answered_;
   Worker worker_;

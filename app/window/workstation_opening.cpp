@@ -1,4 +1,6 @@
 // How one case takes the place of another.
+#include <imgui.h>
+
 #include <utility>
 
 #include "app/library/workstation_library.h"
@@ -70,7 +72,9 @@ void WorkstationWindow::take_opened_case() {
   bool all_know = model() != nullptr;
   if (model() != nullptr)
     for (const auto& mode : modes_)
-      all_know &= guarded([&] { mode->case_opened({model(), case_->folder(), case_->read_only_reason()}); });
+      all_know &= guarded([&] {
+        mode->case_opened({model(), case_->folder(), case_->read_only_reason(), case_->was_left_by_crash()});
+      });
   if (all_know)
     let_go(std::move(known_to_modes_));
   else if (before != nullptr && before->model() != nullptr)
@@ -86,6 +90,7 @@ void WorkstationWindow::take_opened_case() {
   start_.leave();  // it may have begun a picture since, and Plan draws from here on
   shows_start_ = shows_paint_ = false;
   if (case_->is_read_only() && !shown().works_read_only()) shown_ = 0;
+  looks_for_cut_off_ = all_know && !is_same_folder && !is_unpainted();
   if (!is_unpainted()) shown().enter();
 }
 
@@ -110,6 +115,14 @@ void WorkstationWindow::take_over_when_free() {
     return;
   looked_for_lock_s_ = now_s;
   if (case_->take_when_free()) reopen();
+}
+
+// Nobody's text or drag is interrupted.
+void WorkstationWindow::offer_cut_off() {
+  if (!looks_for_cut_off_ || opening_ != nullptr || shows_start() || shows_paint()) return;
+  if (ImGui::GetIO().WantTextInput || ImGui::IsAnyMouseDown()) return;
+  for (std::size_t i = 0; i < modes_.size() && looks_for_cut_off_; ++i)
+    if (modes_[i]->asks_for_front()) show(i);
 }
 
 void WorkstationWindow::take_dropped() {

@@ -210,6 +210,7 @@ void WorkstationWindow::work() {
     if (shows_start_ && start_.wants_to_close()) close_start();
   });
   for (const auto& mode : modes_) guarded([&] { mode->tick(GraphicsWindow::now_s()); });
+  guarded([this] { offer_cut_off(); });
   guarded([this] {
     paint_.tick(GraphicsWindow::now_s());
     if (std::exchange(reopens_, false)) reopen();
@@ -288,6 +289,7 @@ std::vector<std::string_view> WorkstationWindow::action_prefixes() const {
 }
 
 void WorkstationWindow::show(std::size_t mode) {
+  looks_for_cut_off_ = false;
   actions_.let_go();
   start_.leave();
   shows_start_ = false;

@@ -64,6 +64,8 @@ class WorkstationWindow {
   void close_paint();
   void reopen();  // the open case, whose bones are others now
   void take_over_when_free();
+  // What a crash cut off is offered as soon as it is found, in whatever mode the program opened.
+  void offer_cut_off();
   void dispatch_keys();
   // The same while the list of keys covers everything: whatever is pressed closes it, and does nothing that
   // nobody sees.
@@ -116,6 +118,7 @@ class WorkstationWindow {
   start::StartView start_;
   paint::PaintView paint_;
   bool shows_keys_ = false, shows_start_ = false, shows_paint_ = false, reopens_ = false, quits_ = false;
+  bool looks_for_cut_off_ = false;  // in the case that was opened last, until somebody chose a mode
 };
 
 }  // namespace arthronaut::window

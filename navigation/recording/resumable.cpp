@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <thread>
 #include <utility>
 
 #include "navigation/operation/achieved_tunnel.h"
@@ -202,6 +203,18 @@ std::string why_over(const RecordedSession& newest, const std::string& mesh_sha2
   return has_come_to_its_end(newest, planned) ? "its tunnels are drilled, it came to its end" : "";
 }
 
+// A program that was killed holds its locks until its memory is gone, a second on: that long it is waited
+// for.
+bool is_still_being_recorded(const std::filesystem::path& folder) {
+  constexpr int kTimes = 20;
+  constexpr auto kBetween = std::chrono::milliseconds(100);
+  for (int i = 0; i < kTimes; ++i) {
+    if (!is_being_recorded(folder)) return false;
+    std::this_thread::sleep_for(kBetween);
+  }
+  return true;
+}
+
 }  // namespace
 
 ResumeSearch find_resumable(const std::filesystem::path& case_folder, bones::BoneKind bone,
@@ -213,7 +226,7 @@ ResumeSearch find_resumable(const std::filesystem::path& case_folder, bones::Bon
     try {  // one broken session must not hide the others for good; that it was passed over is told
       pipeline::PipelineOptions options;
       if (read_session_header(folder, options).bone != bone) continue;
-      const bool goes_on = is_being_recorded(folder);  // before it is read: it may end meanwhile
+      const bool goes_on = is_still_being_recorded(folder);  // before it is read: it may end meanwhile
       const RecordedSession session(folder);
       if (is_exercise(session.header())) continue;
       if (session.frames().empty() && session.header().continues.empty()) continue;

@@ -136,7 +136,8 @@ TEST_F(Theatre, Hazard12AKilledOperationIsResumedAndGuidesAfterOneTouch) {
   EXPECT_EQ(resumable.at("session"), left);
   {
     RunningWorkstation app(display, folder_.path());
-    show_navigate(app);
+    ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+    ASSERT_TRUE(app.wait_for_state("mode", "navigate", 60)) << "it is offered, whatever mode it opened in";
     ASSERT_TRUE(app.wait_for_state("resume", left, 60));
     ASSERT_TRUE(app.wait_for_widget("navigate.resume"));
     EXPECT_TRUE(app.wait_for_state("next", "resume the operation that was left"));
@@ -183,6 +184,8 @@ TEST_F(Theatre, Hazard12WhatWasLeftCanBeDeclined) {
     EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
   }
   RunningWorkstation app(display, folder_.path());
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  EXPECT_FALSE(app.wait_for_state("mode", "navigate", 3)) << "that was no crash";
   show_navigate(app);
   ASSERT_TRUE(app.wait_for_state("resume", left, 60));
   app.press("Prior");  // by pedal alone

@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session_check.h"
 #include "navigation/sources/exercise_source.h"
 #include "tests/navigation/theatre/resumable_fixture.h"
@@ -52,6 +53,29 @@ TEST_F(ResumableTest, OneThatIsBeingRecordedIsSaidToBe) {
   end(run);
   EXPECT_TRUE(found()->was_finished);
   EXPECT_FALSE(found()->is_being_recorded);
+}
+
+// A program that was killed lets its locks go when the last of its memory is gone: it records nothing any
+// more.
+TEST_F(ResumableTest, OneWhoseProgramIsDyingIsSaidToBeCutOff) {
+  PhantomOperation run;
+  operate(run, test::scripted_source(SourceKind::Live));
+  for (int i = 0; i < 100 && !found(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const test::TemporaryFolder copies;  // of a record that nobody finishes
+  const auto killed = copies / "Killed.arthro";
+  std::filesystem::copy(folder_.path(), killed, std::filesystem::copy_options::recursive);
+  end(run);
+  std::thread dying(
+      [lock = std::make_unique<RecordingLock>(cases::session_folders(killed).back())]() mutable {
+        std::this_thread::sleep_for(std::chrono::milliseconds(600));
+        lock.reset();
+      });
+  const auto left =
+      find_resumable(killed, bones::BoneKind::Femur, "the phantom's", {bones::BoneKind::Femur}).left;
+  dying.join();
+  ASSERT_TRUE(left);
+  EXPECT_FALSE(left->was_finished);
+  EXPECT_FALSE(left->is_being_recorded);
 }
 
 // To the last bit: what is brought back is what there was.
