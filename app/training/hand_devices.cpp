@@ -68,6 +68,17 @@ simulator::HandInput hand_input(const DeviceState& devices, simulator::Held held
   return input;
 }
 
+std::vector<mode::HeldKeys> keys_of_the_hands() {
+  return {
+      {"A D W S", "The tool left, right, up and down; the mouse's left button does it, too"},
+      {"Q E", "The tool nearer and away; the wheel does it, too"},
+      {"J L I K", "Its handle left, right, up and down; the mouse's right button does it, too"},
+      {"U O", "Its handle nearer and away"},
+      {"Shift", "Held beside them: the scope instead of the tool; the mouse's middle button does it, too"},
+      {"Z X", "Turns the lens"},
+      {"F", "Drills, while it is held"}};
+}
+
 DeviceState HandDevices::read(float window_height_px) {
   DeviceState state;
   const ImGuiIO& io = ImGui::GetIO();

@@ -13,7 +13,9 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
+#include "app/mode/mode.h"
 #include "navigation/simulator/hand_control.h"
 
 namespace arthronaut::training_mode {
@@ -34,6 +36,9 @@ struct DeviceState {
 
 // What the devices push together, over dt_s since the last reading. A stick near its middle pushes nothing.
 [[nodiscard]] simulator::HandInput hand_input(const DeviceState& devices, simulator::Held held, double dt_s);
+
+// The keyboard's, for the list of keys.
+[[nodiscard]] std::vector<mode::HeldKeys> keys_of_the_hands();
 
 // Pressed on the gamepad since the last reading.
 struct PadPresses {

@@ -85,6 +85,9 @@ class TrainingView : public mode::Mode {
   [[nodiscard]] bool works_read_only() const override { return false; }
   void add_actions(widgets::Actions& actions) override;
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const override;
+  [[nodiscard]] std::vector<mode::HeldKeys> held_keys() const override {
+    return page_ == Page::Running ? keys_of_the_hands() : std::vector<mode::HeldKeys>();
+  }
   void case_opened(const mode::OpenCase& opened) override;
   void enter() override;  // reads the scores again
   void leave() override;  // lets go of everything; a calibration is over

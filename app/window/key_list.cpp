@@ -37,16 +37,22 @@ KeyListLayout key_list_layout(const ImFont* font, const std::vector<std::string>
   return layout;
 }
 
-bool draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& prefixes) {
-  std::vector<const widgets::Action*> shown;
-  std::vector<std::string> explanations;
-  for (const widgets::Action& action : ui.actions.all()) {
+std::vector<KeyRow> key_rows(const widgets::Actions& actions, const std::vector<std::string_view>& prefixes,
+                             const std::vector<mode::HeldKeys>& held) {
+  std::vector<KeyRow> rows;
+  for (const mode::HeldKeys& keys : held) rows.push_back({keys.keys, keys.words});
+  for (const widgets::Action& action : actions.all()) {
     const bool here = std::any_of(prefixes.begin(), prefixes.end(),
                                   [&](std::string_view prefix) { return action.id.starts_with(prefix); });
-    if (!here || action.key == 0) continue;
-    shown.push_back(&action);
-    explanations.push_back(action.label + ": " + action.tooltip);
+    if (here && action.key != 0)
+      rows.push_back({widgets::key_name(action.key, action.mods), action.label + ": " + action.tooltip});
   }
+  return rows;
+}
+
+bool draw_key_list(const widgets::Ui& ui, const std::vector<KeyRow>& shown) {
+  std::vector<std::string> explanations;
+  for (const KeyRow& row : shown) explanations.push_back(row.words);
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImDrawList& draw = *ImGui::GetForegroundDrawList();
   draw.AddRectFilled({0, 0}, size, IM_COL32(6, 8, 10, 244));
@@ -62,8 +68,7 @@ bool draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& p
       x += column_width;
       y = margin + head;
     }
-    const std::string key = widgets::key_name(shown[i]->key, shown[i]->mods);
-    draw.AddText(ui.theme.strong, layout.letters_px, {x, y}, widgets::kAccent, key.c_str());
+    draw.AddText(ui.theme.strong, layout.letters_px, {x, y}, widgets::kAccent, shown[i].key.c_str());
     float at = y;
     for (std::size_t from = 0, to = 0; from <= layout.words[i].size(); from = to + 1, at += layout.line_px) {
       to = std::min(layout.words[i].find('\n', from), layout.words[i].size());

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/mode/mode.h"
 #include "app/widgets/controls.h"
 
 namespace arthronaut::window {
@@ -19,8 +20,15 @@ struct KeyListLayout {
 [[nodiscard]] KeyListLayout key_list_layout(const ImFont* font, const std::vector<std::string>& explanations,
                                             float room_px, float height_px);
 
-// Of the actions whose id starts with one of the prefixes. It covers what lies under it for the mouse, too.
-// Returns whether it was clicked on.
-[[nodiscard]] bool draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& prefixes);
+struct KeyRow {
+  std::string key, words;
+};
+// Those that are held down, and then the actions whose id starts with one of the prefixes.
+[[nodiscard]] std::vector<KeyRow> key_rows(const widgets::Actions& actions,
+                                           const std::vector<std::string_view>& prefixes,
+                                           const std::vector<mode::HeldKeys>& held);
+
+// It covers what lies under it for the mouse, too. Returns whether it was clicked on.
+[[nodiscard]] bool draw_key_list(const widgets::Ui& ui, const std::vector<KeyRow>& shown);
 
 }  // namespace arthronaut::window

@@ -345,7 +345,10 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
     shown().draw(ui, inner);
     if (header) draw_header(ui, *header);
   }
-  if (shows_keys_ && draw_key_list(ui, action_prefixes())) shows_keys_ = false;
+  if (shows_keys_) {
+    const auto held = shows_start() || shows_paint() ? std::vector<mode::HeldKeys>() : shown().held_keys();
+    if (draw_key_list(ui, key_rows(actions_, action_prefixes(), held))) shows_keys_ = false;
+  }
   const auto kind = shows_start() || shows_paint() ? std::nullopt : shown().source_kind();
   if (kind) widgets::draw_source_frame(ui, {0, 0, size.x, size.y}, *kind);
   widgets::draw_hold_hint(ui, {0, 0, size.x, size.y}, header);

@@ -1,5 +1,6 @@
 #include "app/window/key_list.h"
 
+#include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
 #include "app/widgets/theme.h"
@@ -38,6 +39,18 @@ TEST(KeyList, ShowsEveryExplanationWhole) {
     EXPECT_GE(layout.letters_px, 0.6F * theme.body->FontSize) << count;
   }
   ImGui::DestroyContext();
+}
+
+// What moves a tool in an exercise is no action: the list has it all the same.
+TEST(KeyList, HasTheKeysThatAreHeldDown) {
+  widgets::Actions actions;
+  actions.add({"train.run.done", "Done", "Ends the exercise", GLFW_KEY_ENTER, 0, false, {}, {}, [] {}});
+  actions.add({"navigate.touch", "Touch", "Elsewhere", GLFW_KEY_T, 0, false, {}, {}, [] {}});
+  const std::vector<KeyRow> rows =
+      key_rows(actions, {"train."}, {{"A D W S", "The tool left, right, up and down"}});
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].key, "A D W S");
+  EXPECT_EQ(rows[1].words, "Done: Ends the exercise");
 }
 
 }  // namespace
