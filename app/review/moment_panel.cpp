@@ -62,7 +62,10 @@ void draw_today(const widgets::Ui& ui, const ReviewScreen& screen) {
 // Of a drill with a marker of its own; nobody saw how deep another one was. As Navigate said it then: with
 // its guide or without, beyond the plan "Too deep" and never a length with a minus sign, and beside the plan,
 // or where nobody knows whether it is, no length but that to where it leaves the bone, once that warns.
-void draw_drill(const widgets::Ui& ui, const guidance::DrillDepth& drill) {
+void draw_drill(const widgets::Ui& ui, const guidance::DrillDepth& drill, const tools::ToolSet& tools) {
+  // Of several it is said which, as Navigate said it.
+  if (const std::string name = guidance_severity::drill_name(tools, drill); !name.empty())
+    widgets::text_in(ui.theme.strong, widgets::kText, name);
   if (const std::string_view doubt = guidance_severity::drill_doubt(drill); !doubt.empty()) {
     const widgets::Severity severity = guidance_severity::severity_of_drill(drill);
     const guidance_severity::DrillText text = guidance_severity::drill_text(drill);
@@ -100,7 +103,7 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewS
   } else {
     widgets::status_row(ui, widgets::Severity::Quiet, "No guidance", screen.no_guidance_words());
   }
-  if (at.guidance.drill) draw_drill(ui, *at.guidance.drill);
+  if (at.guidance.drill) draw_drill(ui, *at.guidance.drill, review.session->options.tools);
   const auto& registration = screen.standing().registration;
   if (registration == nullptr)
     widgets::status_row(ui, widgets::Severity::Quiet, "Registration", "none at this moment");

@@ -26,8 +26,8 @@ void OpenFormats::Table::finish() {
   if (error) throw IoError(file, "cannot write: " + error.message());
 }
 
-OpenFormats::OpenFormats(const std::filesystem::path& session_folder)
-    : poses_(session_folder / "poses.csv"), guidance_(session_folder / "guidance.csv") {
+OpenFormats::OpenFormats(const std::filesystem::path& session_folder, const tools::ToolSet& tools)
+    : tools_(tools), poses_(session_folder / "poses.csv"), guidance_(session_folder / "guidance.csv") {
   poses_.stream << strokes::kPosesHeader;
   guidance_.stream << kGuidanceHeader;
 }
@@ -42,7 +42,7 @@ void OpenFormats::append(const pipeline::FrameResult& result) {
   for (const strokes::PoseRow& row : rows_) strokes::append_pose_line(row, poses_.text);
   poses_.stream << poses_.text;
   guidance_.text.clear();
-  append_guidance_line(result.frame_index, result.timestamp_ns, result.guidance, guidance_.text);
+  append_guidance_line(result.frame_index, result.timestamp_ns, result.guidance, tools_, guidance_.text);
   guidance_.stream << guidance_.text;
 }
 

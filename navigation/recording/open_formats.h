@@ -16,8 +16,8 @@ namespace arthronaut::recording {
 // One thread at a time.
 class OpenFormats {
  public:
-  // Begins both files. Throws IoError, as every other member.
-  explicit OpenFormats(const std::filesystem::path& session_folder);
+  // Begins both files, of what these tools show. Throws IoError, as every other member.
+  OpenFormats(const std::filesystem::path& session_folder, const tools::ToolSet& tools);
 
   void append(const pipeline::FrameResult& result);
   // Hands over to the system what is buffered; once in a while is enough.
@@ -35,6 +35,7 @@ class OpenFormats {
     std::string text;  // of one frame, kept between frames for its memory
   };
 
+  tools::ToolSet tools_;
   Table poses_, guidance_;
   std::vector<strokes::PoseRow> rows_;
 };

@@ -22,6 +22,17 @@ void append_number(std::string& line, double value) {
   line += text;
 }
 
+// A name as a field of a table; what it has of the table's own characters stands in quotes.
+void append_name(std::string& text, const std::string& name) {
+  if (name.find_first_of(",\"\n") == std::string::npos) {
+    text += name;
+    return;
+  }
+  text += '"';
+  for (const char letter : name) text += letter == '"' ? "\"\"" : std::string(1, letter);
+  text += '"';
+}
+
 // Empty where the drill is not seen, or the number is not known.
 void append_drill(std::string& line, const guidance::GuidanceNumbers& numbers,
                   double guidance::DrillDepth::*value) {
@@ -134,7 +145,7 @@ bool says_it_has_a_chain(const std::filesystem::path& folder) {
 }
 
 void append_guidance_line(std::int64_t frame, std::int64_t timestamp_ns, const guidance::GuidanceNumbers& g,
-                          std::string& text) {
+                          const tools::ToolSet& tools, std::string& text) {
   text += std::to_string(frame);
   append_number(text, static_cast<double>(timestamp_ns) * 1e-9);
   text += ',';
@@ -155,6 +166,9 @@ void append_guidance_line(std::int64_t frame, std::int64_t timestamp_ns, const g
                    g.offset_lateral_mm});
   append_drill(text, g, &guidance::DrillDepth::depth_mm);
   append_drill(text, g, &guidance::DrillDepth::to_exit_mm);
+  text += ',';
+  for (const tools::Tool& tool : tools.tools)
+    if (g.drill && g.drill->marker_id == tool.marker_id) append_name(text, tool.name);
   text += '\n';
 }
 

@@ -26,9 +26,11 @@ void write_session_header(const std::filesystem::path& folder, const SessionHead
 inline constexpr std::string_view kGuidanceHeader =
     "frame,time_s,state,tip_to_entry_mm,axis_to_entry_mm,angle_deg,offset_anterior_mm,offset_proximal_mm,"
     "depth_mm,remaining_mm,sigma_offset_mm,sigma_angle_deg,point_x_mm,point_y_mm,point_z_mm,direction_x,"
-    "direction_y,direction_z,offset_lateral_mm,drill_depth_mm,drill_to_exit_mm\n";
+    "direction_y,direction_z,offset_lateral_mm,drill_depth_mm,drill_to_exit_mm,drill\n";
+// tools: that name the drill of which the depth is.
 void append_guidance_line(std::int64_t frame, std::int64_t timestamp_ns,
-                          const guidance::GuidanceNumbers& guidance, std::string& text);
+                          const guidance::GuidanceNumbers& guidance, const tools::ToolSet& tools,
+                          std::string& text);
 
 // The file of the nth registration of a session, from 1.
 [[nodiscard]] std::string registration_name(int number);

@@ -44,7 +44,7 @@ struct SessionRecorder::State {
         options(with_options),
         limits(with_limits),
         database(SessionDatabase::create(database_file(to))),
-        formats(to),
+        formats(to, with_options.tools),
         hashes(to),
         queue(kWaitingMessages) {}
 

@@ -129,6 +129,33 @@ TEST_F(Session, KeepsPlansAndRegistrationsWithTheirMoment) {
   EXPECT_EQ(strokes::read_poses_file(folder_ / "poses.csv").size(), 4u);
 }
 
+// Of several drills the table says which one its depth is of.
+TEST_F(Session, ItsTableNamesTheDrill) {
+  constexpr int kDrill = 9;
+  tools::Tool drill;
+  drill.name = "drill, \"long\"";
+  drill.kind = tools::ToolKind::Drill;
+  drill.marker_id = kDrill;
+  options_.tools.tools.push_back(drill);
+  pipeline::FrameResult with_drill = test::frame_result(0), without = test::frame_result(1);
+  with_drill.guidance.drill.emplace().marker_id = kDrill;
+  without.guidance.drill.reset();
+  {
+    recording::SessionRecorder recorder(folder_, test::session_header(), options_);
+    recorder.append(with_drill);
+    recorder.append(without);
+    recorder.finish();
+  }
+  std::ifstream table(folder_ / "guidance.csv");
+  std::string header, first, second;
+  std::getline(table, header);
+  std::getline(table, first);
+  std::getline(table, second);
+  EXPECT_TRUE(header.ends_with(",drill_to_exit_mm,drill")) << header;
+  EXPECT_TRUE(first.ends_with(",\"drill, \"\"long\"\"\"")) << first;
+  EXPECT_TRUE(second.ends_with(",")) << second;
+}
+
 // A child records in real time and is killed with no chance to tidy up: all but the last second can be read.
 TEST_F(Session, LosesAtMostOneSecondWhenKilled) {
   int last_frame_pipe[2];
