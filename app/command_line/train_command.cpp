@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/case/exercise_case.h"
+#include "app/command_line/interruption.h"
 #include "app/command_line/option_checks.h"
 #include "navigation/training/board_run.h"
 #include "navigation/training/score_file.h"
@@ -99,6 +100,7 @@ void train(Context& context, const Arguments& arguments) {
       is_operation ? "built-in knee " + std::to_string(arguments.seed) : std::string(training::kBoardAlone);
   theatre::RecordOptions record;
   cases::CaseLock lock;
+  const Interruption interruption;  // from before there is a session
   if (arguments.case_folder.empty()) {
     setup = training::standard_setup(*exercise, level, arguments.seed);
   } else {
@@ -121,10 +123,14 @@ void train(Context& context, const Arguments& arguments) {
   training::ExerciseOutcome outcome;
   try {
     Progress progress("Training", 0);
-    outcome = training::run_exercise(setup, hand, record, [&](long frames) { progress.advance_to(frames); });
-  } catch (...) {  // a command that fails leaves nothing behind
+    outcome = training::run_exercise(setup, hand, record, [&](long frames) {
+      progress.advance_to(frames);
+      if (interruption.caught() != 0) throw DeviceError("the exercise was stopped by hand");
+    });
+  } catch (...) {  // a command that fails, or is stopped, leaves nothing behind
     std::error_code ignored;
     if (!record.folder.empty()) fs::remove_all(record.folder, ignored);
+    if (interruption.caught() != 0) interruption.end_program();
     throw;
   }
   Score& score = outcome.score;

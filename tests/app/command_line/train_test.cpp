@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "planning/files/atomic_file.h"
@@ -141,6 +142,20 @@ TEST_F(TrainCommand, HalfAnExerciseIsUnreliable) {
   EXPECT_EQ(run.exit_code, 4);
   EXPECT_THAT(run.errors, HasSubstr("not brought to its end"));
   EXPECT_EQ(json::parse(files::read_text(score)).at("points"), 0);
+}
+
+// Half a session in the case would pass for an exercise that was done.
+TEST_F(TrainCommand, StoppedByHandLeavesNoSession) {
+  const fs::path knee = folder_ / "Knee.arthro";
+  ASSERT_EQ(test::run_program({"phantom", "-o", knee}).exit_code, 0);
+  const auto sessions = [&] {
+    return fs::exists(knee / "sessions") ? std::distance(fs::directory_iterator(knee / "sessions"), {}) : 0;
+  };
+  const auto stopped =
+      test::run_program({"train", "--exercise", "aim", "--hand", hand(3000, false), "--case", knee},
+                        {.data_home = folder_ / "home", .interrupts_when = [&] { return sessions() > 0; }});
+  EXPECT_EQ(stopped.exit_code, 128 + SIGINT) << stopped.errors;
+  EXPECT_EQ(sessions(), 0);
 }
 
 }  // namespace
