@@ -10,6 +10,7 @@
 #include "app/scene/notch_cut.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/geometry/error.h"
+#include "planning/plan_review/landmark_check.h"
 #include "planning/plan_review/proposed_landmarks.h"
 #include "planning/tunnels/diameter_range.h"
 
@@ -144,13 +145,16 @@ const tunnels::TunnelGeometry& PlanModel::measured(const tunnels::TunnelKey& key
 
 const std::vector<tunnels::PlanCheck>& PlanModel::checks(const tunnels::TunnelKey& key) const {
   Checked& checked = checked_[key];
-  if (checked.revision != revision_) checked = {revision_, check(key)};
+  const bool by_shape = measured_.contains(key) && proposal(key.bone).has_value();
+  if (checked.revision != revision_ || checked.by_shape != by_shape)
+    checked = {revision_, by_shape, check(key)};
   return checked.checks;
 }
 
 std::vector<tunnels::PlanCheck> PlanModel::check(const tunnels::TunnelKey& key) const {
   if (!measured_.contains(key)) return {};
-  auto checks = plan_review::checks_of(key, measured_, surroundings(key.bone), knee_surroundings_);
+  auto checks = plan_review::checks_of(key, measured_, surroundings(key.bone), knee_surroundings_,
+                                       landmark_check(key.bone));
   if (const cases::PlanFit fit = plan_fit(key); !fit.is_valid()) {
     checks.insert(checks.begin(), {.verdict = tunnels::PlanCheck::Verdict::Wrong,
                                    .name = "Bone",
@@ -158,6 +162,12 @@ std::vector<tunnels::PlanCheck> PlanModel::check(const tunnels::TunnelKey& key) 
                                    .source = ""});
   }
   return checks;
+}
+
+tunnels::PlanCheck PlanModel::landmark_check(bones::BoneKind kind) const {
+  const auto& by_shape = proposal(kind);
+  return plan_review::check_landmarks(kind, landmarks(kind), landmark_states(kind),
+                                      by_shape ? &*by_shape : nullptr);
 }
 
 cases::PlanFit PlanModel::plan_fit(const tunnels::TunnelKey& key) const { return plan_fit(knee_.plan, key); }

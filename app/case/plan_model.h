@@ -72,6 +72,9 @@ class PlanModel {
   // tunnel. That it was planned on another mesh is the first check, and a wrong one. Made when first asked
   // after a change; the reference holds until the next change.
   [[nodiscard]] const std::vector<tunnels::PlanCheck>& checks(const tunnels::TunnelKey& key) const;
+  // Whether the bone's landmarks lie where its shape puts them; not checked while proposal() is not there.
+  // Precondition: has_bone(kind).
+  [[nodiscard]] tunnels::PlanCheck landmark_check(bones::BoneKind kind) const;
   // Whether the tunnel is of the bone's mesh: what is not valid must not be guided by.
   [[nodiscard]] cases::PlanFit plan_fit(const tunnels::TunnelKey& key) const;
   // Of another plan, as one that was kept, against the bones of now.
@@ -152,6 +155,7 @@ class PlanModel {
   };
   struct Checked {
     std::uint64_t revision = 0;
+    bool by_shape = false;  // what the shape gives was there
     std::vector<tunnels::PlanCheck> checks;
   };
   [[nodiscard]] std::vector<tunnels::PlanCheck> check(const tunnels::TunnelKey& key) const;

@@ -9,6 +9,7 @@
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
+#include "planning/landmarks/off_shape.h"
 #include "planning/landmarks/propose.h"
 
 namespace arthronaut::command_line {
@@ -194,14 +195,10 @@ void say_far_from_shape(const Context& context, const LandmarkArguments& argumen
     const landmarks::Proposal proposal =
         made != proposals.end() ? made->second
                                 : landmarks::propose(knee.bones.at(kind).mesh, kind, {.side = knee.side});
-    for (const auto& [name, at] : knee.landmarks.at(kind)) {
-      const auto by_shape = proposal.landmarks.find(name);
-      if (!proposal.is_usable() || by_shape == proposal.landmarks.end()) continue;
-      const double off_mm = (at - by_shape->second).norm();
-      if (off_mm > landmarks::kFarFromShape_mm)
+    for (const landmarks::OffShape& one : landmarks::off_shape(knee.landmarks.at(kind), proposal))
+      if (one.off_mm > landmarks::kFarFromShape_mm)
         context.say(files::format("  ! %s.%s lies %.1f mm from where the bone's shape puts it: look",
-                                  std::string(bones::to_text(kind)).c_str(), name.c_str(), off_mm));
-    }
+                                  std::string(bones::to_text(kind)).c_str(), one.name.c_str(), one.off_mm));
   }
 }
 

@@ -350,8 +350,8 @@ void add_plan_command(CLI::App& app, Context& context) {
     if (arguments->lists_versions) return list_versions(arguments->case_folder, context, knee.plan);
     // What the case lacks is proposed, as the window and the report have it, and not kept.
     cases::Case shown = knee;
-    plan_review::propose_landmarks(shown, plan_review::Proposing::WithoutGrid);
-    const plan_review::CaseReview review(shown);
+    const auto by_shape = plan_review::propose_landmarks(shown, plan_review::Proposing::Planned);
+    const plan_review::CaseReview review(shown, by_shape);
     if (arguments->by_default) verdict = judged(shown, review, key_of(*arguments), doubts, verdict);
     show(*arguments, context, shown, review, std::move(doubts), verdict);
     if (arguments->keeps) {

@@ -7,6 +7,7 @@
 #include "planning/files/fixed_number.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
+#include "planning/plan_review/landmark_check.h"
 #include "planning/plan_review/proposed_landmarks.h"
 #include "planning/tunnels/breach.h"
 
@@ -47,12 +48,23 @@ const char* state_of_grid(const cases::Case& knee, const plan_review::CaseReview
                                                                                        : "proposed";
 }
 
+// What it was held against, as data.
+void put_numbers(const PlanCheck& check, nlohmann::ordered_json& entry) {
+  if (!check.value) return;
+  entry["value"] = *check.value;
+  entry["unit"] = check.unit;
+  if (check.least) entry["least"] = *check.least;
+  if (check.greatest) entry["greatest"] = *check.greatest;
+}
+
 }  // namespace
 
 PlanVerdict judged(const cases::Case& knee, const plan_review::CaseReview& review,
                    const tunnels::TunnelKey& key, const cases::BoneDoubts& doubts, PlanVerdict verdict) {
   std::vector<std::string>& reasons = verdict.reasons;
   for (std::string& wrong : tunnels::wrong_in_words(review.checks(key))) reasons.push_back(std::move(wrong));
+  if (auto doubt = plan_review::landmark_doubt(review.landmark_check(key.bone)))
+    reasons.push_back(*std::move(doubt));
   if (const auto of_bone = doubts.find(key.bone); of_bone != doubts.end())
     for (const std::string& doubt : of_bone->second)
       reasons.push_back("the " + std::string(bones::to_text(key.bone)) + ": " + doubt);
@@ -106,10 +118,12 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review
   }
   auto checks = nlohmann::ordered_json::array();
   for (const auto& check : review.checks(key)) {
-    checks.push_back({{"name", check.name},
-                      {"verdict", to_text(check.verdict)},
-                      {"text", check.text},
-                      {"source", check.source}});
+    nlohmann::ordered_json entry = {{"name", check.name},
+                                    {"verdict", to_text(check.verdict)},
+                                    {"text", check.text},
+                                    {"source", check.source}};
+    put_numbers(check, entry);
+    checks.push_back(std::move(entry));
   }
   node["checks"] = std::move(checks);
   node["landmarks"] = state_of_grid(knee, review, key.bone);

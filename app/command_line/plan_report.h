@@ -23,8 +23,8 @@ struct PlanVerdict {
 };
 
 // The same with what speaks against the tunnel whether it was made now or years ago: checks that are wrong,
-// doubts about its bone, another bone than it was planned on, and, unless a default says it already,
-// landmarks that nobody confirmed.
+// doubts about its bone, another bone than it was planned on, landmarks far from where the bone's shape puts
+// them, and, unless a default says it already, landmarks that nobody confirmed.
 [[nodiscard]] PlanVerdict judged(const cases::Case& knee, const plan_review::CaseReview& review,
                                  const tunnels::TunnelKey& key, const cases::BoneDoubts& doubts,
                                  PlanVerdict verdict);

@@ -5,6 +5,7 @@
 #include "planning/files/atomic_file.h"
 #include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
+#include "planning/plan_review/landmark_check.h"
 #include "planning/plan_review/plan_review.h"
 #include "planning/plan_review/proposed_landmarks.h"
 
@@ -14,8 +15,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// 2: by proposed landmarks where the case has none, and whether the plan is of this bone.
-constexpr const char* kFirstLine = "arthronaut.plan_verdict 2";
+// 2: by proposed landmarks where the case has none, and whether the plan is of this bone. 3: whether its
+// landmarks lie where its shape puts them.
+constexpr const char* kFirstLine = "arthronaut.plan_verdict 3";
 
 }  // namespace
 
@@ -36,11 +38,13 @@ PlanVerdict judge_plan(const cases::Case& knee) {
   PlanVerdict verdict;
   if (knee.plan.tunnels.empty()) return verdict;
   cases::Case judged = knee;
-  plan_review::propose_landmarks(judged, plan_review::Proposing::WithoutGrid);
-  const plan_review::CaseReview review(judged);
+  const auto by_shape = plan_review::propose_landmarks(judged, plan_review::Proposing::Planned);
+  const plan_review::CaseReview review(judged, by_shape);
   for (const auto& [key, tunnel] : review.tunnels()) {
     if (const cases::PlanFit fit = cases::plan_fit(judged, key); !fit.is_valid())
       verdict.wrong.push_back(tunnels::name_of(key) + ": Bone: " + fit.reason);
+    if (const auto doubt = plan_review::landmark_doubt(review.landmark_check(key.bone)))
+      verdict.wrong.push_back(tunnels::name_of(key) + ": " + *doubt);
     for (const std::string& words : tunnels::wrong_in_words(review.checks(key)))
       verdict.wrong.push_back(tunnels::name_of(key) + ": " + words);
   }

@@ -4,6 +4,7 @@
 
 #include "app/widgets/list_rows.h"
 #include "app/widgets/tooltip.h"
+#include "planning/landmarks/off_shape.h"
 
 namespace arthronaut::plan {
 
@@ -37,9 +38,9 @@ std::optional<double> off_proposal_mm(const open_case::PlanModel& model, bones::
                                       const std::string& name) {
   const auto& proposal = model.proposal(bone);
   if (!proposal) return std::nullopt;
-  const auto here = model.landmarks(bone).find(name), proposed = proposal->landmarks.find(name);
-  if (here == model.landmarks(bone).end() || proposed == proposal->landmarks.end()) return std::nullopt;
-  return (here->second - proposed->second).norm();
+  const auto here = model.landmarks(bone).find(name);
+  if (here == model.landmarks(bone).end()) return std::nullopt;
+  return landmarks::off_shape_mm(name, here->second, *proposal);
 }
 
 std::string state_in_words(LandmarkRow::State state, std::optional<double> off_proposal_mm) {

@@ -9,6 +9,7 @@
 #include "app/scene/lateral_plane.h"
 #include "app/scene/radiograph.h"
 #include "app/widgets/tooltip.h"
+#include "planning/plan_review/landmark_check.h"
 
 namespace arthronaut::plan {
 
@@ -138,6 +139,8 @@ void LateralView::draw_grid(const widgets::Ui& ui, const widgets::Rect& area) co
     }
   }
   if (quadrant) text += "\n" + roof_line_in_words(*model_);
+  if (const auto doubt = plan_review::landmark_doubt(model_->landmark_check(BoneKind::Femur)))
+    text += "\nLook: " + *doubt;
   widgets::caption(ui, area, widgets::kText, text);
 }
 

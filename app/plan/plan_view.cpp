@@ -79,6 +79,12 @@ void PlanView::case_opened(const mode::OpenCase& opened) {
   load_bone_doubts();
 }
 
+bool PlanView::awaits_shape() const {
+  return model_ != nullptr && std::ranges::any_of(model_->tunnels(), [this](const auto& one) {
+           return !model_->proposal(one.first.bone);
+         });
+}
+
 void PlanView::tick(double now_s) {
   history_.settle(now_s);
   history_.look_at_disk(now_s);

@@ -59,10 +59,13 @@ class PlanView : public mode::Mode {
     return export_.is_running() || history_.status().save == open_case::PlanStatus::Save::Failed;
   }
   [[nodiscard]] bool is_busy() const override {
-    return history_.is_moving() || defaults_.is_running() || slices_.is_loading() || volume_.is_preparing();
+    return history_.is_moving() || defaults_.is_running() || slices_.is_loading() || volume_.is_preparing() ||
+           awaits_shape();
   }
 
  private:
+  // What the shape says of the landmarks is a check that comes seconds after the case.
+  [[nodiscard]] bool awaits_shape() const;
   // plan_actions.cpp
   void add_view_actions(widgets::Actions& actions);
   void add_history_actions(widgets::Actions& actions);

@@ -17,6 +17,7 @@
 #include "planning/cases/case_image.h"
 #include "planning/files/format.h"
 #include "planning/files/unit_signs.h"
+#include "planning/plan_review/landmark_check.h"
 
 namespace arthronaut::report {
 
@@ -163,6 +164,8 @@ double Sheet::lateral(double x_mm, double y_mm, double width_mm) {
       line(picture, norm.outline_mm[i], norm.outline_mm[(i + 1) % norm.outline_mm.size()], 0.3, kNorm);
     caption += ". Yellow: mean and one standard deviation. " + norm.words;
   }
+  if (const auto doubt = plan_review::landmark_doubt(review_.landmark_check(BoneKind::Femur)))
+    caption += ". Look: " + *doubt;
   tunnel_outlines(picture, BoneKind::Femur);
   if (const auto* femoral = planned(BoneKind::Femur); femoral != nullptr) {
     if (quadrant) {
@@ -186,6 +189,8 @@ double Sheet::plateau(double x_mm, double y_mm, double width_mm) {
   const double height = pdf_.image(x_mm, y_mm, width_mm, picture.rgb, picture.width, picture.height);
   std::string caption = "The tibial plateau from above";
   const auto* tibial = planned(BoneKind::Tibia);
+  if (const auto doubt = plan_review::landmark_doubt(review_.landmark_check(BoneKind::Tibia)))
+    caption += ". Look: " + *doubt;
   if (const auto& grid = review_.bone(BoneKind::Tibia).surroundings.plateau; grid && tibial != nullptr) {
     const auto percent = grid->percent_of(tunnels::entry_on_bone(tibial->tunnel, tibial->geometry));
     caption += files::format(". Entry at %.1f %% from anterior, %.1f %% from medial",

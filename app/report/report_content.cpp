@@ -372,8 +372,8 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
     for (auto it = sessions.rbegin(); it != sessions.rend() && !content.session; ++it)
       take_session(*it, Registration::Tried, content);
   }
-  plan_review::propose_landmarks(content.knee, plan_review::Proposing::WithoutGrid);
-  content.review = std::make_unique<const plan_review::CaseReview>(content.knee);
+  const auto by_shape = plan_review::propose_landmarks(content.knee, plan_review::Proposing::Planned);
+  content.review = std::make_unique<const plan_review::CaseReview>(content.knee, by_shape);
   content.is_of_another_surface = is_of_another_surface(content);
   add_earlier(sessions, content);
   add_by_word(sessions, content);

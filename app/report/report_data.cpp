@@ -51,7 +51,10 @@ ordered_json tunnels_of(const Content& content) {
       if (check.value) {
         entry["value"] = *check.value;
         entry["unit"] = check.unit;
+        if (check.least) entry["least"] = *check.least;
+        if (check.greatest) entry["greatest"] = *check.greatest;
       }
+      if (!check.source.empty()) entry["source"] = check.source;
       node["checks"].push_back(std::move(entry));
     }
     all.push_back(std::move(node));

@@ -72,10 +72,6 @@ struct Proposal {
 [[nodiscard]] Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone,
                                const ProposalOptions& options = {});
 
-// Further from where the shape puts it a landmark is to be looked at once more, whoever confirmed it: what
-// was picked by hand and what is proposed differ by 3 mm at most on the bones that this was measured on.
-inline constexpr double kFarFromShape_mm = 10;
-
 // Puts the proposed landmarks where there are none or proposed ones; confirmed ones stay. What was proposed
 // before and is not now goes: axes and grids are never of two proposals. Of an empty one nothing is taken.
 void take_proposal(const Proposal& proposal, Landmarks& landmarks, LandmarkStates& states);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "planning/norms/insertion_norms.h"
+#include "planning/plan_review/landmark_check.h"
 
 namespace arthronaut::plan_review {
 
@@ -74,26 +75,33 @@ std::vector<tunnels::PlanCheck> further_checks(const tunnels::TunnelKey& key, co
 
 std::vector<tunnels::PlanCheck> checks_of(const tunnels::TunnelKey& key, const MeasuredPlan& plan,
                                           const tunnels::PlanSurroundings& surroundings,
-                                          const tunnels::KneeSurroundings& knee) {
+                                          const tunnels::KneeSurroundings& knee,
+                                          const tunnels::PlanCheck& of_landmarks) {
   const auto own = plan.find(key);
   if (own == plan.end()) return {};
   auto checks = tunnels::check_plan(own->second.tunnel, own->second.geometry, surroundings);
   if (!own->second.geometry.enters_bone) return checks;
+  checks.push_back(of_landmarks);
   for (tunnels::PlanCheck& check : further_checks(key, plan, knee)) checks.push_back(std::move(check));
   return checks;
 }
 
-CaseReview::CaseReview(const cases::Case& knee) {
+CaseReview::CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, ProposedBone>& by_shape) {
   knee_.is_of_two_frames = knee.is_of_two_frames;
   for (const auto& [kind, bone] : knee.bones) {
     if (bone.mesh.empty()) continue;
-    const auto marks = knee.landmarks.find(kind);
+    const auto known = knee.landmarks.find(kind);
+    const auto marks = known == knee.landmarks.end() ? landmarks::Landmarks{} : known->second;
     const ReviewedBone& reviewed =
         bones_
-            .emplace(kind, review_bone(bone.mesh, kind, knee.side,
-                                       marks == knee.landmarks.end() ? landmarks::Landmarks{} : marks->second,
+            .emplace(kind, review_bone(bone.mesh, kind, knee.side, marks,
                                        std::make_shared<const geometry::Surface>(bone.mesh)))
             .first->second;
+    const auto states = knee.landmark_states.find(kind);
+    const auto proposed = by_shape.find(kind);
+    landmark_checks_[kind] = check_landmarks(
+        kind, marks, states == knee.landmark_states.end() ? landmarks::LandmarkStates{} : states->second,
+        proposed == by_shape.end() ? nullptr : &proposed->second.proposal);
     put_bone(knee_, kind, reviewed);
     for (const tunnels::TunnelKey& key : knee.plan.of(kind)) {
       const tunnels::Tunnel& tunnel = knee.plan.tunnels.at(key);
@@ -104,7 +112,7 @@ CaseReview::CaseReview(const cases::Case& knee) {
 
 std::vector<tunnels::PlanCheck> CaseReview::checks(const tunnels::TunnelKey& key) const {
   if (!has_bone(key.bone)) return {};
-  return checks_of(key, planned_, bone(key.bone).surroundings, knee_);
+  return checks_of(key, planned_, bone(key.bone).surroundings, knee_, landmark_check(key.bone));
 }
 
 }  // namespace arthronaut::plan_review

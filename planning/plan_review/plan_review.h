@@ -10,6 +10,7 @@
 #include "planning/cases/case.h"
 #include "planning/geometry/surface.h"
 #include "planning/norms/footprint.h"
+#include "planning/plan_review/proposed_landmarks.h"
 #include "planning/tunnels/knee_checks.h"
 #include "planning/tunnels/plan_checks.h"
 
@@ -49,21 +50,28 @@ using MeasuredPlan = std::map<tunnels::TunnelKey, MeasuredTunnel>;
 [[nodiscard]] std::vector<tunnels::PlanCheck> further_checks(const tunnels::TunnelKey& key,
                                                              const MeasuredPlan& plan,
                                                              const tunnels::KneeSurroundings& knee);
-// The checks of a tunnel, then the further ones. Empty without that tunnel. surroundings: of its bone.
+// The checks of a tunnel, what is said of the landmarks that they follow from, then the further ones. Empty
+// without that tunnel. surroundings, of_landmarks (landmark_check.h): of its bone.
 [[nodiscard]] std::vector<tunnels::PlanCheck> checks_of(const tunnels::TunnelKey& key,
                                                         const MeasuredPlan& plan,
                                                         const tunnels::PlanSurroundings& surroundings,
-                                                        const tunnels::KneeSurroundings& knee);
+                                                        const tunnels::KneeSurroundings& knee,
+                                                        const tunnels::PlanCheck& of_landmarks);
 
 // A case that is only looked at.
 class CaseReview {
  public:
   // Takes the landmarks as the case has them: what they don't give is not checked. Half a second a bone.
-  explicit CaseReview(const cases::Case& knee);
+  // by_shape: what propose_landmarks() gave; of a bone that is not in it no landmark is checked.
+  explicit CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, ProposedBone>& by_shape = {});
 
   [[nodiscard]] bool has_bone(bones::BoneKind kind) const { return bones_.contains(kind); }
   // Precondition: has_bone(kind).
   [[nodiscard]] const ReviewedBone& bone(bones::BoneKind kind) const { return bones_.at(kind); }
+  // Whether its landmarks lie where its shape puts them. Precondition: has_bone(kind).
+  [[nodiscard]] const tunnels::PlanCheck& landmark_check(bones::BoneKind kind) const {
+    return landmark_checks_.at(kind);
+  }
   // Those of the plan on a bone of the case.
   [[nodiscard]] const MeasuredPlan& tunnels() const { return planned_; }
   // Empty without that tunnel.
@@ -71,6 +79,7 @@ class CaseReview {
 
  private:
   std::map<bones::BoneKind, ReviewedBone> bones_;
+  std::map<bones::BoneKind, tunnels::PlanCheck> landmark_checks_;
   MeasuredPlan planned_;
   tunnels::KneeSurroundings knee_;
 };

@@ -26,8 +26,11 @@ std::map<bones::BoneKind, ProposedBone> propose_landmarks(cases::Case& knee, Pro
     knee.landmarks[kind];  // there for every bone, if empty
     knee.landmark_states[kind];
     if (bone.mesh.empty()) continue;
-    if (has_grid(knee, kind) && (proposing == Proposing::WithoutGrid ||
-                                 state_of_grid(knee, kind) == landmarks::LandmarkState::Confirmed)) {
+    const bool is_asked_for = proposing == Proposing::Planned ? !knee.plan.of(kind).empty()
+                              : proposing == Proposing::WithoutConfirmed
+                                  ? state_of_grid(knee, kind) != landmarks::LandmarkState::Confirmed
+                                  : false;
+    if (has_grid(knee, kind) && !is_asked_for) {
       done();
       continue;
     }

@@ -15,6 +15,7 @@ namespace arthronaut::plan_review {
 enum class Proposing {
   WithoutGrid,       // whose landmarks give no grid
   WithoutConfirmed,  // these, and those of whose grid somebody has still to look at a landmark
+  Planned,           // those without a grid, and those with a tunnel: what is confirmed can lie wrong, too
 };
 struct ProposedBone {
   landmarks::Proposal proposal;

@@ -2,6 +2,8 @@
 // limits of safety, every one can be changed, and the surgeon decides.
 #pragma once
 
+#include "planning/landmarks/landmarks.h"
+
 namespace arthronaut::tunnels {
 
 // A study's mean and how far from it still counts as fine.
@@ -34,6 +36,8 @@ struct PlanNorms {
   double least_roof_clearance_mm = 0;
   // Customary: a change of 2 to 3 mm over flexion is called isometric.
   double isometric_change_mm = 3;
+  // A choice: further from where the bone's shape puts it a landmark is to be looked at once more.
+  double far_landmark_mm = landmarks::kFarFromShape_mm;
   // Customary for two bundles.
   double thin_bone_between_tunnels_mm = 2;
 };

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
+#include "planning/plan_review/proposed_landmarks.h"
 
 namespace arthronaut::open_case {
 namespace {
@@ -12,6 +16,13 @@ using bones::BoneKind;
 
 cases::Case phantom() {
   return phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 2.5}), "test");
+}
+
+// It is made beside whoever asks.
+bool has_proposal_in_time(const PlanModel& model, BoneKind kind) {
+  for (int tenths = 0; tenths < 600 && !model.proposal(kind); ++tenths)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  return model.proposal(kind).has_value();
 }
 
 // What the panel shows follows the plan at once, and the revision counts the changes.
@@ -34,8 +45,11 @@ TEST(PlanModel, MeasuresAnewWithEveryChange) {
 // Screen, command line and report say the same of one plan.
 TEST(PlanModel, SaysWhatTheReviewOfTheCaseSays) {
   const PlanModel model(phantom());
-  const plan_review::CaseReview review(model.knee());
+  cases::Case knee = model.knee();
+  const auto by_shape = plan_review::propose_landmarks(knee, plan_review::Proposing::Planned);
+  const plan_review::CaseReview review(knee, by_shape);
   for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
+    EXPECT_TRUE(has_proposal_in_time(model, kind));
     const auto here = model.checks(kind), there = review.checks(kind);
     ASSERT_EQ(here.size(), there.size());
     for (std::size_t i = 0; i < here.size(); ++i) {

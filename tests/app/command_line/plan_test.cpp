@@ -65,6 +65,36 @@ TEST_F(PlanCommand, SaysNoMinusNought) {
   EXPECT_THAT(result.output, Not(testing::ContainsRegex("-0\\.0+[^0-9]")));
 }
 
+// Grid and axes hang on the landmarks: one that was confirmed 18 mm off leaves no plan reliable. It was said
+// in the window's list alone.
+TEST_F(PlanCommand, Hazard53SaysThatALandmarkLiesFarFromTheShape) {
+  const auto of_landmarks = [&] {
+    auto tunnel = nlohmann::json::parse(run({"plan", "--bone", "femur", "--json"}).output);
+    for (const auto& check : tunnel.at("checks"))
+      if (check.at("name") == "Landmarks") tunnel["of_landmarks"] = check;
+    return tunnel;
+  };
+  auto before = of_landmarks();
+  EXPECT_TRUE(before.at("reliable").get<bool>()) << before.at("reasons");
+  ASSERT_TRUE(before.contains("of_landmarks"));
+  EXPECT_EQ(before.at("of_landmarks").at("verdict"), "fine");
+  knee_.landmarks.at(bones::BoneKind::Femur).at("blumensaat_anterior") += Eigen::Vector3d(0, -18, 0);
+  save(knee_);
+  const auto after = of_landmarks();
+  EXPECT_FALSE(after.at("reliable").get<bool>());
+  ASSERT_TRUE(after.contains("of_landmarks"));
+  const auto& check = after.at("of_landmarks");
+  EXPECT_EQ(check.at("verdict"), "look");
+  EXPECT_THAT(check.at("text"), HasSubstr("Blumensaat's line, anterior end: "));
+  EXPECT_GT(check.at("value").get<double>(), 10);
+  EXPECT_EQ(check.at("unit"), "mm");
+  EXPECT_EQ(check.at("greatest"), 10);
+  EXPECT_THAT(check.at("source"), HasSubstr("by choice"));
+  EXPECT_THAT(after.at("reasons").dump(), HasSubstr("Landmarks: Blumensaat's line, anterior end: "));
+  EXPECT_THAT(run({"plan", "--bone", "femur"}).output,
+              HasSubstr("  ! Landmarks: Blumensaat's line, anterior end: "));
+}
+
 // An entry on the outer side of the medial condyle, straight across the femur.
 TEST_F(PlanCommand, SaysThatAnAbsurdPlanIsWrong) {
   const geometry::Surface femur(made_.femur.mesh);

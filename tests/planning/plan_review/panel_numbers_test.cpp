@@ -66,28 +66,32 @@ Ends ends_of(const geometry::TriangleMesh& mesh, const tunnels::Tunnel& tunnel) 
 }
 
 // The phantom with every landmark that there is: those that its shape proposes, and its own footprints.
-const cases::Case& knee_of_all_landmarks(bones::Side side) {
-  static std::map<bones::Side, cases::Case> made;
+struct KneeAndShape {
+  cases::Case knee;
+  std::map<BoneKind, ProposedBone> by_shape;
+};
+const KneeAndShape& knee_of_all_landmarks(bones::Side side) {
+  static std::map<bones::Side, KneeAndShape> made;
   if (const auto there = made.find(side); there != made.end()) return there->second;
   cases::Case knee =
       phantom::case_of(phantom::make_phantom_knee({.side = side, .edge_length_mm = 2}), "test");
   const auto own = std::exchange(knee.landmarks, {});
-  propose_landmarks(knee, Proposing::WithoutGrid);
+  auto by_shape = propose_landmarks(knee, Proposing::WithoutGrid);
   for (const auto& [kind, marks] : own)
     knee.landmarks.at(kind)["native_footprint"] = marks.at("native_footprint");
-  return made.emplace(side, std::move(knee)).first->second;
+  return made.emplace(side, KneeAndShape{std::move(knee), std::move(by_shape)}).first->second;
 }
 
 // A planned knee with tunnels a hand may have aimed.
 class PanelNumbers : public ::testing::TestWithParam<bones::Side> {
  protected:
   void SetUp() override {
-    knee_ = knee_of_all_landmarks(GetParam());
+    knee_ = knee_of_all_landmarks(GetParam()).knee;
     std::mt19937 random(11);
     std::uniform_real_distribution<double> turn(-0.12, 0.12);
     for (auto& [key, tunnel] : knee_.plan.tunnels)
       tunnel.direction = (tunnel.direction + Vector3d(turn(random), turn(random), turn(random))).normalized();
-    review_ = std::make_unique<CaseReview>(knee_);
+    review_ = std::make_unique<CaseReview>(knee_, knee_of_all_landmarks(GetParam()).by_shape);
     for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia})
       ends_.emplace(kind, ends_of(knee_.bones.at(kind).mesh, knee_.plan.tunnels.at(kind)));
   }
@@ -322,6 +326,19 @@ TEST_P(PanelNumbers, RoofIsAsFarFromTheProlongedDrillAsItsPlanesSay) {
   EXPECT_NEAR(number(BoneKind::Tibia, "Roof"), std::min(outlet_mm, opening_mm), kExact_mm);
 }
 
+// They are where the shape puts them, but for one that a hand moves by 1, 2 and 2 mm.
+TEST_P(PanelNumbers, LandmarksIsHowFarOneWasMoved) {
+  for (const auto& [kind, name] :
+       {std::pair{BoneKind::Femur, "notch_apex"}, {BoneKind::Tibia, "tuberosity"}}) {
+    EXPECT_FALSE(check(kind, "Landmarks").value) << "the shape against itself";
+    cases::Case knee = knee_;
+    knee.landmark_states[kind].clear();
+    knee.landmarks[kind].at(name) += Vector3d(1, -2, 2);
+    const CaseReview review(knee, knee_of_all_landmarks(GetParam()).by_shape);
+    EXPECT_NEAR(*review.landmark_check(kind).value, 3, kExact_mm) << name;
+  }
+}
+
 // Nothing that has a number is left out above: a new check needs a computation here, too.
 TEST_P(PanelNumbers, AllOfThemAreComputedAnotherWay) {
   const std::vector<std::string> covered{"Length",
@@ -343,6 +360,7 @@ TEST_P(PanelNumbers, AllOfThemAreComputedAnotherWay) {
                                          "Bend at the femur",
                                          "Bend at the tibia",
                                          "Roof",
+                                         "Landmarks",
                                          "Opening"};
   for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia})
     for (const tunnels::PlanCheck& one : review_->checks(kind)) {

@@ -27,7 +27,8 @@ bool has(const std::vector<tunnels::PlanCheck>& checks, const char* name) {
 
 // Of a knee that lacks nothing nothing is left unchecked, and no question is asked twice.
 TEST_F(PlanReview, AsksEverythingOnceOfAWholeKnee) {
-  const CaseReview review(knee_);
+  const auto by_shape = propose_landmarks(knee_, Proposing::Planned);
+  const CaseReview review(knee_, by_shape);
   for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
     const auto checks = review.checks(kind);
     std::set<std::string> names;
