@@ -19,7 +19,7 @@ ReviewedBone review_bone(const geometry::TriangleMesh& mesh, BoneKind kind, bone
     auto footprint =
         norms::expected_footprint(mesh, *surface, kind, side, landmarks, norms::default_norm(kind, bundle));
     if (!footprint) continue;
-    reviewed.surroundings.footprint_outlines_mm[bundle] = footprint->outline_mm;
+    reviewed.surroundings.footprints[bundle] = geometry::patch_within(*surface, footprint->outline_mm);
     reviewed.footprints.emplace(bundle, std::move(*footprint));
   }
   reviewed.surface = std::move(surface);

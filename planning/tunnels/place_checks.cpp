@@ -199,14 +199,14 @@ PlanCheck check_mouth(const TunnelGeometry& geometry, const PlanNorms& norms) {
 std::vector<PlanCheck> check_footprint(const Tunnel& tunnel, const TunnelGeometry& geometry,
                                        const PlanSurroundings& surroundings) {
   std::vector<PlanCheck> checks;
-  const auto outline = surroundings.footprint_outlines_mm.find(tunnel.bundle);
-  if (outline != surroundings.footprint_outlines_mm.end() && outline->second.size() >= 3) {
-    const FootprintShare share = footprint_share(geometry.entry, outline->second);
+  const auto footprint = surroundings.footprints.find(tunnel.bundle);
+  if (footprint != surroundings.footprints.end() && footprint->second.area_mm2 > 0) {
+    const FootprintShare share = footprint_share(tunnel, footprint->second);
     checks.push_back(
         {.verdict = Verdict::Note,
          .name = "Footprint opened",
          .text = files::format("%.0f %% of the expected %.0f mm2; %.0f %% of the opening lies in it",
-                               100 * share.of_footprint(), share.footprint_mm2, 100 * share.of_opening()),
+                               100 * share.of_footprint(), share.footprint_mm2, 100 * share.of_opening),
          .source = "no published limit",
          .value = 100 * share.of_footprint(),
          .unit = "%",

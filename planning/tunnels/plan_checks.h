@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "planning/geometry/surface_patch.h"
 #include "planning/landmarks/anatomical_axes.h"
 #include "planning/landmarks/insertion_grids.h"
 #include "planning/tunnels/plan_norms.h"
@@ -49,11 +50,11 @@ struct PlanSurroundings {
   landmarks::Landmarks landmarks = {};
   // The bone's, for what is asked of its shape.
   std::shared_ptr<const geometry::Surface> surface = {};
-  // The expected footprints of the ligament and of its bundles on the bone, closed lines; a missing one is
+  // The expected footprints of the ligament and of its bundles, as they lie on the bone; a missing one is
   // unknown.
-  std::map<norms::Bundle, std::vector<Eigen::Vector3d>> footprint_outlines_mm = {};
+  std::map<norms::Bundle, geometry::SurfacePatch> footprints = {};
 };
-// Without footprint_outlines_mm, which come from norms. surface: of that mesh; without it the entry is not
+// Without footprints, which come from norms. surface: of that mesh; without it the entry is not
 // checked.
 [[nodiscard]] PlanSurroundings surroundings_of(const geometry::TriangleMesh& bone, bones::BoneKind kind,
                                                const landmarks::Landmarks& landmarks, bones::Side side,

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <random>
 #include <set>
 
 #include "planning/bones/mesh_file.h"
@@ -83,7 +84,8 @@ struct Panel {
   const cases::Case& knee;
   tunnels::Tunnel tunnel, other;  // other: in the other bone
   const tunnels::TunnelGeometry& shown;
-  const tunnels::PlanSurroundings& known;  // its axes alone are taken over; anatomical_axes_test has them
+  const tunnels::PlanSurroundings& known;   // its axes alone are taken over; anatomical_axes_test has them
+  const std::vector<Vector3d>& outline_mm;  // of the expected footprint
 
   const geometry::TriangleMesh& mesh() const { return knee.bones.at(tunnel.bone).mesh; }
   Vector3d mark(const char* name) const { return knee.landmarks.at(tunnel.bone).at(name); }
@@ -175,31 +177,44 @@ struct Panel {
     }
     return deg(std::asin(-sum.normalized().dot(d)));
   }
-  // Points of the expected outline, straight on to the opening: how many the drill takes.
+  // Points of the bone within the expected outline, seen along the outline's own normal: how many the drill
+  // takes. Each triangle is strewn evenly, by its area.
   double footprint_opened() const {
-    const auto& outline = known.footprint_outlines_mm.at(tunnel.bundle);
-    const Vector3d x = shown.entry.long_axis, y = shown.entry.normal.cross(x);
-    std::vector<Vector2d> flat;
-    for (const Vector3d& point : outline)
-      flat.push_back({(point - shown.entry.at_mm).dot(x), (point - shown.entry.at_mm).dot(y)});
-    const auto holds = [&](const Vector2d& p) {
+    Vector3d middle = Vector3d::Zero(), face = Vector3d::Zero();
+    for (std::size_t i = 0; i < outline_mm.size(); ++i) {
+      middle += outline_mm[i] / static_cast<double>(outline_mm.size());
+      face += outline_mm[i].cross(outline_mm[(i + 1) % outline_mm.size()]);
+    }
+    face.normalize();
+    if (face.dot(tunnel.direction) > 0) face = -face;
+    const auto holds = [&](const Vector3d& p) {
       double turned = 0;  // the outline's winding about it
-      for (std::size_t i = 0; i < flat.size(); ++i) {
-        const Vector2d a = flat[i] - p, b = flat[(i + 1) % flat.size()] - p;
-        turned += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+      for (std::size_t i = 0; i < outline_mm.size(); ++i) {
+        Vector3d a = outline_mm[i] - p, b = outline_mm[(i + 1) % outline_mm.size()] - p;
+        a -= a.dot(face) * face;
+        b -= b.dot(face) * face;
+        turned += std::atan2(a.cross(b).dot(face), a.dot(b));
       }
       return std::abs(turned) > std::numbers::pi;
     };
-    const double half_long = tunnel.diameter_mm / 2 /
-                             std::sin(shown.entry.angle_to_surface_deg / 180 * std::numbers::pi),
-                 half_short = tunnel.diameter_mm / 2;
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> unit(0, 1);
     double all = 0, opened = 0;
-    for (double u = -20; u < 20; u += 0.1)
-      for (double v = -20; v < 20; v += 0.1) {
-        if (!holds({u, v})) continue;
+    for (const auto& triangle : mesh().triangles) {
+      const auto corner = [&](std::size_t i) {
+        return mesh().vertices_mm[static_cast<std::size_t>(triangle[i])];
+      };
+      const Vector3d ab = corner(1) - corner(0), ac = corner(2) - corner(0);
+      if ((corner(0) - middle).norm() > 20 || ab.cross(ac).dot(face) <= 0) continue;
+      for (auto points = static_cast<int>(100 * ab.cross(ac).norm() + unit(random)); points > 0; --points) {
+        double u = unit(random), v = unit(random);
+        if (u + v > 1) u = 1 - u, v = 1 - v;
+        const Vector3d p = corner(0) + u * ab + v * ac;
+        if (!holds(p)) continue;
         all += 1;
-        opened += std::hypot(u / half_long, v / half_short) <= 1;
+        opened += (p - tunnel.entry_mm).cross(tunnel.direction).norm() < tunnel.diameter_mm / 2;
       }
+    }
     return 100 * opened / all;
   }
   double graft_length() const { return (entry() - in_bone(other).first).norm(); }
@@ -290,8 +305,12 @@ TEST(RealPanel, EveryNumberComesOutTheSameAnotherWay) {
         ASSERT_TRUE(planned.geometry.enters_bone);
         const auto* end = plan_review::other_end(key, review.tunnels());
         ASSERT_NE(end, nullptr);
-        const Panel panel{knee, planned.tunnel, end->tunnel, planned.geometry,
-                          review.bone(key.bone).surroundings};
+        const Panel panel{knee,
+                          planned.tunnel,
+                          end->tunnel,
+                          planned.geometry,
+                          review.bone(key.bone).surroundings,
+                          review.bone(key.bone).footprints.at(key.bundle).outline_mm};
         std::size_t compared = 0;
         for (const tunnels::PlanCheck& check : review.checks(key)) {
           if (!check.value || kElsewhere.contains(check.name)) continue;

@@ -216,42 +216,53 @@ TEST_P(PanelNumbers, CoronalAngleIsThatOfTheTunnelsShadow) {
   EXPECT_NEAR(number(BoneKind::Tibia, "Coronal angle"), std::min(angle, 180 - angle), kExact);
 }
 
-// By chance: of points strewn over the footprint, seen straight on to the mouth, those within the drill.
+// By chance: of points strewn over the bone within the footprint's outline, those within the drill.
 TEST_P(PanelNumbers, FootprintOpenedIsWhatPointsStrewnOverItSay) {
   for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
-    const tunnels::TunnelMouth& mouth = review_->tunnels().at(kind).geometry.entry;
-    const auto& outline = review_->bone(kind).surroundings.footprint_outlines_mm.at(norms::Bundle::Whole);
-    const Vector3d right = mouth.normal.unitOrthogonal(), up = mouth.normal.cross(right);
-    std::vector<Eigen::Vector2d> corners;
-    Eigen::AlignedBox2d box;
-    for (const Vector3d& p : outline) {
-      corners.emplace_back((p - mouth.at_mm).dot(right), (p - mouth.at_mm).dot(up));
-      box.extend(corners.back());
+    const auto& outline = review_->bone(kind).footprints.at(norms::Bundle::Whole).outline_mm;
+    const geometry::TriangleMesh& mesh = review_->bone(kind).surface->mesh();
+    Vector3d middle = Vector3d::Zero(), normal = Vector3d::Zero();
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      middle += outline[i] / static_cast<double>(outline.size());
+      normal += outline[i].cross(outline[(i + 1) % outline.size()]);
     }
-    const auto is_within = [&](const Eigen::Vector2d& p) {  // by how often the outline winds about it
+    if (normal.dot(review_->bone(kind).surface->closest_point(middle).normal) < 0) normal = -normal;
+    normal.normalize();
+    const auto is_within = [&](const Vector3d& p) {  // by how often the outline winds about it
       double winding = 0;
-      for (std::size_t i = 0; i < corners.size(); ++i) {
-        const Eigen::Vector2d a = corners[i] - p, b = corners[(i + 1) % corners.size()] - p;
-        winding += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        const Vector3d a = outline[i] - p, b = outline[(i + 1) % outline.size()] - p;
+        const Vector3d flat_a = a - a.dot(normal) * normal, flat_b = b - b.dot(normal) * normal;
+        winding += std::atan2(flat_a.cross(flat_b).dot(normal), flat_a.dot(flat_b));
       }
       return std::abs(winding) > kPi;
     };
     std::mt19937 random(5);
     std::uniform_real_distribution<double> unit(0, 1);
+    constexpr double kPerPoint_mm2 = 0.005;
     int in_footprint = 0, in_both = 0;
-    constexpr int kPoints = 60000;
-    for (int i = 0; i < kPoints; ++i) {
-      const Eigen::Vector2d p =
-          box.min() + box.sizes().cwiseProduct(Eigen::Vector2d(unit(random), unit(random)));
-      if (!is_within(p)) continue;
-      ++in_footprint;
-      const Vector3d in_space = p.x() * right + p.y() * up;  // from where the axis goes through
-      if (in_space.cross(tunnel(kind).direction).norm() < 0.5 * tunnel(kind).diameter_mm) ++in_both;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto corner = [&](std::size_t i) {
+        return mesh.vertices_mm[static_cast<std::size_t>(mesh.triangles[t][i])];
+      };
+      const Vector3d a = corner(0), ab = corner(1) - a, ac = corner(2) - a;
+      if ((a - middle).norm() > 20 || ab.cross(ac).dot(normal) <= 0) continue;
+      // A share of a point is one with that chance.
+      const int points = static_cast<int>(0.5 * ab.cross(ac).norm() / kPerPoint_mm2 + unit(random));
+      for (int i = 0; i < points; ++i) {
+        double u = unit(random), v = unit(random);
+        if (u + v > 1) u = 1 - u, v = 1 - v;
+        const Vector3d p = a + u * ab + v * ac;
+        if (!is_within(p)) continue;
+        ++in_footprint;
+        const Vector3d from_entry = p - tunnel(kind).entry_mm;
+        if (from_entry.cross(tunnel(kind).direction).norm() < 0.5 * tunnel(kind).diameter_mm) ++in_both;
+      }
     }
     const tunnels::PlanCheck said = check(kind, "Footprint opened");
     EXPECT_NEAR(*said.value, 100.0 * in_both / in_footprint, 1)
         << said.text;  // three sigma of so many points
-    const double area_mm2 = box.volume() * in_footprint / kPoints;
+    const double area_mm2 = kPerPoint_mm2 * in_footprint;
     double percent = 0, said_mm2 = 0;
     ASSERT_EQ(std::sscanf(said.text.c_str(), "%lf %% of the expected %lf mm2", &percent, &said_mm2), 2);
     EXPECT_NEAR(said_mm2, area_mm2, 0.02 * area_mm2 + 0.5) << said.text;
