@@ -2,6 +2,7 @@
 
 #include <exception>
 
+#include "planning/cases/plan_file.h"
 #include "planning/plan_export/plan_export.h"
 
 namespace arthronaut::plan {
@@ -16,16 +17,17 @@ std::string ExportOutcome::in_words(std::uint64_t revision_now) const {
 void ExportWork::start(cases::Case knee, std::uint64_t revision, std::filesystem::path case_folder) {
   stop_ = {};
   running_.start(
-      [knee = std::move(knee), revision, folder = std::move(case_folder), stop = stop_.get_token()] {
+      [folder = cases::export_folder(case_folder, knee.plan), knee = std::move(knee), revision,
+       stop = stop_.get_token()] {
         ExportOutcome outcome{.revision = revision};
         try {  // a full disk is a state of the screen
-          const plan_export::ExportSummary summary = plan_export::export_plan(knee, folder / "export", stop);
+          const plan_export::ExportSummary summary = plan_export::export_plan(knee, folder, stop);
           if (summary.was_stopped) {
             outcome.was_stopped = true;
             outcome.text = "The export was stopped: nothing was written.";
             return outcome;
           }
-          outcome.text = "Exported into " + (folder / "export").string() + ":";
+          outcome.text = "Exported into " + folder.string() + ":";
           for (const auto& file : summary.files) outcome.text += " " + file.filename().string();
           outcome.doubts = summary.doubts;
           outcome.is_written = true;

@@ -32,8 +32,9 @@ class ExportWork {
   ExportWork(const ExportWork&) = delete;
   ExportWork& operator=(const ExportWork&) = delete;
 
-  // Into the folder "export" of the case, which is its owner's alone to read, as `arthronaut plan --export`
-  // writes them (plan_export::export_plan). Precondition: not is_running().
+  // Into the plan's folder within "export" of the case (cases::export_folder), which is its owner's alone to
+  // read, as `arthronaut plan --export` writes them (plan_export::export_plan). Precondition: not
+  // is_running().
   void start(cases::Case knee, std::uint64_t revision, std::filesystem::path case_folder);
   // Nothing will have been written, unless all was drilled by then: the outcome says it.
   void stop() { stop_.request_stop(); }

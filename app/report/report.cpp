@@ -18,6 +18,7 @@
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
 #include "planning/cases/case.h"
+#include "planning/cases/plan_file.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
 #include "planning/files/utc_clock.h"
@@ -42,7 +43,7 @@ class Report {
       : content_(content),
         options_(options),
         pdf_("Arthronaut report: " + content.knee.name, options.paper),
-        pages_(pdf_, content.knee.name) {}
+        pages_(pdf_, content.knee.name + ", " + cases::plan_in_words(content.knee)) {}
 
   // Whole.
   PdfDocument& drawn() {
@@ -148,6 +149,8 @@ void Report::plan_page() {
   if (content_.identity) about.push_back({"Patient", content_.identity->in_words()});
   about.insert(about.end(),
                {{"Name", content_.knee.name}, {"Side", std::string(bones::to_text(content_.knee.side))}});
+  if (!content_.knee.plan.tunnels.empty())
+    about.push_back({"Plan", "SHA-256 " + cases::plan_sha256(cases::with_named_meshes(content_.knee))});
   if (!content_.knee.created_utc.empty())
     about.push_back({"Created", files::utc_in_words(content_.knee.created_utc)});
   if (options_.says_when_made) about.push_back({"Report made", files::utc_now_as("%Y-%m-%d %H:%M:%S UTC")});

@@ -5,6 +5,7 @@
 #include "app/report/session_rows.h"
 #include "app/report/versions.h"
 #include "navigation/camera/medium.h"
+#include "planning/cases/plan_file.h"
 #include "planning/files/csv_cell.h"
 #include "planning/files/json_document.h"
 #include "planning/files/utc_clock.h"
@@ -192,6 +193,7 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
   json["proposed_landmarks"] = ordered_json::array();  // bones whose grid and axes follow from such
   for (const auto& [kind, bone] : content.knee.bones)
     if (has_proposed_grid(content, kind)) json["proposed_landmarks"].push_back(bones::to_text(kind));
+  json["plan_sha256"] = cases::plan_sha256(cases::with_named_meshes(content.knee));
   json["tunnels"] = tunnels_of(content);
   json["session"] = session_of(content);
   json["unreadable_sessions"] = ordered_json::array();

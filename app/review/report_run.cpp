@@ -2,13 +2,17 @@
 
 #include <vector>
 
+#include "planning/cases/plan_file.h"
 #include "planning/files/private_folder.h"
 
 namespace arthronaut::review {
 
-ReportRun::ReportRun(const std::filesystem::path& case_folder, const std::string& session,
-                     std::function<void()> on_news, const std::filesystem::path& program)
-    : file_(case_folder / "export" / (session.empty() ? "report.pdf" : "report_" + session + ".pdf")),
+ReportRun::ReportRun(const std::filesystem::path& case_folder, const cases::Plan& plan,
+                     const std::string& session, std::function<void()> on_news,
+                     const std::filesystem::path& program)
+    : file_(cases::export_folder(case_folder, plan) /
+            (session.empty() ? "report.pdf" : "report_" + session + ".pdf")),
+      plan_sha256_(cases::plan_sha256(plan)),
       worker_(
           worker::Backlog::Lossless,
           [case_folder, session, program, file = file_](auto& inbox) {

@@ -286,7 +286,7 @@ void ReviewView::add_actions(widgets::Actions& actions) {
   actions.add(
       {"review.report", "Report",
        "Writes the report of this session, or of a CT after the operation, or else of the plan, as PDF "
-       "into the folder \"export\" of the case; it names nobody",
+       "into the plan's own folder within \"export\" of the case; it names nobody",
        GLFW_KEY_R, 0, false,
        [this] {
          const bool has_what_to_report =
@@ -297,6 +297,7 @@ void ReviewView::add_actions(widgets::Actions& actions) {
        [this] { return is_writing_report(); },
        [this] {
          report_ = std::make_unique<ReportRun>(case_folder_,
+                                               model_ != nullptr ? model_->knee().plan : cases::Plan{},
                                                open_ ? open_->review.folder.filename().string() : "", wake_);
        }});
   actions.add({"review.newer",

@@ -9,6 +9,7 @@
 #include "app/widgets/source_banner.h"
 #include "navigation/worker/freed_memory.h"
 #include "planning/cases/case.h"
+#include "planning/cases/plan_file.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::review {
@@ -249,18 +250,27 @@ void ReviewView::draw_check(const widgets::Ui& ui) const {
                       sessions_.within(recording::check_words(check)));
 }
 
-// Of whichever session it was asked for: its file names it.
+bool ReviewView::is_report_of_now() const {
+  return report_ != nullptr && model_ != nullptr &&
+         report_->plan_sha256() == cases::plan_sha256(model_->knee().plan);
+}
+
+// Of whichever session it was asked for: its file names it. Of a plan that was changed since it is no tick.
 void ReviewView::draw_report(const widgets::Ui& ui) const {
   const std::string problem = report_ != nullptr && report_->has_ended() ? report_->problem() : "";
   ui.log.note_state("report", report_ == nullptr    ? "none"
                               : is_writing_report() ? "running"
-                              : problem.empty()     ? "written"
-                                                    : "failed");
+                              : !problem.empty()    ? "failed"
+                              : is_report_of_now()  ? "written"
+                                                    : "of an earlier plan");
   if (report_ == nullptr) return;
   if (is_writing_report())
     widgets::status_row(ui, widgets::Severity::Quiet, "Report", "is being written");
-  else if (problem.empty())
+  else if (problem.empty() && is_report_of_now())
     widgets::status_row(ui, widgets::Severity::Good, "Report", report_->file().string());
+  else if (problem.empty())
+    widgets::status_row(ui, widgets::Severity::Caution, "Report of an earlier plan",
+                        report_->file().string() + ": the plan was changed since");
   else
     widgets::status_row(ui, widgets::Severity::Bad, "No report", problem);
 }

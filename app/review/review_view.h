@@ -89,6 +89,8 @@ class ReviewView : public mode::Mode {
   [[nodiscard]] bool runs_today() const;
   // Keys are meant for the folders in which a CT is looked for.
   [[nodiscard]] bool browses() { return shows_postop_ && postop_.browser() != nullptr; }
+  // Whether the plan is still the one that it tells of.
+  [[nodiscard]] bool is_report_of_now() const;
   [[nodiscard]] bool is_writing_report() const { return report_ != nullptr && !report_->has_ended(); }
   [[nodiscard]] ReviewScreen screen() const;
   void draw_side(const widgets::Ui& ui, const widgets::Rect& area);

@@ -166,13 +166,15 @@ geometry::TriangleMesh read_mesh(const std::filesystem::path& file, const MeshFi
   return read_mesh_file(file, options).mesh;
 }
 
-void write_mesh_ply(const std::filesystem::path& file, const geometry::TriangleMesh& mesh) {
+void write_mesh_ply(const std::filesystem::path& file, const geometry::TriangleMesh& mesh,
+                    const std::string& about) {
   refuse_unwritable(file, mesh);
-  std::string bytes =
-      "ply\nformat binary_little_endian 1.0\ncomment SPACE=LPS\ncomment unit mm\nelement vertex " +
-      std::to_string(mesh.vertices_mm.size()) +
-      "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
-      std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment SPACE=LPS\ncomment unit mm\n" +
+                      (about.empty() ? "" : "comment " + about + "\n") + "element vertex " +
+                      std::to_string(mesh.vertices_mm.size()) +
+                      "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+                      std::to_string(mesh.triangles.size()) +
+                      "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes.reserve(bytes.size() + 24 * mesh.vertices_mm.size() + 13 * mesh.triangles.size());
   for (const auto& v : mesh.vertices_mm) {
     for (int i = 0; i < 3; ++i) append(bytes, v[i]);
@@ -184,9 +186,10 @@ void write_mesh_ply(const std::filesystem::path& file, const geometry::TriangleM
   files::write_atomically(file, bytes);
 }
 
-std::string mesh_as_stl(const std::filesystem::path& name, const geometry::TriangleMesh& mesh) {
+std::string mesh_as_stl(const std::filesystem::path& name, const geometry::TriangleMesh& mesh,
+                        const std::string& about) {
   refuse_unwritable(name, mesh);
-  std::string bytes = "Arthronaut, mm, SPACE=LPS";
+  std::string bytes = "Arthronaut, mm, SPACE=LPS" + (about.empty() ? "" : ", " + about);
   bytes.resize(80, ' ');
   append(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
   bytes.reserve(bytes.size() + 50 * mesh.triangles.size());
@@ -202,8 +205,9 @@ std::string mesh_as_stl(const std::filesystem::path& name, const geometry::Trian
   return bytes;
 }
 
-void write_mesh_stl(const std::filesystem::path& file, const geometry::TriangleMesh& mesh) {
-  files::write_atomically(file, mesh_as_stl(file, mesh));
+void write_mesh_stl(const std::filesystem::path& file, const geometry::TriangleMesh& mesh,
+                    const std::string& about) {
+  files::write_atomically(file, mesh_as_stl(file, mesh, about));
 }
 
 }  // namespace arthronaut::bones

@@ -56,11 +56,16 @@ struct MeshFile {
 [[nodiscard]] bool is_mesh_file(const std::filesystem::path& file);
 
 // Binary little-endian PLY, double coordinates, LPS, mm. Atomic. Throws IoError; InvalidInput when a
-// coordinate is not finite or an index is out of range (nothing is written then).
-void write_mesh_ply(const std::filesystem::path& file, const geometry::TriangleMesh& mesh);
-// Binary STL, float coordinates as the format has it. Atomic, errors as above.
-void write_mesh_stl(const std::filesystem::path& file, const geometry::TriangleMesh& mesh);
+// coordinate is not finite or an index is out of range (nothing is written then). about: a line on what the
+// mesh is, in the header.
+void write_mesh_ply(const std::filesystem::path& file, const geometry::TriangleMesh& mesh,
+                    const std::string& about = "");
+// Binary STL, float coordinates as the format has it. Atomic, errors as above. Of `about` as much as the 80
+// bytes of the header hold.
+void write_mesh_stl(const std::filesystem::path& file, const geometry::TriangleMesh& mesh,
+                    const std::string& about = "");
 // The bytes of such a file; `name` stands in messages.
-[[nodiscard]] std::string mesh_as_stl(const std::filesystem::path& name, const geometry::TriangleMesh& mesh);
+[[nodiscard]] std::string mesh_as_stl(const std::filesystem::path& name, const geometry::TriangleMesh& mesh,
+                                      const std::string& about = "");
 
 }  // namespace arthronaut::bones

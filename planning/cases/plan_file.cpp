@@ -124,6 +124,21 @@ nlohmann::ordered_json to_json(const Plan& plan) {
   return {{"format", kPlanFormat}, {"version", version}, {"tunnels", std::move(tunnels)}};
 }
 
+std::string plan_sha256(const Plan& plan) { return files::sha256_of(files::as_text(to_json(plan))); }
+
+std::string short_plan_hash(const Plan& plan) { return plan_sha256(plan).substr(0, 12); }
+
+std::string plan_in_words(const Case& contents) {
+  const Plan plan = with_named_meshes(contents);
+  return std::string(bones::to_text(contents.side)) + " knee, " +
+         (plan.tunnels.empty() ? "nothing planned" : "plan " + short_plan_hash(plan));
+}
+
+fs::path export_folder(const fs::path& case_folder, const Plan& plan) {
+  const fs::path folder = case_folder / "export";
+  return plan.tunnels.empty() ? folder : folder / ("plan_" + short_plan_hash(plan));
+}
+
 void save_plan(const fs::path& folder, const Plan& plan) {
   const nlohmann::ordered_json json = to_json(plan);
   (void)plan_from(json.dump(), plan_file(folder));  // what could not be read again would shut the case

@@ -278,11 +278,14 @@ JsonObject read_json(const std::filesystem::path& file, std::string_view format,
   return parse_json(read_text(file), file, format, newest_version);
 }
 
+std::string as_text(const nlohmann::ordered_json& document) {
+  // Bytes that are no UTF-8 (of a file name, say) become the replacement character instead of an exception.
+  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& document) {
   refuse_not_finite(document, file, "");
-  // Bytes that are no UTF-8 (of a file name, say) become the replacement character instead of an exception.
-  write_atomically(file,
-                   document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  write_atomically(file, as_text(document));
 }
 
 nlohmann::ordered_json to_json(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }

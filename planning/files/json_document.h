@@ -63,7 +63,9 @@ class JsonObject {
 [[nodiscard]] JsonObject parse_json(std::string_view text, const std::filesystem::path& name,
                                     std::string_view format, int newest_version);
 
-// Atomic, indented, newline at the end. "-" writes to standard output. Throws IoError; InvalidInput when a
+// As a file has it: indented, newline at the end.
+[[nodiscard]] std::string as_text(const nlohmann::ordered_json& document);
+// Atomic, that text. "-" writes to standard output. Throws IoError; InvalidInput when a
 // number in it is not finite (nothing is written then).
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& document);
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <vector>
 
 namespace arthronaut::files {
 
@@ -13,11 +14,14 @@ namespace arthronaut::files {
 void make_whole_folder(const std::filesystem::path& folder,
                        const std::function<void(const std::filesystem::path& unfinished)>& fill);
 
-// Into a folder that may be there and hold other files: lets `fill` write into a hidden one within it, and
-// then moves what is there over the files of the same names. When anything throws before that, `folder` is as
-// it was, and absent where it was absent. Throws what make_whole_folder() throws.
+// Into a folder that may be there and hold other files: lets `fill` write into a hidden one, and then moves
+// what is there over the files of the same names; those named in `gone` go where `fill` made none. Where
+// `folder` was absent, or holds nothing else, all of it becomes the new one in one step, if its file system
+// can do that; beside other files each is replaced by itself. When anything throws before that, `folder` is
+// as it was, and absent where it was absent. Throws what make_whole_folder() throws.
 void fill_folder(const std::filesystem::path& folder,
-                 const std::function<void(const std::filesystem::path& unfinished)>& fill);
+                 const std::function<void(const std::filesystem::path& unfinished)>& fill,
+                 const std::vector<std::filesystem::path>& gone = {});
 
 // Before work whose result goes there: throws IoError, which names the folder, where nothing can be made in
 // `folder`, or, while it is not there, in the nearest one above it that is. A file that is to be written

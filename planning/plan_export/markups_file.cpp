@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "planning/cases/plan_file.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
@@ -140,6 +141,7 @@ void read_markup(const json& node, const Place& place, MarkupsPlan& plan) {
 }  // namespace
 
 std::string markups_of(const cases::Case& knee) {
+  const std::string of_plan = cases::plan_in_words(knee);
   auto markups = ordered_json::array();
   for (const auto& [key, tunnel] : knee.plan.tunnels) {
     const auto bone = knee.bones.find(key.bone);
@@ -147,7 +149,8 @@ std::string markups_of(const cases::Case& knee) {
     const auto measured = tunnels::measure(tunnel, geometry::Surface(bone->second.mesh));
     const Vector3d exit =
         measured.enters_bone ? measured.exit_mm : Vector3d(tunnel.entry_mm + 30 * tunnel.direction);
-    markups.push_back(markup("Line", tunnel_name(key), files::format("diameter_mm=%.3f", tunnel.diameter_mm),
+    markups.push_back(markup("Line", tunnel_name(key),
+                             files::format("diameter_mm=%.3f, ", tunnel.diameter_mm) + of_plan,
                              {control_point(1, "entry", tunnel.entry_mm, "on the joint side"),
                               control_point(2, "exit", exit, "where the axis leaves the bone")}));
   }
@@ -160,7 +163,7 @@ std::string markups_of(const cases::Case& knee) {
       points.push_back(control_point(static_cast<int>(points.size()) + 1, name, position,
                                      std::string(landmarks::to_text(state))));
     }
-    markups.push_back(markup("Fiducial", landmarks_name(kind), "", std::move(points)));
+    markups.push_back(markup("Fiducial", landmarks_name(kind), of_plan, std::move(points)));
   }
   const ordered_json root = {{"@schema", kSchema}, {"markups", std::move(markups)}};
   return root.dump(2) + "\n";

@@ -2,8 +2,9 @@
 // it.
 //
 // A tunnel is a line of two control points, "femur tunnel", "femur AM tunnel" or "femur PL tunnel", from
-// "entry" to "exit"; its diameter stands in the description. Landmarks are a point list, "femur landmarks".
-// Written in LPS and mm; read in LPS or RAS, as the file says.
+// "entry" to "exit"; its diameter stands in the description, with the side and the plan that it was written
+// of. Landmarks are a point list, "femur landmarks". Written in LPS and mm; read in LPS or RAS, as the file
+// says.
 #pragma once
 
 #include <filesystem>

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/plan_file.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
-#include "planning/files/remove_file.h"
+#include "planning/files/json_document.h"
 #include "planning/files/sha256.h"
 #include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
@@ -25,7 +26,7 @@ namespace {
 
 constexpr std::string_view kColumns =
     "bone,entry_x_mm,entry_y_mm,entry_z_mm,direction_x,direction_y,direction_z,diameter_mm,"
-    "exit_x_mm,exit_y_mm,exit_z_mm,length_mm,wall_mm,bundle\n";
+    "exit_x_mm,exit_y_mm,exit_z_mm,length_mm,wall_mm,bundle";  // as every export had them
 
 std::array<fs::path, 2> drilled_files(const fs::path& folder, bones::BoneKind kind) {
   const std::string name = std::string(bones::to_text(kind)) + "_drilled";
@@ -64,7 +65,9 @@ std::string sum_of(const fs::path& file) {
 }  // namespace
 
 std::string plan_csv(const cases::Case& knee) {
-  std::string text(kColumns);
+  const std::string of_plan = "," + std::string(bones::to_text(knee.side)) + "," +
+                              cases::plan_sha256(cases::with_named_meshes(knee)) + "\n";
+  std::string text = std::string(kColumns) + ",side,plan_sha256\n";
   for (const auto& [key, tunnel] : knee.plan.tunnels) {
     const auto& e = tunnel.entry_mm;
     const auto& d = tunnel.direction;
@@ -82,7 +85,7 @@ std::string plan_csv(const cases::Case& knee) {
     } else {
       text += ",,,,,";
     }
-    text += "," + std::string(norms::to_text(key.bundle)) + "\n";
+    text += "," + std::string(norms::to_text(key.bundle)) + of_plan;
   }
   return text;
 }
@@ -134,25 +137,33 @@ ExportSummary export_plan(const cases::Case& knee, const fs::path& folder, const
       summary.doubts.push_back("the " + name + " could not be drilled: " + result.reason);
     }
   }
-  const std::string csv = plan_csv(knee), markups = markups_of(knee);
+  const std::string csv = plan_csv(knee), markups = markups_of(knee), of_plan = cases::plan_in_words(knee);
+  const cases::Plan plan = cases::with_named_meshes(knee);
+  nlohmann::ordered_json plan_json = cases::to_json(plan);
+  plan_json["side"] = bones::to_text(knee.side);
+  plan_json["plan_sha256"] = cases::plan_sha256(plan);
   if (stop.stop_requested()) return {.files = {}, .doubts = {}, .was_stopped = true};
-  files::fill_folder(folder, [&](const fs::path& unfinished) {
-    cases::save_plan(unfinished, knee.plan);
-    files::write_atomically(unfinished / "plan.csv", csv);
-    files::write_atomically(unfinished / "plan.mrk.json", markups);
-    for (const auto& [kind, mesh] : drilled) {
-      const auto [stl, ply] = drilled_files(unfinished, kind);
-      bones::write_mesh_stl(stl, mesh);
-      bones::write_mesh_ply(ply, mesh);
-    }
-    std::string sums;
-    for (const fs::path& file : exported_files(unfinished)) sums += sum_of(file);
-    files::write_atomically(unfinished / kSums, sums);
-    // What an earlier plan left drilled would pass for this one's.
-    for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
-      if (!drilled.contains(kind))
-        for (const fs::path& file : drilled_files(folder, kind)) files::remove_file(file);
-  });
+  // What an earlier plan left drilled would pass for this one's.
+  std::vector<fs::path> gone;
+  for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
+    if (!drilled.contains(kind))
+      for (const fs::path& file : drilled_files(folder, kind)) gone.push_back(file.filename());
+  files::fill_folder(
+      folder,
+      [&](const fs::path& unfinished) {
+        files::write_json(unfinished / "plan.json", plan_json);
+        files::write_atomically(unfinished / "plan.csv", csv);
+        files::write_atomically(unfinished / "plan.mrk.json", markups);
+        for (const auto& [kind, mesh] : drilled) {
+          const auto [stl, ply] = drilled_files(unfinished, kind);
+          bones::write_mesh_stl(stl, mesh, of_plan);
+          bones::write_mesh_ply(ply, mesh, of_plan);
+        }
+        std::string sums = "# " + of_plan + "\n";  // passed over by sha256sum -c
+        for (const fs::path& file : exported_files(unfinished)) sums += sum_of(file);
+        files::write_atomically(unfinished / kSums, sums);
+      },
+      gone);
   summary.files = {folder / "plan.json", folder / "plan.csv", folder / "plan.mrk.json"};
   for (const auto& [kind, mesh] : drilled) {
     const auto [stl, ply] = drilled_files(folder, kind);

@@ -1,5 +1,6 @@
-// The plan for other programs, in a folder: plan.json as in the case, plan.csv, the drilled bones as STL and
-// PLY, and 3D Slicer's markups.
+// The plan for other programs, in a folder: plan.json, plan.csv, the drilled bones as STL and PLY, and 3D
+// Slicer's markups. Each file says of which knee's side and of which plan it is (cases::plan_sha256):
+// plan.json and plan.csv in whole, the others by its first 12 digits.
 #pragma once
 
 #include <filesystem>
@@ -21,8 +22,9 @@ struct ExportSummary {
 // Writes plan.json, plan.csv, plan.mrk.json and, of every bone that is planned on, femur_drilled.stl and .ply
 // or tibia_drilled.stl and .ply (LPS, mm); one of an earlier plan that this one does not drill is removed.
 // SHA256SUMS, for sha256sum -c, holds the hash of each.
-// Everything is computed before anything is written, each file whole or not at all; the folder is made where
-// needed. Throws InvalidInput when nothing is planned, and as refuse_foreign() does; IoError.
+// Everything is computed before anything is written. A folder that is absent, or holds an earlier export
+// alone, then becomes this one in one step; beside other files each is replaced by itself. Throws
+// InvalidInput when nothing is planned, and as refuse_foreign() does; IoError.
 [[nodiscard]] ExportSummary export_plan(const cases::Case& knee, const std::filesystem::path& folder,
                                         const std::stop_token& stop = {});
 
@@ -33,7 +35,7 @@ struct ExportSummary {
 void refuse_foreign(const std::filesystem::path& folder);
 
 // One row a tunnel, header first: bone, entry, direction, diameter, exit, length, wall (empty where the
-// tunnel misses), bundle (single, am, pl).
+// tunnel misses), bundle (single, am, pl), side, plan_sha256.
 [[nodiscard]] std::string plan_csv(const cases::Case& knee);
 
 }  // namespace arthronaut::plan_export

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <future>
 
+#include "planning/cases/plan_file.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/phantom/phantom_knee.h"
 #include "tests/temporary_folder.h"
@@ -32,12 +33,13 @@ ExportOutcome outcome_of(const cases::Case& knee, const std::filesystem::path& c
 TEST(ExportWork, WritesThePlanAndSaysWhere) {
   const test::TemporaryFolder folder;
   const cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "export");
+  const std::filesystem::path of_plan = cases::export_folder(folder / "Knee.arthro", knee.plan);
   const ExportOutcome outcome = outcome_of(knee, folder / "Knee.arthro");
   EXPECT_TRUE(outcome.is_written);
-  EXPECT_THAT(outcome.in_words(7), StartsWith("Exported into " + (folder / "Knee.arthro/export").string() +
+  EXPECT_THAT(outcome.in_words(7), StartsWith("Exported into " + of_plan.string() +
                                               ": plan.json plan.csv plan.mrk.json femur_drilled.stl "
                                               "femur_drilled.ply tibia_drilled.stl tibia_drilled.ply"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "Knee.arthro/export/plan.mrk.json"));
+  EXPECT_TRUE(std::filesystem::exists(of_plan / "plan.mrk.json"));
 }
 
 // Nothing of it is there afterwards, and the next one is written.

@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "planning/cases/plan_file.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::review {
@@ -30,7 +31,7 @@ class ReportRunTest : public ::testing::Test {
   std::string problem_of(const fs::path& program, const std::string& session = "0001") const {
     std::promise<void> woken;
     ReportRun run(
-        folder_.path(), session,
+        folder_.path(), plan_, session,
         [&, once = false]() mutable {
           if (!std::exchange(once, true)) woken.set_value();
         },
@@ -39,7 +40,9 @@ class ReportRunTest : public ::testing::Test {
     while (!run.has_ended()) std::this_thread::yield();
     return run.problem();
   }
+  fs::path of_plan() const { return cases::export_folder(folder_.path(), plan_); }
   const test::TemporaryFolder folder_;
+  cases::Plan plan_{.tunnels = {{bones::BoneKind::Femur, {}}}};
 };
 
 TEST_F(ReportRunTest, AsksForTheSessionThatIsShown) {
@@ -48,8 +51,8 @@ TEST_F(ReportRunTest, AsksForTheSessionThatIsShown) {
   std::string words;
   std::getline(given, words);
   EXPECT_EQ(words, "report " + folder_.path().string() + " --session 0001 -o " +
-                       (folder_ / "export" / "report_0001.pdf").string());
-  EXPECT_FALSE(fs::exists(folder_ / "export" / "report_0001.pdf.log"));
+                       (of_plan() / "report_0001.pdf").string());
+  EXPECT_FALSE(fs::exists(of_plan() / "report_0001.pdf.log"));
 }
 
 // A CT after the operation is to be reported on, whether the operation was recorded or not.
@@ -58,8 +61,19 @@ TEST_F(ReportRunTest, AsksForTheCaseWhereThereIsNoSession) {
   std::ifstream given(folder_ / "given");
   std::string words;
   std::getline(given, words);
-  EXPECT_EQ(words,
-            "report " + folder_.path().string() + " -o " + (folder_ / "export" / "report.pdf").string());
+  EXPECT_EQ(words, "report " + folder_.path().string() + " -o " + (of_plan() / "report.pdf").string());
+}
+
+// Two plans never share a folder, and whoever holds a report knows which plan it tells of. It lay beside
+// tables of another plan.
+TEST_F(ReportRunTest, LiesInThePlansOwnFolder) {
+  const fs::path before = of_plan();
+  plan_.tunnels.at(bones::BoneKind::Femur).diameter_mm += 1;
+  EXPECT_NE(of_plan(), before);
+  EXPECT_EQ(of_plan().parent_path(), folder_ / "export");
+  EXPECT_EQ(of_plan().filename().string(), "plan_" + cases::plan_sha256(plan_).substr(0, 12));
+  plan_ = {};
+  EXPECT_EQ(of_plan(), folder_ / "export") << "where nothing is planned";
 }
 
 TEST_F(ReportRunTest, SaysWhyThereIsNone) {
@@ -73,9 +87,9 @@ TEST_F(ReportRunTest, SaysWhyThereIsNone) {
 TEST_F(ReportRunTest, EndsWithWhoAskedForIt) {
   {
     const ReportRun run(
-        folder_.path(), "0001", [] {}, program("exec sleep 600"));
+        folder_.path(), plan_, "0001", [] {}, program("exec sleep 600"));
   }
-  EXPECT_FALSE(fs::exists(folder_ / "export" / "report_0001.pdf.log"));
+  EXPECT_FALSE(fs::exists(of_plan() / "report_0001.pdf.log"));
 }
 
 }  // namespace

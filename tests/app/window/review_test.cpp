@@ -9,6 +9,7 @@
 
 #include "navigation/recording/session_marks.h"
 #include "planning/cases/case.h"
+#include "planning/cases/plan_file.h"
 #include "planning/files/format.h"
 #include "planning/postop/achieved_file.h"
 #include "tests/app/window/built_in_case.h"
@@ -314,7 +315,8 @@ TEST_F(ReviewWindow, WritesTheReport) {
   ASSERT_TRUE(app.wait_for_state("session", session_.filename().string()));
   app.press("r");
   ASSERT_TRUE(app.wait_for_state("report", "written", 120));
-  std::ifstream report(case_folder_ / "export" / ("report_" + session_.filename().string() + ".pdf"));
+  std::ifstream report(cases::export_folder(case_folder_, cases::load_case(case_folder_).plan) /
+                       ("report_" + session_.filename().string() + ".pdf"));
   std::string begins(5, ' ');
   report.read(begins.data(), 5);
   EXPECT_EQ(begins, "%PDF-");

@@ -3,16 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "planning/bones/mesh_file.h"
 #include "planning/bones/mesh_repair.h"
+#include "planning/cases/plan_file.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/csv_table.h"
+#include "planning/files/sha256.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/rigid_transform.h"
 #include "planning/phantom/phantom_case.h"
@@ -109,6 +114,64 @@ TEST(PlanExport, WritesWhatIsReadBackTheSame) {
       geometry::signed_volume_mm3(knee.bones.at(BoneKind::Femur).mesh) - geometry::signed_volume_mm3(femur);
   EXPECT_NEAR(removed / (geometry::kPi * std::pow(tunnel.diameter_mm / 2, 2) * length), 1,
               0.15);  // mouths slant
+}
+
+// Whichever file goes on alone: which knee, and which plan. The plan's hash is that of the case's plan.json.
+TEST(PlanExport, EveryFileSaysOfWhichSideAndPlan) {
+  const test::TemporaryFolder folder;
+  const auto knee = knee_case();
+  cases::save_plan(folder.path(), knee.plan);
+  const std::string hash = files::sha256_of_file(folder / "plan.json");
+  const std::string side(bones::to_text(knee.side));
+  const auto summary = export_plan(knee, folder.path() / "out");
+  ASSERT_EQ(summary.files.size(), 8u);
+  for (const auto& file : summary.files) {
+    const std::string text = files::read_text(file);
+    EXPECT_THAT(text, testing::HasSubstr(hash.substr(0, 12))) << file;
+    EXPECT_THAT(text, testing::HasSubstr(side)) << file;
+  }
+  const auto plan = nlohmann::json::parse(files::read_text(summary.files[0]));
+  EXPECT_EQ(plan.at("plan_sha256"), hash);
+  EXPECT_EQ(plan.at("side"), side);
+  EXPECT_EQ(cases::plan_from(files::read_text(summary.files[0]), summary.files[0]).tunnels.size(), 2U);
+  // A moved entry is another plan, another side another knee.
+  auto moved = knee;
+  moved.plan.tunnels.at(BoneKind::Femur).entry_mm.x() += 0.01;
+  EXPECT_NE(cases::plan_in_words(moved), cases::plan_in_words(knee));
+  moved = knee;
+  moved.side = knee.side == bones::Side::Left ? bones::Side::Right : bones::Side::Left;
+  EXPECT_NE(cases::plan_in_words(moved), cases::plan_in_words(knee));
+}
+
+// Seen by whoever looks at it meanwhile a folder is of one plan or of the other: it is exchanged, not its
+// files. Beside what somebody laid there it stays the folder that it was.
+TEST(PlanExport, AFolderIsOfOnePlanAtAnyMoment) {
+  namespace fs = std::filesystem;
+  const test::TemporaryFolder folder;
+  auto knee = knee_case();
+  const fs::path out = folder / "out";
+  (void)export_plan(knee, out);
+  const auto mode = fs::status(out).permissions();
+  const auto number_of = [](const fs::path& file) {
+    struct stat found {};
+    EXPECT_EQ(::stat(file.c_str(), &found), 0);
+    return found.st_ino;
+  };
+  auto before = number_of(out);
+  knee.plan.tunnels.at(BoneKind::Femur).diameter_mm = 7;
+  (void)export_plan(knee, out);
+  EXPECT_NE(number_of(out), before) << "the folder is another one";
+  EXPECT_EQ(fs::status(out).permissions(), mode);
+  std::ofstream(out / "mine.txt") << "kept";
+  before = number_of(out);
+  knee.plan.tunnels.at(BoneKind::Femur).diameter_mm = 8;
+  (void)export_plan(knee, out);
+  EXPECT_EQ(number_of(out), before);
+  EXPECT_EQ(files::read_text(out / "mine.txt"), "kept");
+  EXPECT_THAT(files::read_text(out / "plan.csv"), testing::HasSubstr(",8.000,"));
+  std::size_t left = 0;
+  for (const auto& entry : fs::directory_iterator(folder.path())) left += entry.path() != out;
+  EXPECT_EQ(left, 0U) << "nothing lies about";
 }
 
 // A folder that is exported to again holds no bone drilled by the plan before.
@@ -242,7 +305,7 @@ TEST(PlanExport, TwoBundlesAreWrittenAndReadBack) {
     EXPECT_EQ(markups.tunnels.at(key).bundle, key.bundle);
   }
   const std::string csv = files::read_text(folder.path() / "out" / "plan.csv");
-  for (const char* end : {",am\n", ",pl\n", ",single\n", ",bundle\n"})
+  for (const char* end : {",am,right,", ",pl,right,", ",single,right,", ",bundle,side,plan_sha256\n"})
     EXPECT_NE(csv.find(end), std::string::npos) << csv;
   const auto femur = bones::read_mesh(folder.path() / "out" / "femur_drilled.stl");
   const double removed =
