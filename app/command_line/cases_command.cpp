@@ -114,14 +114,14 @@ void list_cases(const Context& context, const CasesArguments& arguments) {
   const bool only_changes = !arguments.forget.empty() || !arguments.note.empty();
   if (only_changes && !arguments.as_json && !arguments.as_csv) return;
   const std::vector<CaseRecord> all = looked_at(known);
+  library::Identities identities;
+  if (arguments.with_identity) identities = library::read_identities(all);
+  const library::Identities* named = arguments.with_identity ? &identities : nullptr;
   std::vector<CaseRecord> records;
-  for (const std::size_t i : library::find_cases(all, query)) records.push_back(all[i]);
+  for (const std::size_t i : library::find_cases(all, query, named)) records.push_back(all[i]);
   // Whoever adds a folder wants to see what was in it; what other programs read is the whole list.
   if (!added.empty() && !arguments.as_json && !arguments.as_csv)
     std::erase_if(records, [&](const CaseRecord& record) { return !added.contains(record.folder); });
-  library::Identities identities;
-  if (arguments.with_identity) identities = library::read_identities(records);
-  const library::Identities* named = arguments.with_identity ? &identities : nullptr;
   if (arguments.as_json)
     library::write_cases_json("-", records, named);
   else if (arguments.as_csv)
@@ -147,8 +147,10 @@ void add_cases_command(CLI::App& app, Context& context) {
       sub->add_option("--text", arguments->note_text, "The note, in place of the one there is; may be empty");
   note->needs(text);
   text->needs(note);
-  sub->add_option("--search", arguments->search,
-                  "Words that must all stand in name, note, side, dates, state or outcome");
+  sub->add_option(
+      "--search", arguments->search,
+      "Words that must all stand in name, note, side, dates, state or outcome; with --with-identity "
+      "also in the patient's name, number or day of birth");
   sub->add_option("--side", arguments->side, "Only this side")->check(CLI::IsMember({"left", "right"}));
   sub->add_option("--state", arguments->state, "Only cases in this state")
       ->check(CLI::IsMember({"missing", "unreadable", "not planned", "planned", "navigated", "drilled"}));

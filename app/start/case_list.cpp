@@ -22,6 +22,7 @@ void CaseList::enter() {
   std::vector<fs::path> folders;
   for (const RecentCase& recent : recent_) folders.push_back(recent.folder);
   library_.refresh(folders);
+  identities_.reset();
   accuracy_ = library::read_accuracy_checks(workstation_library::data_folder());
   devices_ = library::devices_of(accuracy_);
   view_.chart = std::min(view_.chart, chart_count() - 1);
@@ -44,7 +45,10 @@ void CaseList::keep_note() {
 }
 
 void CaseList::tick() {
-  if (library_.poll()) filter();
+  if (library_.poll()) {
+    identities_.reset();
+    filter();
+  }
   pictures_.poll();
 }
 
@@ -56,7 +60,8 @@ std::string CaseList::used_utc(const CaseRecord& record) const {
 
 // What was opened last is first, also where it was only looked at.
 void CaseList::filter() {
-  found_ = library::find_cases(library_.records(), view_.query);
+  if (!identities_ && !view_.query.words.empty()) identities_ = library::read_identities(library_.records());
+  found_ = library::find_cases(library_.records(), view_.query, identities_ ? &*identities_ : nullptr);
   if (view_.query.order == library::CaseOrder::Newest) {
     const auto used = [&](std::size_t i) { return used_utc(library_.records()[i]); };
     std::stable_sort(found_.begin(), found_.end(),

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -84,6 +85,8 @@ class CaseList {
   CasePictures pictures_;
   std::vector<RecentCase> recent_;
   std::vector<std::size_t> found_;  // of the library's records
+  // Of these records, read when words are first sought and kept nowhere else: the search finds patients.
+  std::optional<library::Identities> identities_;
   library::AccuracyChecks accuracy_;
   std::vector<library::AccuracyDevice> devices_;  // of these
   View view_;

@@ -23,7 +23,14 @@ constexpr std::array<std::pair<CaseOrder, std::string_view>, 5> kOrders{{
     {CaseOrder::EntryOffset, "offset"},
 }};
 
-std::string searched(const CaseRecord& record) {
+// Null where nobody is to be named, or the case names nobody.
+const cases::Identity* whose(const CaseRecord& record, const Identities* identities) {
+  if (identities == nullptr) return nullptr;
+  const auto found = identities->find(record.folder);
+  return found == identities->end() ? nullptr : &found->second;
+}
+
+std::string searched(const CaseRecord& record, const cases::Identity* patient) {
   std::string text = record.name + "\n" + record.note + "\n" + record.side + "\n" + record.created_utc +
                      "\n" + record.changed_utc + "\n" + std::string(to_text(record.state())) + "\n" +
                      files::local_day(record.created_utc) + "\n" + files::local_day(record.changed_utc) +
@@ -32,6 +39,9 @@ std::string searched(const CaseRecord& record) {
   for (const SessionFacts& session : record.sessions)
     text += "\n" + session.started_utc + "\n" + files::local_day(session.started_utc) + "\n" + session.bone +
             "\n" + session.source_kind + "\n" + session.outcome();
+  if (patient != nullptr)
+    text += "\n" + patient->patient_name + "\n" + patient->name_in_words() + "\n" + patient->patient_id +
+            "\n" + patient->birth_date + "\n" + patient->birth_date_in_words();
   return files::folded(text);
 }
 
@@ -73,7 +83,8 @@ CaseOrder case_order_from_text(std::string_view text) {
   throw InvalidInput("\"" + std::string(text) + "\" is no order of cases");
 }
 
-std::vector<std::size_t> find_cases(std::span<const CaseRecord> records, const CaseQuery& query) {
+std::vector<std::size_t> find_cases(std::span<const CaseRecord> records, const CaseQuery& query,
+                                    const Identities* identities) {
   std::vector<std::string> words;
   std::istringstream stream(files::folded(query.words));
   for (std::string word; stream >> word;) words.push_back(std::move(word));
@@ -84,7 +95,7 @@ std::vector<std::size_t> find_cases(std::span<const CaseRecord> records, const C
     if (!query.side.empty() && record.side != query.side) continue;
     if (query.state && record.state() != *query.state) continue;
     if (!words.empty()) {
-      const std::string text = searched(record);
+      const std::string text = searched(record, whose(record, identities));
       if (!std::all_of(words.begin(), words.end(),
                        [&](const std::string& word) { return text.find(word) != std::string::npos; }))
         continue;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "planning/library/case_record.h"
+#include "planning/library/cohort.h"
 
 namespace arthronaut::library {
 
@@ -31,7 +32,10 @@ struct CaseQuery {
 };
 
 // Which of the records, in order. Equal ones are in the order of their names, then of their folders.
-[[nodiscard]] std::vector<std::size_t> find_cases(std::span<const CaseRecord> records,
-                                                  const CaseQuery& query);
+// identities (read_identities, kept in no index): words find a patient's name, number and day of birth, too.
+// Only for who is shown the patients anyway: in a list that names nobody, that a name finds a case tells
+// whose it is.
+[[nodiscard]] std::vector<std::size_t> find_cases(std::span<const CaseRecord> records, const CaseQuery& query,
+                                                  const Identities* identities = nullptr);
 
 }  // namespace arthronaut::library

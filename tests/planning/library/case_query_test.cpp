@@ -86,5 +86,24 @@ TEST_F(CaseQueryTest, WordsOfStatesAndOrdersComeBack) {
   EXPECT_THROW((void)case_order_from_text("size"), InvalidInput);
 }
 
+// A surgeon looks for a patient. Only where the patients are known to who asks: in a list that names nobody a
+// name finds nothing, or that it finds would tell whose case it is.
+TEST_F(CaseQueryTest, FindsThePatientOnlyForWhoIsToldThePatients) {
+  const Identities patients{{records_[1].folder, {"M\u00fcller^Anna", "4711", "19900131"}},
+                            {records_[3].folder, {"Muster^Bernd", "0815", ""}}};
+  for (const char* words : {"m\u00fcller", "M\u00dcLLER anna", "M\u00fcller, Anna", "4711", "1990-01-31",
+                            "19900131", "m\u00fcller right"}) {
+    CaseQuery query;
+    query.words = words;
+    EXPECT_THAT(find_cases(records_, query, &patients), ElementsAre(1U)) << words;
+    EXPECT_THAT(find_cases(records_, query), IsEmpty()) << words;
+  }
+  CaseQuery query;
+  query.words = "muster";
+  EXPECT_THAT(find_cases(records_, query, &patients), ElementsAre(3U));
+  query.words = "muster anna";
+  EXPECT_THAT(find_cases(records_, query, &patients), IsEmpty());
+}
+
 }  // namespace
 }  // namespace arthronaut::library
