@@ -73,6 +73,11 @@ ImportSource source_of(const fs::path& root, const images::ImageSeries& series) 
 }
 
 std::optional<std::size_t> ImportSources::best() const {
+  if (!wanted_uid.empty()) {
+    for (std::size_t i = 0; i < sources.size(); ++i)
+      if (sources[i].series && sources[i].series->uid == wanted_uid && sources[i].can_be_imported()) return i;
+    return std::nullopt;  // another one would be taken for what was chosen
+  }
   std::optional<std::size_t> best;
   const auto worth = [](const ImportSource& source) {
     if (!source.series) return 1;
@@ -84,6 +89,13 @@ std::optional<std::size_t> ImportSources::best() const {
     if (!best || worth(sources[i]) > worth(sources[*best])) best = i;
   }
   return best;
+}
+
+std::string series_of_one_slice(const fs::path& root, const images::SeriesList& list) {
+  std::error_code error;
+  if (!fs::is_regular_file(root, error) || list.series.size() != 1) return "";
+  const images::ImageSeries& series = list.series.front();
+  return series.image_count == 1 && !series.is_readable() ? series.uid : "";
 }
 
 bool may_hold_series(const fs::path& root) {

@@ -26,10 +26,15 @@ struct ImportSources {
   std::filesystem::path root;
   std::vector<ImportSource> sources;
   std::vector<std::string> left_out;  // "REPORT.dcm: is no image"
-  // The one to begin with: the readable CT or label map with the most images, else the first that can be
-  // imported.
+  std::string wanted_uid;             // of the series that somebody chose one slice of; else empty
+  // The one to begin with: the series that was wanted, and where it can't be imported none; else the readable
+  // CT or label map with the most images, else the first that can be imported.
   [[nodiscard]] std::optional<std::size_t> best() const;
 };
+
+// The series of which a file that was chosen is one slice and no more; empty where it is not such a file.
+[[nodiscard]] std::string series_of_one_slice(const std::filesystem::path& root,
+                                              const images::SeriesList& list);
 
 // Whether the root is to be looked through for series, by importing::SeriesProcess: a mesh holds none.
 [[nodiscard]] bool may_hold_series(const std::filesystem::path& root);

@@ -33,6 +33,7 @@ void ImportWork::look_into(const fs::path& root) {
   spaces_.clear();
   failure_ = {};
   noted_ = 0;
+  wanted_uid_.clear();
   state_ = State::Looking;  // until poll(), whatever it is: the window sees every step
   if (!may_hold_series(root)) return;
   try {
@@ -55,8 +56,15 @@ void ImportWork::take_sources() {
       failure_ = {.words = series_->message()};
     }
   }
+  // A slice alone can't be imported, and of a folder of slices a person chooses one.
+  if (const std::string uid = series_of_one_slice(sources_.root, list); !uid.empty()) {
+    look_into(fs::absolute(sources_.root).parent_path());
+    wanted_uid_ = uid;
+    return;
+  }
   // Without a list there may be meshes all the same.
   sources_ = import_sources(sources_.root, list);
+  sources_.wanted_uid = wanted_uid_;
   state_ = State::Choosing;
 }
 

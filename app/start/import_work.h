@@ -46,8 +46,10 @@ class ImportWork {
   ImportWork(const ImportWork&) = delete;
   ImportWork& operator=(const ImportWork&) = delete;
 
-  void look_into(const std::filesystem::path& root);  // from any state; what ran is cancelled
-  void start(const ImportWishes& wishes);             // Choosing; without a source: nothing
+  // From any state; what ran is cancelled. One slice of a DICOM series stands for its series: its folder is
+  // looked into then.
+  void look_into(const std::filesystem::path& root);
+  void start(const ImportWishes& wishes);  // Choosing; without a source: nothing
   // Running, Asking: back to Choosing. Looking: Idle. Choosing: no more pictures are made.
   void cancel();
   // Choosing. Which bone a mesh of the list is.
@@ -103,6 +105,7 @@ class ImportWork {
   std::size_t noted_ = 0;  // of its pictures
   worker::Awaited<void> saving_;
   ImportSources sources_;
+  std::string wanted_uid_;  // as in sources_
   ImportWishes wishes_;
   std::map<std::size_t, bones::Space> spaces_;  // of sources whose axes a person has swapped
   std::size_t next_ = 0;                        // of the wished sources

@@ -147,6 +147,25 @@ void StartView::draw_refusal(const widgets::Ui& ui) {
   }
 }
 
+namespace {
+
+// Of the selected one all that is known against it, each on a line; of the others what is first, and how much
+// more there is.
+std::string wrong_in_words(const ImportSource& source, bool is_selected) {
+  if (!source.can_be_imported()) return "Cannot be imported: " + source.refusal;
+  if (source.warnings.empty()) return "";
+  std::string words = source.warnings.front();
+  if (!is_selected) {
+    if (source.warnings.size() > 1)
+      words += "  (and " + std::to_string(source.warnings.size() - 1) + " more)";
+    return words;
+  }
+  for (std::size_t i = 1; i < source.warnings.size(); ++i) words += "\n" + source.warnings[i];
+  return words;
+}
+
+}  // namespace
+
 void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
   const widgets::Rect head = rest.cut_top(ui.theme.px(88));
@@ -161,11 +180,15 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_answers(ui, buttons);
   widgets::begin_panel(ui, "start.sources", rest);
   draw_refusal(ui);
-  const float height = ui.theme.px(132), picture = ui.theme.px(116);
+  const float picture = ui.theme.px(116);
   for (std::size_t i = 0; i < found.sources.size(); ++i) {
     const ImportSource& source = found.sources[i];
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
+    const float wrap = width - picture - ui.theme.px(50);
+    const std::string wrong = wrong_in_words(source, i == state_.selected);
+    const float wrong_px = ui.theme.body->CalcTextSizeA(ui.theme.body->FontSize, 1e9F, wrap, wrong.c_str()).y;
+    const float height = std::max(ui.theme.px(132), ui.theme.px(66 + 10) + wrong_px);
     if (draw_page_row(ui, "start.source." + std::to_string(i), i, height)) ui.actions.run("start.tick");
     ImDrawList& list = *ImGui::GetWindowDrawList();
     if (const images::Thumbnail* made = work_.thumbnail(i); made != nullptr && made->width > 0) {
@@ -182,7 +205,7 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
     }
     const bool is_ticked = std::find(state_.ticked.begin(), state_.ticked.end(), i) != state_.ticked.end();
     if (is_ticked) ui.log.note_state("taken", source.title);
-    const float x = at.x + picture + ui.theme.px(30), wrap = width - picture - ui.theme.px(50);
+    const float x = at.x + picture + ui.theme.px(30);
     const Severity sign = !source.can_be_imported()  ? Severity::Bad
                           : !source.warnings.empty() ? Severity::Caution
                           : is_ticked                ? Severity::Good
@@ -195,9 +218,7 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
                        widgets::fitting(ui.theme.strong, title, wrap));
     widgets::draw_text(list, ui.theme.body, x + ui.theme.px(30), at.y + ui.theme.px(38), widgets::kQuietText,
                        source.detail);
-    const std::string wrong = !source.can_be_imported() ? "Cannot be imported: " + source.refusal
-                              : source.warnings.empty() ? std::string()
-                                                        : source.warnings.front();
+    if (i == state_.selected) ui.log.note_state("source_warnings", wrong);
     if (!wrong.empty())
       widgets::draw_text(list, ui.theme.body, x + ui.theme.px(30), at.y + ui.theme.px(66),
                          source.can_be_imported() ? widgets::kCaution : widgets::kBad, wrong, wrap);

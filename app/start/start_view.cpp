@@ -78,6 +78,7 @@ void StartView::tick() {
     state_.ticked.clear();
     if (const auto best = work_.sources().best()) {
       state_.selected = *best;
+      state_.scrolls_to_selected = true;  // wherever in the list it is
       state_.ticked = {*best};
       // Meshes of different bones are one knee's.
       const auto& sources = work_.sources().sources;

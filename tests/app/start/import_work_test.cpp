@@ -243,6 +243,39 @@ TEST_F(ImportWorkTest, ListsTheSeriesAndThenShowsThem) {
               testing::AllOf(testing::StartsWith("No picture: "), testing::HasSubstr("end early")));
 }
 
+// A folder of slices in a file dialog: one is clicked on, and its series is meant. It was a dead end.
+TEST_F(ImportWorkTest, OneSliceStandsForItsSeries) {
+  write_slices("disc", "1.2.3.4");
+  write_slices("disc/more", "1.2.3.5");
+  const auto slice = *std::filesystem::directory_iterator(folder_ / "disc" / "more");
+  work_.look_into(slice.path());
+  ASSERT_TRUE(reach(State::Choosing));
+  EXPECT_EQ(work_.failure(), "");
+  EXPECT_EQ(work_.sources().root, folder_ / "disc" / "more");
+  ASSERT_TRUE(work_.sources().best());
+  const ImportSource& taken = work_.sources().sources.at(*work_.sources().best());
+  EXPECT_EQ(taken.series->uid, "1.2.3.5");
+  EXPECT_GT(taken.series->image_count, 1);
+  EXPECT_TRUE(taken.can_be_imported()) << taken.refusal;
+}
+
+// Of a folder with several the one that was chosen is taken, and no other where it cannot be.
+TEST(ImportSources, TheSeriesThatWasChosenIsTheOneToBeginWith) {
+  ImportSources found;
+  for (const char* uid : {"1.1", "1.2"}) {
+    ImportSource source;
+    source.series = images::ImageSeries{};
+    source.series->uid = uid;
+    source.series->modality = uid == std::string("1.1") ? "CT" : "MR";
+    found.sources.push_back(source);
+  }
+  EXPECT_EQ(found.best(), 0U);
+  found.wanted_uid = "1.2";
+  EXPECT_EQ(found.best(), 1U);
+  found.sources[1].refusal = "holds one slice only";
+  EXPECT_FALSE(found.best());
+}
+
 // Whatever ends the process that looks: it is said, meshes are listed all the same, and the next look is as
 // ever.
 TEST_F(ImportWorkTest, AProcessThatDiesWhileLookingIsAReasonAndNoHarm) {
