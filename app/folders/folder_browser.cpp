@@ -28,6 +28,8 @@ const char* word_of(FolderEntry::Kind kind) {
       return "images";
     case FolderEntry::Kind::Mesh:
       return "mesh";
+    case FolderEntry::Kind::Markups:
+      return "markups";
   }
   return "";
 }

@@ -35,6 +35,8 @@ std::string size_text(std::uintmax_t bytes) {
 
 }  // namespace
 
+bool is_markups_name(const fs::path& file) { return lower(file.filename().string()).ends_with(".mrk.json"); }
+
 bool is_image_name(const fs::path& file) {
   if (lower(file.filename().string()) == "dicomdir") return true;
   return ends_with_one(file, std::array<std::string_view, 9>{".nii", ".nii.gz", ".nrrd", ".nhdr", ".mha",
@@ -60,8 +62,10 @@ FolderListing list_folder(const fs::path& folder) {
     FolderEntry entry{FolderEntry::Kind::Folder, it->path(), name, ""};
     if (it->is_directory(none)) {
       if (library::is_case_folder(it->path())) entry.kind = FolderEntry::Kind::Case;
-    } else if (bones::is_mesh_file(name) || is_image_name(name)) {
-      entry.kind = bones::is_mesh_file(name) ? FolderEntry::Kind::Mesh : FolderEntry::Kind::Image;
+    } else if (bones::is_mesh_file(name) || is_image_name(name) || is_markups_name(name)) {
+      entry.kind = bones::is_mesh_file(name) ? FolderEntry::Kind::Mesh
+                   : is_image_name(name)     ? FolderEntry::Kind::Image
+                                             : FolderEntry::Kind::Markups;
       entry.detail = size_text(it->file_size(none));
     } else {
       ++listing.other_files;

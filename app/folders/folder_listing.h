@@ -9,11 +9,12 @@ namespace arthronaut::folders {
 
 struct FolderEntry {
   enum class Kind {
-    Case,    // a folder with case.json
-    Folder,  // any other
-    Image,   // a file that may be a volume, by its extension; DICOM files often have none and are taken with
-             // their folder
-    Mesh,    // by its extension
+    Case,     // a folder with case.json
+    Folder,   // any other
+    Image,    // a file that may be a volume, by its extension; DICOM files often have none and are taken with
+              // their folder
+    Mesh,     // by its extension
+    Markups,  // 3D Slicer's, .mrk.json
   } kind = Kind::Folder;
   std::filesystem::path path;
   std::string name;
@@ -30,6 +31,7 @@ struct FolderListing {
 // Hidden names are left out. Never throws.
 [[nodiscard]] FolderListing list_folder(const std::filesystem::path& folder);
 
+[[nodiscard]] bool is_markups_name(const std::filesystem::path& file);
 // By extension: a volume, or a DICOM file or directory.
 [[nodiscard]] bool is_image_name(const std::filesystem::path& file);
 

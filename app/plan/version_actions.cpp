@@ -91,10 +91,10 @@ void PlanView::add_version_actions(widgets::Actions& actions) {
   actions.add(
       {"plan.export",
        "Export",
-       "For other programs, into the folder \"export\" of the case: the plan as JSON, CSV and markups of 3D "
-       "Slicer, the drilled bones as STL and PLY. Markups that were moved there are taken back when the file "
-       "is "
-       "dropped on this window",
+       "For other programs, into the plan's own folder within \"export\" of the case: the plan as JSON, CSV "
+       "and "
+       "markups of 3D Slicer, the drilled bones as STL and PLY. Markups that were moved there are taken back "
+       "by Ctrl+M",
        GLFW_KEY_E,
        GLFW_MOD_CONTROL,
        false,

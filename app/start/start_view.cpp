@@ -28,6 +28,7 @@ StartView::StartView(std::function<void(const fs::path&)> open, std::function<vo
 
 void StartView::enter(const fs::path& open_case) {
   wants_to_close_ = false;
+  markups_.reset();
   state_.open_case = open_case;
   cases_.enter();
   if (!work_.is_busy() && work_.state() != State::Asking) {
@@ -51,6 +52,11 @@ void StartView::take(const fs::path& path) {
   std::error_code error;
   if (library::is_case_folder(path)) return open_(path);
   if (path.filename() == "case.json" && fs::exists(path, error)) return open_(path.parent_path());
+  if (folders::is_markups_name(path) && !state_.open_case.empty()) {
+    markups_ = path;
+    wants_to_close_ = true;
+    return;
+  }
   leave();
   state_.page = Page::Import;
   state_.selected = 0;

@@ -7,7 +7,9 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/folders/folder_browser.h"
@@ -31,8 +33,15 @@ class StartView {
   // empty: none is open.
   void enter(const std::filesystem::path& open_case);
   void leave();  // something else comes to the front
-  // A folder or file from outside: a case is opened, anything else is looked into for the import.
+  // A folder or file from outside: a case is opened, 3D Slicer's markups are for the case that is open
+  // (take_markups()), anything else is looked into for the import.
   void take(const std::filesystem::path& path);
+  // The folders of this machine, in which one of these is to be chosen.
+  void browse();
+  // Once what was chosen of markups, after which it wants to close.
+  [[nodiscard]] std::optional<std::filesystem::path> take_markups() {
+    return std::exchange(markups_, std::nullopt);
+  }
   void tick();
   void draw(const widgets::Ui& ui, const widgets::Rect& area);
 
@@ -55,7 +64,6 @@ class StartView {
   void add_page_actions(widgets::Actions& actions);
   void add_import_actions(widgets::Actions& actions);
   void add_question_actions(widgets::Actions& actions);
-  void browse();
   void move_selection(int by);
   void go_back();
   void accept();  // Enter
@@ -105,6 +113,7 @@ class StartView {
   ViewState state_;
   std::map<std::size_t, std::unique_ptr<widgets::GreyTexture>> thumbnails_;  // by source
   bool wants_to_close_ = false;
+  std::optional<std::filesystem::path> markups_;
 };
 
 }  // namespace arthronaut::start

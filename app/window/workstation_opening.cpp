@@ -1,4 +1,5 @@
 // How one case takes the place of another.
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 #include <utility>
@@ -140,6 +141,36 @@ void WorkstationWindow::take_dropped() {
   shows_start_ = true;
   start_.enter(case_ != nullptr ? case_->folder() : std::filesystem::path());
   start_.take(dropped.front());
+}
+
+void WorkstationWindow::add_markups_action() {
+  actions_.add(
+      {"plan.markups",
+       "Take markups",
+       "The tunnels as 3D Slicer's markups (.mrk.json) have them: choose the file, or drop it on this "
+       "window",
+       GLFW_KEY_M,
+       GLFW_MOD_CONTROL,
+       false,
+       [this] {
+         return model() != nullptr && opening_ == nullptr && plan_ != nullptr && &shown() == plan_ &&
+                !shows_start() && !shows_paint() && !case_->is_read_only() && !has_running_work();
+       },
+       {},
+       [this] {
+         leave_shown();
+         shows_start_ = true;
+         start_.enter(case_->folder());
+         start_.browse();
+       }});
+}
+
+void WorkstationWindow::take_chosen_markups() {
+  const auto chosen = start_.take_markups();
+  if (!chosen || model() == nullptr || plan_ == nullptr) return;
+  for (std::size_t mode = 0; mode < modes_.size(); ++mode)
+    if (modes_[mode].get() == plan_) show(mode);
+  plan_->take_markups(*chosen);
 }
 
 }  // namespace arthronaut::window

@@ -74,6 +74,7 @@ void WorkstationWindow::add_actions() {
                   shows_start_ = true;
                   start_.enter(case_->folder());
                 }});
+  add_markups_action();
   actions_.add({"app.stop_opening",
                 "Stop opening",
                 "The case stays closed; one that was open stays so",
@@ -208,6 +209,7 @@ void WorkstationWindow::work() {
   guarded([this] {
     dispatch_keys();
     if (shows_start_ && start_.wants_to_close()) close_start();
+    take_chosen_markups();
   });
   for (const auto& mode : modes_) guarded([&] { mode->tick(GraphicsWindow::now_s()); });
   guarded([this] { offer_cut_off(); });

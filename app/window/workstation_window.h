@@ -57,6 +57,9 @@ class WorkstationWindow {
   void draw_opening(const widgets::Ui& ui, const widgets::Rect& area) const;
   void let_go(std::unique_ptr<open_case::CaseOpening> closed);
   void take_dropped();
+  // Markups that were moved in 3D Slicer: chosen among the folders, as dropped on Plan.
+  void add_markups_action();
+  void take_chosen_markups();
   void close_start();
   void leave_shown();  // whatever is in front
   // The painting of the open case's bones.

@@ -36,6 +36,17 @@ TEST(FolderListing, SortsCasesFoldersAndFiles) {
   EXPECT_EQ(listing.failure, "");
 }
 
+// 3D Slicer's markups can be chosen; any other JSON is none of ours.
+TEST(FolderListing, ListsMarkups) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"plan.mrk.json", "plan.json"}) std::ofstream(folder / name) << "{}";
+  const FolderListing listing = list_folder(folder.path());
+  ASSERT_EQ(listing.entries.size(), 1U);
+  EXPECT_EQ(listing.entries[0].name, "plan.mrk.json");
+  EXPECT_EQ(listing.entries[0].kind, Kind::Markups);
+  EXPECT_EQ(listing.other_files, 1U);
+}
+
 // A folder that is not there, or a file, is said; nothing is thrown. A path that ends in a stroke is the
 // folder.
 TEST(FolderListing, SaysWhatItCannotList) {
