@@ -32,7 +32,10 @@ bool is_same(const cases::Plan& a, const cases::Plan& b) {
 
 void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folder,
                        const std::string& read_only) {
-  *this = {};
+  leave_steps();
+  PlanHistory anew;
+  anew.left_ = std::move(left_);
+  *this = std::move(anew);
   model_ = model;
   case_folder_ = case_folder;
   if (model != nullptr) {
@@ -47,7 +50,31 @@ void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folde
   if (is_read_only_) {
     status_.save = PlanStatus::Save::ReadOnly;
     status_.text = "not to be changed: the case " + read_only;
+  } else if (model != nullptr) {
+    take_up_steps();
   }
+}
+
+bool PlanHistory::is_same_state(const State& a, const State& b) {
+  return is_same(a.plan, b.plan) && a.measurements == b.measurements && a.landmarks == b.landmarks &&
+         a.landmark_states == b.landmark_states;
+}
+
+// The model may be gone by now: the last step knows how the case was left.
+void PlanHistory::leave_steps() {
+  if (steps_.empty() || is_in_conflict() || case_folder_.empty()) return;
+  left_[case_folder_] = {steps_, position_, position_ > 0 ? steps_[position_ - 1].after : steps_[0].before};
+}
+
+void PlanHistory::take_up_steps() {
+  const auto left = left_.find(case_folder_);
+  if (left == left_.end()) return;
+  if (is_same_state(left->second.state, state())) {
+    steps_ = std::move(left->second.steps);
+    position_ = left->second.position;
+    describe();
+  }
+  left_.erase(left);
 }
 
 void PlanHistory::begin(const std::string& what, bool continues) {

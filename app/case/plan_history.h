@@ -23,8 +23,10 @@ namespace arthronaut::open_case {
 
 class PlanHistory {
  public:
-  // Another case: forgets the steps. The model outlives this history's use of it; null closes. read_only: why
-  // nothing may be changed; empty where it may.
+  // Another case. The steps of the one before are kept while the program runs: they are there again where it
+  // is opened anew as it was left; where anything of it was changed elsewhere, they are forgotten. The model
+  // outlives this history's use of it; null closes. read_only: why nothing may be changed; empty where it
+  // may.
   void open(PlanModel* model, const std::filesystem::path& case_folder, const std::string& read_only = {});
   [[nodiscard]] const PlanModel* model() const { return model_; }  // null while no case is open
   [[nodiscard]] bool is_read_only() const { return is_read_only_; }
@@ -85,6 +87,15 @@ class PlanHistory {
     std::string what;
     State before, after;
   };
+  // Of a case that is not open now.
+  struct Left {
+    std::vector<Step> steps;
+    std::size_t position = 0;
+    State state;  // as it was left
+  };
+  [[nodiscard]] static bool is_same_state(const State& a, const State& b);
+  void leave_steps();
+  void take_up_steps();
   [[nodiscard]] State state() const;
   void put(const State& state);
   [[nodiscard]] bool is_saved_beside_plan(const State& now) const;
@@ -105,7 +116,8 @@ class PlanHistory {
   bool is_read_only_ = false;
   std::vector<Step> steps_;
   std::size_t position_ = 0;  // steps_[0, position_) are done
-  bool is_moving_ = false;    // the last step is still going on
+  std::map<std::filesystem::path, Left> left_;
+  bool is_moving_ = false;  // the last step is still going on
   double moved_at_s_ = 0, looked_at_s_ = 0;
   PlanStatus status_;
 };

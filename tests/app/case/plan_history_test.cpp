@@ -59,6 +59,41 @@ TEST_F(PlanHistoryTest, AMovementIsOneStep) {
   EXPECT_NEAR(model_.tunnel(BoneKind::Femur)->diameter_mm, start_mm_ + 1.5, 1e-12);
 }
 
+// A surgeon looks at another knee and comes back: what he did here can still be taken back. Not where the
+// case was changed elsewhere meanwhile: a step back from another state would be an invention.
+TEST_F(PlanHistoryTest, TheStepsAreThereAgainAfterAnotherCase) {
+  history_.apply(wider(1, false), 1.0);
+  history_.settle(2.0);
+  history_.apply(wider(1, false), 3.0);
+  history_.settle(4.0);
+  history_.undo();
+  const test::TemporaryFolder elsewhere;
+  cases::save_case(elsewhere.path(), knee());
+  PlanModel other(cases::load_case(elsewhere.path()));
+  history_.open(&other, elsewhere.path());
+  EXPECT_FALSE(history_.can_undo());
+  EXPECT_FALSE(history_.can_redo());
+  PlanModel again(cases::load_case(folder_));
+  history_.open(&again, folder_);
+  ASSERT_TRUE(history_.can_undo());
+  EXPECT_EQ(history_.status().undo_what, "Change the diameter of the femoral tunnel");
+  history_.redo();
+  EXPECT_NEAR(again.tunnel(BoneKind::Femur)->diameter_mm, start_mm_ + 2, 1e-9);
+  history_.go_to(0);
+  EXPECT_NEAR(again.tunnel(BoneKind::Femur)->diameter_mm, start_mm_, 1e-9);
+  EXPECT_NEAR(saved_diameter_mm(), start_mm_, 1e-9);
+  history_.redo();
+
+  history_.open(&other, elsewhere.path());
+  cases::Case changed = cases::load_case(folder_);
+  changed.plan.tunnels.at(BoneKind::Femur).diameter_mm = 11.5;
+  cases::save_case(folder_, changed);
+  PlanModel changed_model(cases::load_case(folder_));
+  history_.open(&changed_model, folder_);
+  EXPECT_FALSE(history_.can_undo());
+  EXPECT_FALSE(history_.can_redo());
+}
+
 // What is on disk is the last state that came to rest, after every step, undo and redo.
 TEST_F(PlanHistoryTest, SavesByItself) {
   history_.apply(wider(1, false), 1.0);
