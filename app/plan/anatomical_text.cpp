@@ -20,7 +20,12 @@ std::string anatomical_text(const Eigen::Vector3d& displacement_mm, const landma
     text += std::to_string(std::lround(std::abs(part.value))) + " mm " +
             (part.value > 0 ? part.positive : part.negative);
   }
-  return text.empty() ? "at the entry" : text;
+  return text;
+}
+
+std::string place_from_entry(const Eigen::Vector3d& displacement_mm, const landmarks::AnatomicalAxes& axes) {
+  const std::string text = anatomical_text(displacement_mm, axes);
+  return text.empty() ? "at the entry" : text + " of the entry";
 }
 
 }  // namespace arthronaut::plan

@@ -141,15 +141,16 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
                is_there,
                {},
                [this] { confirm_landmarks(false); }});
-  actions.add({"plan.landmark_confirm_all",
-               "Confirm all",
-               "Every landmark of this bone is where it should be",
-               GLFW_KEY_ENTER,
-               GLFW_MOD_SHIFT,
-               false,
-               can_change,
-               {},
-               [this] { confirm_landmarks(true); }});
+  actions.add(
+      {"plan.landmark_confirm_all",
+       "Confirm all",
+       "Every landmark of this bone is where it should be",
+       GLFW_KEY_ENTER,
+       GLFW_MOD_SHIFT,
+       false,
+       [this, can_change] { return can_change() && has_to_confirm(landmark_rows(*model_, state_.key.bone)); },
+       {},
+       [this] { confirm_landmarks(true); }});
   actions.add({"plan.landmark_place", "Place", "Then click where the landmark is", GLFW_KEY_P, 0, false,
                can_change, [this] { return state_.placing == Placing::Landmark; },
                [this] {

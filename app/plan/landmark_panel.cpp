@@ -27,6 +27,10 @@ bool lies_within_bone(std::string_view name) {
   return name.ends_with("_condyle_center") || name.starts_with("shaft_");
 }
 
+bool has_to_confirm(const std::vector<LandmarkRow>& rows) {
+  return std::ranges::count(rows, LandmarkRow::State::Proposed, &LandmarkRow::state) > 0;
+}
+
 std::string confirmed_in_words(const std::vector<LandmarkRow>& rows) {
   const auto confirmed = std::ranges::count(rows, LandmarkRow::State::Confirmed, &LandmarkRow::state);
   const auto missing = std::ranges::count(rows, LandmarkRow::State::Missing, &LandmarkRow::state);

@@ -22,6 +22,8 @@ struct LandmarkRow {
 [[nodiscard]] std::vector<LandmarkRow> landmark_rows(const open_case::PlanModel& model, bones::BoneKind bone);
 // Whether the landmark lies in the bone, as the centre of a condyle does, and not on its surface.
 [[nodiscard]] bool lies_within_bone(std::string_view name);
+// Whether one waits for somebody's look; without one "Confirm all" would do nothing.
+[[nodiscard]] bool has_to_confirm(const std::vector<LandmarkRow>& rows);
 // "6 of 14 confirmed, 1 not there": of those that are there all can be.
 [[nodiscard]] std::string confirmed_in_words(const std::vector<LandmarkRow>& rows);
 // How far it lies from where the bone's shape puts it; nullopt where either is not there (yet).

@@ -126,10 +126,8 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
   draw_numbers(ui, *tunnel, geometry);
   if (geometry.enters_bone)
     widgets::text_in(ui.theme.body, widgets::kText,
-                     "Leaves the bone " +
-                         anatomical_text(geometry.exit_mm - geometry.entry_on_surface_mm,
-                                         panel.model.axes(panel.key.bone)) +
-                         " of the entry");
+                     "Leaves the bone " + place_from_entry(geometry.exit_mm - geometry.entry_on_surface_mm,
+                                                           panel.model.axes(panel.key.bone)));
   ImGui::Dummy({0, ui.theme.px(4)});
   draw_bone_doubts(ui, panel);
   for (const tunnels::PlanCheck& check : panel.model.checks(panel.key)) {

@@ -87,7 +87,7 @@ void SlicePanes::fit() {
 }
 
 void SlicePanes::go_to_next_window() {
-  if (volume_ != nullptr) window_ = scene::next_window(window_, automatic_, volume_->modality);
+  if (volume_ != nullptr) window_ = scene::next_window(window_, automatic_, *volume_);
 }
 
 std::string SlicePanes::reason() const {

@@ -80,6 +80,10 @@ GreyWindow next_window(const GreyWindow& now, const GreyWindow& automatic, std::
   return now == kSoftTissueWindow ? automatic : kBoneWindow;
 }
 
+GreyWindow next_window(const GreyWindow& now, const GreyWindow& automatic, const images::Volume& volume) {
+  return images::is_label_map(volume) ? automatic : next_window(now, automatic, volume.modality);
+}
+
 void reslice(const images::Volume& volume, const SlicePlane& plane, const Eigen::Vector2i& size_px,
              const GreyWindow& window, std::vector<std::uint8_t>& grey) {
   const auto width = static_cast<std::size_t>(std::max(size_px.x(), 0));

@@ -41,6 +41,9 @@ inline constexpr GreyWindow kBoneWindow{480, 2500}, kSoftTissueWindow{40, 400};
 // the automatic one alone: their values are no HU.
 [[nodiscard]] GreyWindow next_window(const GreyWindow& now, const GreyWindow& automatic,
                                      std::string_view modality);
+// The same of images that are at hand; of a label map, whose values are names, the automatic one alone.
+[[nodiscard]] GreyWindow next_window(const GreyWindow& now, const GreyWindow& automatic,
+                                     const images::Volume& volume);
 
 // Trilinear between voxel centres; outside of the outermost centres black. `grey` becomes width * height
 // bytes, rows from the top.

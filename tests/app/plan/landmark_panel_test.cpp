@@ -15,8 +15,12 @@ TEST(LandmarkPanel, CountsWhatCanBeConfirmed) {
   rows[0].state = rows[1].state = State::Confirmed;
   rows[2].state = State::Proposed;
   EXPECT_EQ(confirmed_in_words(rows), "2 of 3 confirmed, 1 not there");
+  EXPECT_TRUE(has_to_confirm(rows));
   rows[2].state = rows[3].state = State::Confirmed;
   EXPECT_EQ(confirmed_in_words(rows), "4 of 4 confirmed");
+  EXPECT_FALSE(has_to_confirm(rows)) << "the button stayed bright";
+  rows[3].state = State::Missing;
+  EXPECT_FALSE(has_to_confirm(rows)) << "what is not there cannot be confirmed";
 }
 
 // Those that a click on the surface would put in the wrong place; every other one lies on it.

@@ -101,7 +101,9 @@ TEST(AnatomicalText, FollowsSideAndAxes) {
   EXPECT_EQ(anatomical_text({-28, -12, 14}, landmarks::scanner_axes(bones::Side::Right)),
             "14 mm proximal, 28 mm lateral, 12 mm anterior");
   EXPECT_EQ(anatomical_text({-28, 0.2, 0}, landmarks::scanner_axes(bones::Side::Left)), "28 mm medial");
-  EXPECT_EQ(anatomical_text({0, 0, 0.3}, landmarks::scanner_axes(bones::Side::Left)), "at the entry");
+  EXPECT_EQ(place_from_entry({-28, 0.2, 0}, landmarks::scanner_axes(bones::Side::Left)),
+            "28 mm medial of the entry");
+  EXPECT_EQ(place_from_entry({0, 0, 0.3}, landmarks::scanner_axes(bones::Side::Left)), "at the entry");
   landmarks::AnatomicalAxes turned;  // a bone that lies on its back, the shaft along +x
   turned.proximal = Eigen::Vector3d::UnitX();
   turned.anterior = Eigen::Vector3d::UnitZ();

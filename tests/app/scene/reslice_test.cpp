@@ -97,6 +97,23 @@ TEST(Outline, OfABallIsACircle) {
   EXPECT_TRUE(outline_of(ball, 21 * normal, normal).empty());
 }
 
+// The values of a label map are names: none of them is bone at 480 HU. W went through the windows of a CT, in
+// which all is black.
+TEST(Reslice, AWindowOfALabelMapIsNeverInHu) {
+  images::Volume labels;
+  labels.size = {4, 4, 4};
+  labels.values.assign(64, 0);
+  std::fill(labels.values.begin() + 32, labels.values.end(), 2.F);
+  ASSERT_TRUE(images::is_label_map(labels));
+  const GreyWindow automatic = automatic_window(labels);
+  EXPECT_EQ(next_window(automatic, automatic, labels), automatic);
+  EXPECT_EQ(next_window({7, 3}, automatic, labels), automatic);
+  labels.modality = "CT";
+  labels.values[5] = 40.5;
+  ASSERT_FALSE(images::is_label_map(labels));
+  EXPECT_EQ(next_window(automatic, automatic, labels), kBoneWindow);
+}
+
 // A key goes round the windows of a CT; an MR has one, however it was dragged.
 TEST(Reslice, AWindowOfAnMrIsNeverInHu) {
   const GreyWindow automatic{300, 600}, dragged{100, 50};
