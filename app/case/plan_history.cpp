@@ -39,6 +39,7 @@ void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folde
   model_ = model;
   case_folder_ = case_folder;
   if (model != nullptr) {
+    model->set_saver([this, model] { return model_ == model ? save_now() : std::string(); });
     version_ = model->knee().plan_version;
     saved_ = state();
     // What was proposed on opening goes to disk with the first change: whoever reads the case, as a report,
@@ -185,6 +186,18 @@ void PlanHistory::settle(double now_s) {
 
 void PlanHistory::settle_now() {
   if (std::exchange(is_moving_, false)) save();
+}
+
+std::string PlanHistory::save_now() {
+  settle_now();
+  if (status_.save == PlanStatus::Save::Failed) save();
+  // What another program saved within the last second is not noticed yet.
+  std::error_code none;
+  if (!is_read_only_ && !is_in_conflict() && std::filesystem::is_directory(case_folder_, none) &&
+      is_changed_on_disk())
+    set_conflict();
+  const bool is_saved = status_.save == PlanStatus::Save::Saved || status_.save == PlanStatus::Save::ReadOnly;
+  return is_saved ? std::string() : status_.text;
 }
 
 void PlanHistory::describe() {

@@ -52,6 +52,9 @@ class PlanHistory {
   // Ends a movement that has rested for half a second, which saves it.
   void settle(double now_s);
   void settle_now();
+  // The same, and what could not be saved is tried again. Why the disk holds another plan than the model by
+  // now; empty where it is the model's. PlanModel::save_now() is this.
+  std::string save_now();
   [[nodiscard]] bool is_moving() const { return is_moving_; }
 
   // Whether another program has saved a plan: looks at plan.json, at most once a second. What could not be

@@ -15,6 +15,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/scene/scene_content.h"
@@ -124,6 +125,11 @@ class PlanModel {
   [[nodiscard]] const std::vector<cases::Measurement>& measurements() const { return measurements_; }
   void set_measurements(std::vector<cases::Measurement> measurements);
   [[nodiscard]] std::uint64_t revision() const { return revision_; }  // counts the changes
+  // For whoever starts work on what is on the disk: saves what is not saved yet. Why it could not be, else
+  // empty; also where nobody saves this model.
+  [[nodiscard]] std::string save_now() const { return saver_ ? saver_() : std::string(); }
+  // By whom it is saved: PlanHistory.
+  void set_saver(std::function<std::string()> saver) { saver_ = std::move(saver); }
 
  private:
   struct BoneModel {
@@ -168,6 +174,7 @@ class PlanModel {
   plan_review::MeasuredPlan measured_;
   tunnels::KneeSurroundings knee_surroundings_;
   std::uint64_t revision_ = 1;
+  std::function<std::string()> saver_;
   // Every frame asks, and every change costs a dozen milliseconds.
   mutable std::map<tunnels::TunnelKey, Checked> checked_;
   mutable std::map<bones::BoneKind, Late<landmarks::Proposal>> late_proposals_;

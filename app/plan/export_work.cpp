@@ -17,10 +17,11 @@ std::string ExportOutcome::in_words(std::uint64_t revision_now) const {
 void ExportWork::start(cases::Case knee, std::uint64_t revision, std::filesystem::path case_folder) {
   stop_ = {};
   running_.start(
-      [folder = cases::export_folder(case_folder, knee.plan), knee = std::move(knee), revision,
-       stop = stop_.get_token()] {
+      [case_folder = std::move(case_folder), knee = std::move(knee), revision, stop = stop_.get_token()] {
         ExportOutcome outcome{.revision = revision};
         try {  // a full disk is a state of the screen
+          // By the hash that stands in the files.
+          const auto folder = cases::export_folder(case_folder, cases::with_named_meshes(knee));
           const plan_export::ExportSummary summary = plan_export::export_plan(knee, folder, stop);
           if (summary.was_stopped) {
             outcome.was_stopped = true;

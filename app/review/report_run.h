@@ -17,8 +17,8 @@ namespace arthronaut::review {
 
 class ReportRun {
  public:
-  // plan: the case's, as it is saved. session: its folder's name; empty: of the case. on_news is called from
-  // the other thread when it has ended.
+  // plan: cases::with_named_meshes() of the case, as it is saved: what the report names is its hash. session:
+  // its folder's name; empty: of the case. on_news is called from the other thread when it has ended.
   ReportRun(const std::filesystem::path& case_folder, const cases::Plan& plan, const std::string& session,
             std::function<void()> on_news, const std::filesystem::path& program = "/proc/self/exe");
   [[nodiscard]] bool has_ended() const { return worker_.has_ended(); }

@@ -6,6 +6,7 @@
 
 #include "app/review/review_view.h"
 #include "navigation/recording/case_sessions.h"
+#include "planning/cases/plan_file.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::review {
@@ -296,9 +297,12 @@ void ReviewView::add_actions(widgets::Actions& actions) {
        },
        [this] { return is_writing_report(); },
        [this] {
-         report_ = std::make_unique<ReportRun>(case_folder_,
-                                               model_ != nullptr ? model_->knee().plan : cases::Plan{},
-                                               open_ ? open_->review.folder.filename().string() : "", wake_);
+         // It tells of what is on the disk: never of another plan than the one that is seen.
+         no_report_ = model_ != nullptr ? model_->save_now() : std::string();
+         if (!no_report_.empty()) return;
+         report_ = std::make_unique<ReportRun>(
+             case_folder_, model_ != nullptr ? cases::with_named_meshes(model_->knee()) : cases::Plan{},
+             open_ ? open_->review.folder.filename().string() : "", wake_);
        }});
   actions.add({"review.newer",
                "Newer",

@@ -51,6 +51,7 @@ void ReviewView::case_opened(const mode::OpenCase& opened) {
   chosen_.reset();
   open_.reset();
   report_.reset();
+  no_report_.clear();
   opens_for_another_case_ = opening_.is_busy();
   note_ = {};
   notice_.clear();
@@ -252,11 +253,16 @@ void ReviewView::draw_check(const widgets::Ui& ui) const {
 
 bool ReviewView::is_report_of_now() const {
   return report_ != nullptr && model_ != nullptr &&
-         report_->plan_sha256() == cases::plan_sha256(model_->knee().plan);
+         report_->plan_sha256() == cases::plan_sha256(cases::with_named_meshes(model_->knee()));
 }
 
 // Of whichever session it was asked for: its file names it. Of a plan that was changed since it is no tick.
 void ReviewView::draw_report(const widgets::Ui& ui) const {
+  if (!no_report_.empty()) {
+    ui.log.note_state("report", "refused");
+    widgets::status_row(ui, widgets::Severity::Bad, "No report", no_report_);
+    return;
+  }
   const std::string problem = report_ != nullptr && report_->has_ended() ? report_->problem() : "";
   ui.log.note_state("report", report_ == nullptr    ? "none"
                               : is_writing_report() ? "running"

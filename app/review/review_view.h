@@ -117,6 +117,7 @@ class ReviewView : public mode::Mode {
   bool opens_for_another_case_ = false;  // what opening_ reads is of the case that was open before
   std::optional<OpenSession> open_;
   std::unique_ptr<ReportRun> report_;          // null: none was asked for
+  std::string no_report_;                      // why the one that was asked for last was not begun
   double looked_at_end_s_ = -1;                // whether what is being recorded has ended
   std::optional<std::int64_t> comes_back_to_;  // the frame that was looked at before it was read again
   NoteField note_;

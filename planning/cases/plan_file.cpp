@@ -1,5 +1,6 @@
 #include "planning/cases/plan_file.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "planning/bones/mesh_hash.h"
@@ -58,7 +59,8 @@ Plan plan_from(const std::string& text, const fs::path& file) {
     tunnel.entry_mm = node.vector3("entry_mm");
     tunnel.direction = node.vector3("direction");
     if (tunnel.direction.norm() < 1e-6) node.fail("direction", "must not be zero");
-    tunnel.direction.normalize();
+    // One that was written normalised comes back to the bit: the plan's hash and the steps of undo need it.
+    if (std::abs(tunnel.direction.squaredNorm() - 1) > 1e-12) tunnel.direction.normalize();
     tunnel.diameter_mm = node.positive_number("diameter_mm");
     if (tunnel.diameter_mm < tunnels::kLeastDiameter_mm || tunnel.diameter_mm > tunnels::kGreatestDiameter_mm)
       node.fail("diameter_mm", files::format("is %g, must be %g to %g", tunnel.diameter_mm,

@@ -94,6 +94,19 @@ TEST_F(PlanHistoryTest, TheStepsAreThereAgainAfterAnotherCase) {
   EXPECT_FALSE(history_.can_redo());
 }
 
+// Normalising a direction again on reading would change its last digit: the steps would be another case's.
+TEST_F(PlanHistoryTest, TheStepsAreThereAgainWhateverTheDirection) {
+  tunnels::Tunnel tunnel = *model_.tunnel(BoneKind::Femur);
+  tunnel.direction = Eigen::Vector3d(-0.83, -0.32, 0.41).normalized();
+  history_.apply({BoneKind::Femur, tunnel, "Aim the femoral tunnel", false}, 1.0);
+  history_.settle_now();
+  history_.open(nullptr, {});
+  PlanModel again(cases::load_case(folder_));
+  EXPECT_EQ(again.tunnel(BoneKind::Femur)->direction, tunnel.direction);
+  history_.open(&again, folder_);
+  EXPECT_TRUE(history_.can_undo());
+}
+
 // What is on disk is the last state that came to rest, after every step, undo and redo.
 TEST_F(PlanHistoryTest, SavesByItself) {
   history_.apply(wider(1, false), 1.0);
@@ -102,6 +115,19 @@ TEST_F(PlanHistoryTest, SavesByItself) {
   EXPECT_EQ(history_.status().save, PlanStatus::Save::Saved);
   history_.undo();
   EXPECT_NEAR(saved_diameter_mm(), start_mm_, 1e-9);
+}
+
+// Work on what is on the disk, as a report, starts with what is seen, or does not start.
+TEST_F(PlanHistoryTest, TheModelIsSavedWhereWorkOnTheDiskStarts) {
+  history_.apply(wider(1, true), 1.0);
+  EXPECT_NEAR(saved_diameter_mm(), start_mm_, 1e-9);
+  EXPECT_EQ(model_.save_now(), "");
+  EXPECT_NEAR(saved_diameter_mm(), start_mm_ + 1, 1e-9);
+  cases::Case changed = cases::load_case(folder_);
+  changed.plan.tunnels.at(BoneKind::Femur).diameter_mm = 7.25;
+  cases::save_case(folder_, changed);
+  EXPECT_NE(model_.save_now(), "") << "another program saved another plan";
+  EXPECT_NEAR(saved_diameter_mm(), 7.25, 1e-9);
 }
 
 // Whoever reads the case has the landmarks that the screen planned by, as proposed; a look at a case writes

@@ -33,7 +33,8 @@ ExportOutcome outcome_of(const cases::Case& knee, const std::filesystem::path& c
 TEST(ExportWork, WritesThePlanAndSaysWhere) {
   const test::TemporaryFolder folder;
   const cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "export");
-  const std::filesystem::path of_plan = cases::export_folder(folder / "Knee.arthro", knee.plan);
+  const std::filesystem::path of_plan =
+      cases::export_folder(folder / "Knee.arthro", cases::with_named_meshes(knee));
   const ExportOutcome outcome = outcome_of(knee, folder / "Knee.arthro");
   EXPECT_TRUE(outcome.is_written);
   EXPECT_THAT(outcome.in_words(7), StartsWith("Exported into " + of_plan.string() +

@@ -6,9 +6,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
+#include <random>
+
 #include "planning/bones/mesh_file.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/files/atomic_file.h"
+#include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 #include "tests/message_of.h"
 #include "tests/planning/geometry/shapes.h"
@@ -104,6 +108,27 @@ TEST_F(PlanFile, SavesOverItsOwnVersions) {
   EXPECT_EQ(plan_version(folder_), "");
   EXPECT_THROW((void)save_plan_over(folder_, {}, version), InvalidInput);
   EXPECT_NO_THROW((void)save_plan_over(folder_, plan_with_diameter(8), ""));
+}
+
+// A plan keeps its name through a reading: what is exported and reported under it is found again.
+TEST_F(PlanFile, ADirectionIsReadBackToTheBit) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> any(0, 1);
+  for (int i = 0; i < 1000; ++i) {
+    Plan plan = plan_with_diameter(9);
+    Eigen::Vector3d along;
+    for (int axis = 0; axis < 3; ++axis) along[axis] = any(random);
+    plan.tunnels.at(BoneKind::Femur).direction = along.normalized();
+    EXPECT_EQ(plan_sha256(plan_from(files::as_text(to_json(plan)), "plan.json")), plan_sha256(plan));
+  }
+}
+
+// Other programs' directions need not be of length 1.
+TEST_F(PlanFile, ADirectionOfAnotherLengthIsNormalised) {
+  Plan plan = plan_with_diameter(9);
+  plan.tunnels.at(BoneKind::Femur).direction = {0, 3, 4};
+  const Plan back = plan_from(files::as_text(to_json(plan)), "plan.json");
+  EXPECT_NEAR((back.tunnels.at(BoneKind::Femur).direction - Eigen::Vector3d(0, 0.6, 0.8)).norm(), 0, 1e-12);
 }
 
 tunnels::Tunnel tunnel_of(norms::Bundle bundle, double x_mm) {
