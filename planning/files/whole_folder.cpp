@@ -1,10 +1,6 @@
 #include "planning/files/whole_folder.h"
 
-#include <fcntl.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -40,42 +36,12 @@ void or_leave_nothing(const fs::path& named, const std::string& unfinished,
   }
 }
 
-// A new folder to write in, on the disk of `folder`: beside it, where it can be exchanged with it, else
-// within it. Empty, with errno, where there can be none.
-std::string beside(const fs::path& folder) {
-  std::string made = (folder.parent_path() / ("." + folder.filename().string() + "-XXXXXX")).string();
-  struct stat here {
-  }, there{};
-  if (::mkdtemp(made.data()) != nullptr) {
-    if (::stat(folder.c_str(), &here) == 0 && ::stat(made.c_str(), &there) == 0 &&
-        here.st_dev == there.st_dev)
-      return made;
-    ::rmdir(made.c_str());
-  }
-  made = (folder / ".unfinished-XXXXXX").string();
-  return ::mkdtemp(made.data()) != nullptr ? made : "";
-}
-
-bool holds_nothing_else(const fs::path& folder, const fs::path& unfinished,
-                        const std::vector<fs::path>& gone) {
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const fs::path name = entry.path().filename();
-    if (!fs::exists(unfinished / name) && std::ranges::find(gone, name) == gone.end()) return false;
-  }
-  return true;
-}
-
 // mkdtemp makes them their owner's alone; nobody can ask for the umask without setting it.
 void as_open_as_any_new_one(const fs::path& folder) {
   std::error_code ignored;
   fs::create_directory(folder / "new", ignored);
   fs::permissions(folder, fs::status(folder / "new", ignored).permissions(), ignored);
   fs::remove(folder / "new", ignored);
-}
-
-// In one step, so that nobody ever sees half of each. False where the file system cannot.
-bool exchange(const fs::path& folder, const fs::path& unfinished) {
-  return ::renameat2(AT_FDCWD, folder.c_str(), AT_FDCWD, unfinished.c_str(), RENAME_EXCHANGE) == 0;
 }
 
 }  // namespace
@@ -99,31 +65,34 @@ void make_whole_folder(const fs::path& folder, const std::function<void(const fs
 void fill_folder(const fs::path& folder, const std::function<void(const fs::path& unfinished)>& fill,
                  const std::vector<fs::path>& gone) {
   std::error_code error, ignored;
-  const fs::path asked = folder.has_filename() ? folder : folder.parent_path();
-  if (!fs::exists(asked, ignored)) {
-    return make_whole_folder(asked, [&](const fs::path& unfinished) {
+  const fs::path named = folder.has_filename() ? folder : folder.parent_path();
+  if (!fs::exists(named, ignored)) {
+    return make_whole_folder(named, [&](const fs::path& unfinished) {
       as_open_as_any_new_one(unfinished);
       fill(unfinished);
     });
   }
-  const fs::path named = fs::canonical(asked, error);  // what a link leads to is what is exchanged
-  std::string unfinished = beside(named);
-  if (error || !fs::is_directory(named, ignored) || unfinished.empty())
-    throw IoError(folder,
-                  std::string("cannot be written: ") + (error ? error.message() : std::strerror(errno)));
+  if (!fs::is_directory(named, ignored)) throw IoError(folder, "cannot be written: is a file, not a folder");
+  // Within the folder itself: beside it may be another disk. The folder is the user's, who may lay something
+  // there at any moment: it is never exchanged, moved or deleted as a whole.
+  std::string unfinished = (named / ".unfinished-XXXXXX").string();
+  if (!::mkdtemp(unfinished.data()))
+    throw IoError(folder, std::string("cannot be written: ") + std::strerror(errno));
   or_leave_nothing(named, unfinished, [&] {
     // Files are no more open than their folder, and no less.
     fs::permissions(unfinished, fs::status(named).permissions(), ignored);
     fill(unfinished);
-    if (holds_nothing_else(named, unfinished, gone) && exchange(named, unfinished)) return;
-    for (const fs::path& name : gone)
-      if (!fs::exists(unfinished / name)) remove_file(named / name);
-    for (const auto& entry : fs::directory_iterator(unfinished)) {
-      fs::rename(entry.path(), named / entry.path().filename(), error);
-      if (error) throw IoError(named / entry.path().filename(), "cannot be replaced: " + error.message());
+    std::vector<fs::path> made;
+    for (const auto& entry : fs::directory_iterator(unfinished)) made.push_back(entry.path().filename());
+    for (const fs::path& name : made) {
+      fs::rename(unfinished / name, named / name, error);
+      if (error) throw IoError(named / name, "cannot be replaced: " + error.message());
     }
+    // Last: where a file cannot be replaced nothing is lost.
+    for (const fs::path& name : gone)
+      if (std::ranges::find(made, name) == made.end()) remove_file(named / name);
   });
-  fs::remove_all(unfinished, ignored);  // what was there before, or nothing
+  fs::remove(unfinished, ignored);  // empty by now
 }
 
 void refuse_unwritable(const fs::path& folder, const fs::path& file) {

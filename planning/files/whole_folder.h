@@ -14,11 +14,12 @@ namespace arthronaut::files {
 void make_whole_folder(const std::filesystem::path& folder,
                        const std::function<void(const std::filesystem::path& unfinished)>& fill);
 
-// Into a folder that may be there and hold other files: lets `fill` write into a hidden one, and then moves
-// what is there over the files of the same names; those named in `gone` go where `fill` made none. Where
-// `folder` was absent, or holds nothing else, all of it becomes the new one in one step, if its file system
-// can do that; beside other files each is replaced by itself. When anything throws before that, `folder` is
-// as it was, and absent where it was absent. Throws what make_whole_folder() throws.
+// Into a folder that may be there and hold other files: lets `fill` write into a hidden one within it, then
+// moves each file over that of the same name, and last removes those named in `gone` that `fill` did not
+// make. `folder` stays the folder that it was, with all else that is in it. Where it was absent it appears
+// with all of it in one step, as open as any new folder. When `fill` throws, `folder` is as it was, and
+// absent where it was absent. Throws what make_whole_folder() throws; IoError where `folder` is a file,
+// before anything is made.
 void fill_folder(const std::filesystem::path& folder,
                  const std::function<void(const std::filesystem::path& unfinished)>& fill,
                  const std::vector<std::filesystem::path>& gone = {});

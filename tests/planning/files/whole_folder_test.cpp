@@ -5,6 +5,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "planning/files/atomic_file.h"
 #include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 #include "tests/message_of.h"
@@ -52,6 +53,54 @@ TEST(WholeFolder, NeverTakesThePlaceOfOneThatHoldsSomething) {
   EXPECT_THROW(make_whole_folder(parent / "taken", [](const fs::path&) {}), IoError);
   EXPECT_TRUE(fs::exists(parent / "taken/mine"));
   EXPECT_EQ(std::distance(fs::directory_iterator(parent.path()), {}), 1);
+}
+
+// What somebody laid into a folder is his, also while it is filled.
+TEST(WholeFolder, OneThatIsFilledKeepsWhatElseIsInIt) {
+  const test::TemporaryFolder parent;
+  const fs::path folder = parent / "there";
+  fs::create_directory(folder);
+  for (const char* name : {"mine", "a", "old", "both"}) std::ofstream(folder / name) << "before";
+  fill_folder(folder / "",
+              [&](const fs::path& unfinished) {
+                EXPECT_EQ(unfinished.parent_path(), folder);
+                for (const char* name : {"a", "both"}) std::ofstream(unfinished / name) << "new";
+                std::ofstream(folder / "meanwhile") << "laid there";
+              },
+              {"old", "both", "never"});
+  EXPECT_EQ(read_text(folder / "mine"), "before");
+  EXPECT_EQ(read_text(folder / "meanwhile"), "laid there");
+  EXPECT_EQ(read_text(folder / "a"), "new");
+  EXPECT_EQ(read_text(folder / "both"), "new");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 4) << "mine, meanwhile, a and both";
+}
+
+// Where one cannot be replaced, what was to go is still there.
+TEST(WholeFolder, NothingGoesBeforeAllIsThere) {
+  const test::TemporaryFolder parent;
+  const fs::path folder = parent / "there";
+  fs::create_directories(folder / "a/in_the_way");
+  std::ofstream(folder / "old") << "before";
+  const auto fill = [](const fs::path& unfinished) { std::ofstream(unfinished / "a") << "new"; };
+  EXPECT_THROW(fill_folder(folder, fill, {"old"}), IoError);
+  EXPECT_EQ(read_text(folder / "old"), "before");
+  EXPECT_TRUE(fs::exists(folder / "a/in_the_way"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 2);
+}
+
+TEST(WholeFolder, OneThatIsAbsentIsFilledInOneStepAndAFileIsRefused) {
+  const test::TemporaryFolder parent;
+  fs::create_directory(parent / "any");
+  fill_folder(parent / "absent", [&](const fs::path& unfinished) {
+    EXPECT_FALSE(fs::exists(parent / "absent"));
+    std::ofstream(unfinished / "a") << "new";
+  });
+  EXPECT_EQ(read_text(parent / "absent/a"), "new");
+  EXPECT_EQ(fs::status(parent / "absent").permissions(), fs::status(parent / "any").permissions());
+  std::ofstream(parent / "file") << "mine";
+  EXPECT_THROW(fill_folder(parent / "file", [](const fs::path&) { FAIL() << "is not asked"; }), IoError);
+  EXPECT_EQ(read_text(parent / "file"), "mine");
+  EXPECT_EQ(std::distance(fs::directory_iterator(parent.path()), {}), 3);
 }
 
 // What commands ask before their work: a file that stands in the way, or a folder that holds something.
