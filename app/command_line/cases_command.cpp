@@ -114,14 +114,16 @@ void list_cases(const Context& context, const CasesArguments& arguments) {
   const bool only_changes = !arguments.forget.empty() || !arguments.note.empty();
   if (only_changes && !arguments.as_json && !arguments.as_csv) return;
   const std::vector<CaseRecord> all = looked_at(known);
+  // All of them only where words may find one: each is a file to be read.
   library::Identities identities;
-  if (arguments.with_identity) identities = library::read_identities(all);
   const library::Identities* named = arguments.with_identity ? &identities : nullptr;
+  if (named != nullptr && !query.words.empty()) identities = library::read_identities(all);
   std::vector<CaseRecord> records;
   for (const std::size_t i : library::find_cases(all, query, named)) records.push_back(all[i]);
   // Whoever adds a folder wants to see what was in it; what other programs read is the whole list.
   if (!added.empty() && !arguments.as_json && !arguments.as_csv)
     std::erase_if(records, [&](const CaseRecord& record) { return !added.contains(record.folder); });
+  if (named != nullptr && query.words.empty()) identities = library::read_identities(records);
   if (arguments.as_json)
     library::write_cases_json("-", records, named);
   else if (arguments.as_csv)

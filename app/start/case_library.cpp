@@ -25,7 +25,9 @@ void CaseLibrary::refresh(const std::vector<fs::path>& recent) {
       [this, recent] {
         const auto known = workstation_library::open_library(data_folder_);
         known->add_those_there(recent);
-        Found found{known->look([this](std::size_t, std::size_t) { return !stops_; }), {}};
+        Found found{known->look([this](std::size_t, std::size_t) { return !stops_; }), {}, {}};
+        // Here, and not when words are sought: a share that answers late would hold the window up.
+        if (!stops_) found.identities = library::read_identities(found.records);
         if (!known->notices().empty()) found.what = known->notices().back();
         return found;
       },
@@ -48,6 +50,7 @@ bool CaseLibrary::poll() {
   try {  // the top of the looking thread: a list that cannot be had is said on the screen
     Found found = looking_.take();
     records_ = std::move(found.records);
+    identities_ = std::move(found.identities);
     for (library::CaseRecord& record : records_)
       if (const auto note = notes_meanwhile_.find(record.folder); note != notes_meanwhile_.end())
         record.note = note->second;

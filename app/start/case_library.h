@@ -12,6 +12,7 @@
 
 #include "navigation/worker/awaited.h"
 #include "planning/library/case_record.h"
+#include "planning/library/cohort.h"
 
 namespace arthronaut::start {
 
@@ -31,6 +32,8 @@ class CaseLibrary {
 
   // In no order. Another list after each refresh() and poll().
   [[nodiscard]] const std::vector<library::CaseRecord>& records() const { return records_; }
+  // Whose they are, for the search; as the last look read it, and in no index.
+  [[nodiscard]] const library::Identities& identities() const { return identities_; }
   // Each changes the list on disk and here. false: what() says why not.
   bool save_note(const std::filesystem::path& case_folder, const std::string& text,
                  const std::string& before);
@@ -44,11 +47,13 @@ class CaseLibrary {
   struct Found {
     std::vector<library::CaseRecord> records;
     std::string what;
+    library::Identities identities;
   };
   std::filesystem::path data_folder_;
   std::function<void()> wake_;
   std::atomic<bool> stops_ = false;
   std::vector<library::CaseRecord> records_;
+  library::Identities identities_;
   // Kept while the thread looks: it may have read the case before.
   std::map<std::filesystem::path, std::string> notes_meanwhile_;
   std::string what_;

@@ -22,7 +22,6 @@ void CaseList::enter() {
   std::vector<fs::path> folders;
   for (const RecentCase& recent : recent_) folders.push_back(recent.folder);
   library_.refresh(folders);
-  identities_.reset();
   accuracy_ = library::read_accuracy_checks(workstation_library::data_folder());
   devices_ = library::devices_of(accuracy_);
   view_.chart = std::min(view_.chart, chart_count() - 1);
@@ -45,10 +44,7 @@ void CaseList::keep_note() {
 }
 
 void CaseList::tick() {
-  if (library_.poll()) {
-    identities_.reset();
-    filter();
-  }
+  if (library_.poll()) filter();
   pictures_.poll();
 }
 
@@ -60,8 +56,13 @@ std::string CaseList::used_utc(const CaseRecord& record) const {
 
 // What was opened last is first, also where it was only looked at.
 void CaseList::filter() {
-  if (!identities_ && !view_.query.words.empty()) identities_ = library::read_identities(library_.records());
-  found_ = library::find_cases(library_.records(), view_.query, identities_ ? &*identities_ : nullptr);
+  found_ = library::find_cases(library_.records(), view_.query, &library_.identities());
+  found_by_patient_.clear();
+  if (!view_.query.words.empty()) {
+    for (const std::size_t i : found_) found_by_patient_.insert(library_.records()[i].folder);
+    for (const std::size_t i : library::find_cases(library_.records(), view_.query))
+      found_by_patient_.erase(library_.records()[i].folder);
+  }
   if (view_.query.order == library::CaseOrder::Newest) {
     const auto used = [&](std::size_t i) { return used_utc(library_.records()[i]); };
     std::stable_sort(found_.begin(), found_.end(),
@@ -122,7 +123,8 @@ void CaseList::add_actions(widgets::Actions& actions, const std::function<bool()
   actions.add(
       {"start.search",
        "Search",
-       "Words that must all stand in name, note, side, date, state or outcome; Esc gives the keys back",
+       "Words that must all stand in name, note, side, date, state, outcome or what names the patient; Esc "
+       "gives the keys back",
        GLFW_KEY_F,
        0,
        false,

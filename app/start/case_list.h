@@ -4,7 +4,7 @@
 
 #include <filesystem>
 #include <functional>
-#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -85,8 +85,9 @@ class CaseList {
   CasePictures pictures_;
   std::vector<RecentCase> recent_;
   std::vector<std::size_t> found_;  // of the library's records
-  // Of these records, read when words are first sought and kept nowhere else: the search finds patients.
-  std::optional<library::Identities> identities_;
+  // Folders of those that are found only with what names their patient. Their rows say so: the list names
+  // nobody, and that a name finds a case tells whose it is.
+  std::set<std::filesystem::path> found_by_patient_;
   library::AccuracyChecks accuracy_;
   std::vector<library::AccuracyDevice> devices_;  // of these
   View view_;

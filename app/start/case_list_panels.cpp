@@ -237,9 +237,10 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
                      severity == Severity::Good || severity == Severity::Quiet ? widgets::kText
                                                                                : widgets::color_of(severity),
                      widgets::fitting(ui.theme.body, what, wide + right - ui.theme.px(40)));
-  const std::string third = record.note.empty()
-                                ? record.folder.string()
-                                : "\u201C" + record.note.substr(0, record.note.find('\n')) + "\u201D";
+  const std::string third =
+      std::string(found_by_patient_.contains(record.folder) ? "Found by its patient  \u2013  " : "") +
+      (record.note.empty() ? record.folder.string()
+                           : "\u201C" + record.note.substr(0, record.note.find('\n')) + "\u201D");
   widgets::draw_text(draw, ui.theme.body, x, at.y + ui.theme.px(64), widgets::kQuietText,
                      widgets::fitting(ui.theme.body, third, wide + right - ui.theme.px(12)));
 }

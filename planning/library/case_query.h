@@ -33,8 +33,8 @@ struct CaseQuery {
 
 // Which of the records, in order. Equal ones are in the order of their names, then of their folders.
 // identities (read_identities, kept in no index): words find a patient's name, number and day of birth, too.
-// Only for who is shown the patients anyway: in a list that names nobody, that a name finds a case tells
-// whose it is.
+// In a list that names nobody, that a name finds a case tells whose it is: only for a list that names the
+// patients, or that says of a case that it was found by its patient.
 [[nodiscard]] std::vector<std::size_t> find_cases(std::span<const CaseRecord> records, const CaseQuery& query,
                                                   const Identities* identities = nullptr);
 

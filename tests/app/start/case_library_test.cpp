@@ -8,6 +8,7 @@
 
 #include "app/library/workstation_library.h"
 #include "planning/cases/case_note.h"
+#include "planning/cases/identity.h"
 #include "tests/planning/library/made_case.h"
 #include "tests/temporary_folder.h"
 
@@ -51,6 +52,19 @@ TEST_F(CaseLibraryTest, ShowsWhatIsKnownAtOnceAndLooksBeside) {
   wait(library);
   EXPECT_THAT(library.records(), SizeIs(1));
   EXPECT_EQ(library.what(), "");
+}
+
+// The look reads them, not who seeks; and the next start knows none before its own look.
+TEST_F(CaseLibraryTest, KnowsWhoseTheyAreOnceItHasLooked) {
+  cases::save_identity(case_, {"Muster^Anna", "4711", "19900131"});
+  for (int start = 0; start < 2; ++start) {
+    CaseLibrary library(data(), [] {});
+    library.refresh({case_});
+    EXPECT_THAT(library.identities(), IsEmpty());
+    wait(library);
+    ASSERT_TRUE(library.identities().contains(case_));
+    EXPECT_EQ(library.identities().at(case_).patient_id, "4711");
+  }
 }
 
 TEST_F(CaseLibraryTest, NotesAndForgetsAndSaysWhatFails) {
