@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace arthronaut::geometry {
@@ -94,20 +95,21 @@ SurfacePatch patch_within(const Surface& surface, const std::vector<Vector3d>& o
     const Vector3d& normal = surface.normal(static_cast<std::int32_t>(t));
     const double facing = normal.dot(outline.normal);
     if (facing < kLeastFacing) continue;
-    std::vector<Vector2d> triangle;
+    std::array<Vector2d, 3> corners;  // most triangles end here: nothing is allocated for them
     Eigen::AlignedBox2d box;
     double least_mm = 1e9, greatest_mm = -1e9;
-    const Vector3d first = mesh.vertices_mm[static_cast<std::size_t>(mesh.triangles[t][0])];
-    for (const std::int32_t index : mesh.triangles[t]) {
-      const Vector3d& p = mesh.vertices_mm[static_cast<std::size_t>(index)];
+    const Vector3d& first = mesh.vertices_mm[static_cast<std::size_t>(mesh.triangles[t][0])];
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vector3d& p = mesh.vertices_mm[static_cast<std::size_t>(mesh.triangles[t][i])];
       const double height_mm = (p - outline.middle_mm).dot(outline.normal);
       least_mm = std::min(least_mm, height_mm);
       greatest_mm = std::max(greatest_mm, height_mm);
-      triangle.push_back(outline.seen(p));
-      box.extend(triangle.back());
+      corners[i] = outline.seen(p);
+      box.extend(corners[i]);
     }
     if (greatest_mm < outline.behind_mm || least_mm > outline.before_mm || !box.intersects(outline.box))
       continue;
+    const std::vector<Vector2d> triangle(corners.begin(), corners.end());
     const std::vector<Vector2d> within = clipped(outline.polygon, triangle);
     if (within.size() < 3) continue;
     PatchPiece piece{.normal = normal, .corners_mm = {}};
