@@ -127,6 +127,8 @@ void train(Context& context, const Arguments& arguments) {
       progress.advance_to(frames);
       if (interruption.caught() != 0) throw DeviceError("the exercise was stopped by hand");
     });
+    // And while its video and its score were made.
+    if (interruption.caught() != 0) throw DeviceError("the exercise was stopped by hand");
   } catch (...) {  // a command that fails, or is stopped, leaves nothing behind
     std::error_code ignored;
     if (!record.folder.empty()) fs::remove_all(record.folder, ignored);

@@ -108,7 +108,7 @@ const DriftVerdict& DriftTest::judge(double elapsed_s) {
   verdict_.lead = (drift - null) / weight;
   verdict_.share_seen = share_seen(best, to_see * weight);
   verdict_.is_checked = weight_ > kLeastWeight && verdict_.share_seen >= options_.least_share_seen;
-  const bool fits = drift >= options_.fits_share * pieces_;
+  const bool fits = options_.fits_share <= 0 || drift >= options_.fits_share * pieces_;
   const bool leads = weight_ > kLeastWeight && verdict_.lead > needed && fits;
   led_for_s_ = leads ? led_for_s_ + elapsed : 0;
   verdict_.has_drifted = led_for_s_ >= options_.holds_s;
