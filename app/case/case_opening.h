@@ -82,9 +82,9 @@ class CaseOpening {
   [[nodiscard]] bool is_read_only() const { return !read_only_reason().empty(); }
   // "is open elsewhere: anna on theatre-2 (process 4711) since ..."; empty when it may be written.
   [[nodiscard]] const std::string& read_only_reason() const { return open_.lock.refusal(); }
+  // Since when the program had it that ended last without closing it, in UTC; empty: none did.
+  [[nodiscard]] const std::string& left_by_crash_since() const { return open_.lock.dead_since_utc(); }
   // That it was taken over from a program that had died: news for a minute after it was opened; else empty.
-  // The program that had it last ended without closing it.
-  [[nodiscard]] bool was_left_by_crash() const { return !open_.lock.notice().empty(); }
   [[nodiscard]] std::string notice(Clock::time_point now = Clock::now()) const {
     return now - locked_at_ < std::chrono::minutes(1) ? open_.lock.notice() : "";
   }

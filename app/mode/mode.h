@@ -33,8 +33,8 @@ struct OpenCase {
   // Why nothing may be written into the case ("is open elsewhere: ..."): no plan, no set-up, no session.
   // Empty where it may.
   std::string read_only = {};
-  // Whoever had it open last ended without closing it, as by a crash.
-  bool was_left_by_crash = false;
+  // Whoever had it open last ended without closing it, as by a crash: since when it was open there, in UTC.
+  std::string left_by_crash_since = {};
 };
 
 // Keys that do something for as long as they are down, and are no actions.

@@ -48,8 +48,8 @@ const LeftBehind* NavigateView::left_behind() {
 bool NavigateView::asks_for_front() {
   const bool has_begun = live_->phase != Phase::NoSource || live_->operation->resumed != nullptr;
   const auto bone = has_begun ? std::nullopt : resume_.cut_off(std::chrono::system_clock::now());
-  if (bone) choices_.bone = *bone;
-  return bone.has_value();
+  if (bone && *bone != choices_.bone) take_other_bone();
+  return bone && *bone == choices_.bone;
 }
 
 // One step. What is brought back guides nothing until a touch; the source is the next step, of the same kind.

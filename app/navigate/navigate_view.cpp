@@ -65,7 +65,7 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   depth_ = {};
   cameras_.close();
   cameras_.forget_tracker();
-  resume_.open(*opened.model, opened.folder, !opened.read_only.empty(), opened.was_left_by_crash);
+  resume_.open(*opened.model, opened.folder, !opened.read_only.empty(), opened.left_by_crash_since);
   patient_.clear();
   try {  // who it is is never guessed: what cannot be read is said
     if (const auto identity = cases::load_identity(case_folder_)) patient_ = identity->in_words();

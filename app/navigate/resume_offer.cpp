@@ -7,6 +7,7 @@
 #include "navigation/worker/freed_memory.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
+#include "planning/files/utc_clock.h"
 #include "planning/log/log.h"
 
 namespace arthronaut::navigate {
@@ -33,9 +34,9 @@ ResumeOffer::ResumeOffer(std::function<void()> wake)
           std::move(wake)) {}
 
 void ResumeOffer::open(const open_case::PlanModel& model, const std::filesystem::path& case_folder,
-                       bool is_read_only, bool is_after_crash) {
+                       bool is_read_only, const std::string& crashed_since) {
   ++number_;
-  is_after_crash_ = is_after_crash;
+  crashed_since_ = crashed_since;
   left_.clear();
   answered_.clear();
   is_looking_ = !is_read_only && !case_folder.empty() && has_sessions(case_folder);
@@ -92,8 +93,10 @@ std::optional<bones::BoneKind> ResumeOffer::cut_off(std::chrono::system_clock::t
   follow();
   std::optional<bones::BoneKind> newest;
   for (const auto& [bone, left] : left_) {
-    // Between two sources a crash cuts off no record.
-    const bool is_crash = (is_after_crash_ || !left.found.was_finished) && !left.found.is_being_recorded;
+    // Between two sources a crash cuts off no record. What was closed before that program began is older.
+    const bool is_of_crash =
+        !crashed_since_.empty() && crashed_since_ <= files::utc_of(left.found.last_written);
+    const bool is_crash = (is_of_crash || !left.found.was_finished) && !left.found.is_being_recorded;
     if (!is_crash || answered_.contains(bone) ||
         now - left.found.last_written > std::chrono::hours(kStillThere_h))
       continue;

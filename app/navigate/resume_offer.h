@@ -32,9 +32,9 @@ class ResumeOffer {
   explicit ResumeOffer(std::function<void()> wake);
 
   // Another case. Nothing is offered in one that is read-only: what is left there may be going on elsewhere.
-  // is_after_crash: the program that had it last ended without closing it.
+  // crashed_since: since when the program had it that ended last without closing it, in UTC; empty: none did.
   void open(const open_case::PlanModel& model, const std::filesystem::path& case_folder, bool is_read_only,
-            bool is_after_crash);
+            const std::string& crashed_since);
   // Null: there is none, it is still looked for, or it was answered.
   [[nodiscard]] const LeftBehind* of(bones::BoneKind bone);
   [[nodiscard]] bool is_looking();
@@ -60,7 +60,8 @@ class ResumeOffer {
   void follow();
 
   int number_ = 0;  // of the newest search
-  bool is_looking_ = false, is_after_crash_ = false;
+  bool is_looking_ = false;
+  std::string crashed_since_;
   std::map<bones::BoneKind, LeftBehind> left_;
   std::set<bones::BoneKind> answered_;
   Worker worker_;

@@ -74,7 +74,8 @@ void WorkstationWindow::take_opened_case() {
   if (model() != nullptr)
     for (const auto& mode : modes_)
       all_know &= guarded([&] {
-        mode->case_opened({model(), case_->folder(), case_->read_only_reason(), case_->was_left_by_crash()});
+        mode->case_opened(
+            {model(), case_->folder(), case_->read_only_reason(), case_->left_by_crash_since()});
       });
   if (all_know)
     let_go(std::move(known_to_modes_));
@@ -120,7 +121,8 @@ void WorkstationWindow::take_over_when_free() {
 
 // Nobody's text or drag is interrupted.
 void WorkstationWindow::offer_cut_off() {
-  if (!looks_for_cut_off_ || opening_ != nullptr || shows_start() || shows_paint()) return;
+  if (!looks_for_cut_off_ || opening_ != nullptr || has_running_work() || shows_start() || shows_paint())
+    return;
   if (ImGui::GetIO().WantTextInput || ImGui::IsAnyMouseDown()) return;
   for (std::size_t i = 0; i < modes_.size() && looks_for_cut_off_; ++i)
     if (modes_[i]->asks_for_front()) show(i);

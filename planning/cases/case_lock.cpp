@@ -229,6 +229,7 @@ CaseLock::CaseLock(const fs::path& case_folder) {
       if (there && is_same(*there, mine)) {
         state_ = std::make_unique<State>(case_folder, kernel.descriptor, std::move(mine));
         if (before) {
+          dead_since_utc_ = before->holder.since_utc;
           notice_ = before->holder.process > 0
                         ? "Taken over from " + before->holder.in_words() + ", which ended without closing it"
                         : "Taken over from a program that ended without closing it";

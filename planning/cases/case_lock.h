@@ -52,11 +52,13 @@ class CaseLock {
   [[nodiscard]] bool is_held_elsewhere() const { return is_held_elsewhere_; }
   // What the user should know although it is held: that it was taken over, and from whom. Else empty.
   [[nodiscard]] const std::string& notice() const { return notice_; }
+  // Since when, in UTC, that other program had it; empty: it was not taken over, or nobody knows.
+  [[nodiscard]] const std::string& dead_since_utc() const { return dead_since_utc_; }
 
  private:
   struct State;
   std::unique_ptr<State> state_;
-  std::string refusal_, notice_;
+  std::string refusal_, notice_, dead_since_utc_;
   bool is_held_elsewhere_ = false;
 };
 

@@ -6,16 +6,27 @@
 
 namespace arthronaut::files {
 
-std::string utc_now() { return utc_now_as("%Y-%m-%dT%H:%M:%SZ"); }
+namespace {
 
-std::string utc_now_as(const char* format) {
-  const std::time_t now = std::time(nullptr);
+constexpr const char* kIso8601 = "%Y-%m-%dT%H:%M:%SZ";
+
+std::string utc_as(const char* format, std::time_t moment) {
   std::tm parts{};
-  gmtime_r(&now, &parts);
+  gmtime_r(&moment, &parts);
   std::array<char, 64> text{};
   std::strftime(text.data(), text.size(), format, &parts);
   return text.data();
 }
+
+}  // namespace
+
+std::string utc_now() { return utc_now_as(kIso8601); }
+
+std::string utc_of(std::chrono::system_clock::time_point moment) {
+  return utc_as(kIso8601, std::chrono::system_clock::to_time_t(moment));
+}
+
+std::string utc_now_as(const char* format) { return utc_as(format, std::time(nullptr)); }
 
 std::string utc_in_words(const std::string& utc) {
   constexpr std::string_view kForm = "2026-01-31T12:00:00Z";

@@ -2,12 +2,15 @@
 // intervals are measured on a steady clock.
 #pragma once
 
+#include <chrono>
 #include <string>
 
 namespace arthronaut::files {
 
 // ISO 8601, to the second: "2026-01-31T12:00:00Z".
 [[nodiscard]] std::string utc_now();
+// Another moment in the same form: of two the earlier one is the lesser text.
+[[nodiscard]] std::string utc_of(std::chrono::system_clock::time_point moment);
 // The same moment as strftime writes it: utc_now_as("%Y-%m-%d"). At most 63 characters.
 [[nodiscard]] std::string utc_now_as(const char* format);
 // As people read it: "2026-01-31 12:00:00 UTC" of "2026-01-31T12:00:00Z"; anything else as it is.
