@@ -71,16 +71,25 @@ void put(ReadSession read, Content& content) {
 
 enum class Registration { Found, Tried };
 
-// Where it has a drilled tunnel; where it has such a registration alone, only while no other one is taken.
-void take_session(const std::filesystem::path& folder, Registration least, Content& content) {
+bool was_drilled_by_word(const std::filesystem::path& folder) {
+  const recording::SessionOverview then = recording::read_overview(folder);
+  return !recording::drilled_by_word(then.events, then.header.bone).empty();
+}
+
+// Where it has a drilled tunnel, by its poses or by word alone: true. Where it has such a registration alone,
+// only while no other one is taken.
+bool take_session(const std::filesystem::path& folder, Registration least, Content& content) {
+  bool has_tunnel = false;
   unless_unreadable(folder, content, [&] {
-    const bool has_tunnel = !operation::achieved_files(folder).empty();
-    if (!has_tunnel && (content.session || !std::filesystem::exists(folder / "session.json"))) return;
+    const bool is_whole = std::filesystem::exists(folder / "session.json");
+    has_tunnel = !operation::achieved_files(folder).empty() || (is_whole && was_drilled_by_word(folder));
+    if (!has_tunnel && (content.session || !is_whole)) return;
     ReadSession read = read_session(folder);
     const auto registration = registration_that_counts(*read.session);
     const bool is_enough = registration && (registration->has_pose || least == Registration::Tried);
     if (has_tunnel || is_enough) put(std::move(read), content);
   });
+  return has_tunnel && content.session != nullptr && content.session->folder() == folder;
 }
 
 // The one that is asked for, which must be there; what came after it is not told.
@@ -113,7 +122,10 @@ bool belongs_to(const Content& content, const recording::SessionHeader& then) {
 
 // The newest of each tunnel that is planned and not among the session's own.
 void add_earlier(const std::vector<std::filesystem::path>& sessions, Content& content) {
-  if (content.achieved.empty()) return;
+  const bool tells_of_own =
+      !content.achieved.empty() ||
+      std::ranges::any_of(content.by_word, [](const Content::ByWord& said) { return said.at_s.has_value(); });
+  if (!tells_of_own) return;
   std::set<tunnels::TunnelKey> known;
   for (const auto& achieved : content.achieved) known.insert(achieved.planned.key());
   for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
@@ -148,10 +160,21 @@ void add_by_word(const std::vector<std::filesystem::path>& sessions, Content& co
             {said.tunnel, said.why, it->filename().string(),
              is_own ? std::optional(time_s(*content.session, said.timestamp_ns)) : std::nullopt});
       }
+      for (const std::string& tunnel : recording::said_too_early(then.events)) known.insert(tunnel);
       for (const auto& file : operation::achieved_files(*it))
         known.insert(tunnels::name_of(operation::read_achieved_file(file).planned.key()));
     });
   }
+}
+
+// Recorded by its poses, and said once more when none came: both are told, and which is which.
+void note_figures_of_before(Content& content) {
+  std::set<std::string> with_figures;
+  for (const auto& achieved : content.achieved) with_figures.insert(tunnels::name_of(achieved.planned.key()));
+  for (const auto& earlier : content.earlier)
+    with_figures.insert(tunnels::name_of(earlier.achieved.planned.key()));
+  for (Content::ByWord& said : content.by_word)
+    said.has_figures_of_before = with_figures.contains(said.tunnel);
 }
 
 // A broken file of marks takes nothing else away.
@@ -265,7 +288,9 @@ std::string in_words(const Content::ByWord& said) {
                            : said.session.empty() ? ", in an earlier session"
                                                   : ", in the session " + said.session;
   return "DRILLED BY WORD ALONE: the " + said.tunnel + " tunnel was said to be drilled" + when +
-         ", and no pose shows where it runs (" + said.why + "): no number is told of it.";
+         ", and no pose shows where it runs (" + said.why + "): " +
+         (said.has_figures_of_before ? "the numbers above are of what was recorded before."
+                                     : "no number is told of it.");
 }
 
 std::vector<std::string> shortcomings_of(const Content& content) {
@@ -367,16 +392,18 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   // The newest session with a drilled tunnel; failing that, the newest with a registration, at last with one
   // that found no pose.
   if (options.session.empty()) {
-    for (auto it = sessions.rbegin(); it != sessions.rend() && content.achieved.empty(); ++it)
-      take_session(*it, Registration::Found, content);
+    bool has_tunnel = false;
+    for (auto it = sessions.rbegin(); it != sessions.rend() && !has_tunnel; ++it)
+      has_tunnel = take_session(*it, Registration::Found, content);
     for (auto it = sessions.rbegin(); it != sessions.rend() && !content.session; ++it)
-      take_session(*it, Registration::Tried, content);
+      (void)take_session(*it, Registration::Tried, content);
   }
   const auto by_shape = plan_review::propose_landmarks(content.knee, plan_review::Proposing::Planned);
   content.review = std::make_unique<const plan_review::CaseReview>(content.knee, by_shape);
   content.is_of_another_surface = is_of_another_surface(content);
-  add_earlier(sessions, content);
   add_by_word(sessions, content);
+  add_earlier(sessions, content);
+  note_figures_of_before(content);
   add_postoperative(content);
   add_places(content);
   add_camera(content);

@@ -53,6 +53,7 @@ struct Content {
   struct ByWord {
     std::string tunnel, why, session;
     std::optional<double> at_s;
+    bool has_figures_of_before = false;  // the same tunnel is in `achieved` or `earlier`, too
   };
   std::vector<ByWord> by_word = {};
   // Sessions that may have been the one that matters, and cannot be read: their folders' names, and why; for

@@ -93,7 +93,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
                                                   const std::string& cut_short) {
   bool is_verified = false, is_lost = false, was_verified = false, was_skipped = false, is_confirmed = false;
   recording::CountingRegistration registration;
-  std::string guide;
+  std::string guide, beside;
   for (const recording::SessionEvent& event : session.events()) {
     const bool ends = event.kind == recording::kRegistrationEvent ||
                       event.kind == recording::kGivenRegistrationEvent ||
@@ -103,7 +103,10 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
     was_verified = was_verified || is_verified;
     registration.follow(event);
     was_skipped = was_skipped || event.kind == recording::kVerificationSkippedEvent;
-    is_confirmed = is_confirmed || event.kind == recording::kTimeOutConfirmedEvent;
+    if (event.kind == recording::kTimeOutConfirmedEvent) {
+      is_confirmed = true;  // what was wrong with its picture is said before what was on the screen
+      beside = event.text.starts_with("BESIDE ") ? event.text.substr(0, event.text.find(';')) : "";
+    }
     if (event.kind == recording::kGuideCheckedEvent) guide = event.text;
   }
   is_verified = registration.counts().was_verified;
@@ -117,7 +120,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
   const bool is_live = kind == sources::to_text(sources::SourceKind::Live);
   return {{"Record", cut_short.empty() ? "from beginning to end" : "CUT SHORT: " + cut_short},
           {"Verification", verified + (was_skipped ? "; guidance began without it" : "")},
-          {"Time-out", is_confirmed   ? "confirmed"
+          {"Time-out", is_confirmed   ? "confirmed" + (beside.empty() ? "" : "; " + beside)
                        : is_live      ? "not confirmed in this session"
                        : kind.empty() ? "not recorded"
                                       : "not asked: no live source"},

@@ -96,6 +96,10 @@ struct GuidanceNumbers {
   // Of the drill, where it is seen: whether the guide is seen or not. Empty: nobody knows how deep it is.
   std::optional<DrillDepth> drill = std::nullopt;
   [[nodiscard]] bool is_valid() const { return state == GuidanceState::Valid; }
+  // It would guide, had its picture come in time.
+  [[nodiscard]] bool is_too_late() const {
+    return state == GuidanceState::PictureLate || state == GuidanceState::PicturesSlow;
+  }
   [[nodiscard]] double offset_in_mm(landmarks::AnatomicalDirection direction) const;
 };
 

@@ -85,16 +85,17 @@ std::optional<JournalEntry> Drilling::say_drilled(const std::optional<PlannedTun
 
 // The poses that it rested on went with the word: what is seen from now on is of the tunnel that is drilled
 // now.
-std::optional<JournalEntry> Drilling::take_back(bool is_planned) {
+std::optional<JournalEntry> Drilling::take_back(const std::optional<PlannedTunnel>& plan) {
   std::optional<JournalEntry> entry;
-  if (said_.outcome == DrilledState::Outcome::NotSaid) {
-    // Said while another source ran: the record of that one is closed, and this one says that it is not so.
-    if (said_.was_taken_back || !is_planned) return std::nullopt;
-    entry = entry_of(JournalKind::Note,
-                     "not drilled: what an earlier record says of this tunnel was said too early");
-  } else {
+  if (said_.tunnel) {
     entry = entry_of(JournalKind::DrilledTakenBack);
     entry->achieved = said_.tunnel;
+  } else if (plan) {
+    // By word alone; or said while another source ran, and the record of that one is closed.
+    if (said_.was_taken_back) return std::nullopt;
+    entry = entry_of(JournalKind::SaidTooEarly, tunnels::name_of(plan->tunnel.key()));
+  } else if (said_.outcome == DrilledState::Outcome::NotSaid) {
+    return std::nullopt;
   }
   said_ = {};
   said_.was_taken_back = true;

@@ -47,7 +47,7 @@ class Drilling {
                                                         const geometry::Surface* surface,
                                                         double without_picture_s = 0);
   // And that it is not: said too early, maybe while another source ran.
-  [[nodiscard]] std::optional<JournalEntry> take_back(bool is_planned);
+  [[nodiscard]] std::optional<JournalEntry> take_back(const std::optional<PlannedTunnel>& plan);
 
   [[nodiscard]] const std::optional<double>& depth_stop_mm() const { return depth_stop_mm_; }
   [[nodiscard]] DrilledState state() const;

@@ -38,7 +38,8 @@ enum class JournalKind {
   Plan,              // in force from now on: plan, or none
   Drilled,           // achieved is set
   DrilledByWord,     // without poses; text: "femur AM: " and why
-  DrilledTakenBack,  // the one of before; achieved is set where a tunnel was recorded
+  DrilledTakenBack,  // the one of before; achieved is set
+  SaidTooEarly,      // of one that was drilled by word alone, or under another source; text: "femur AM"
   Note,
 };
 

@@ -176,7 +176,7 @@ struct Operation::Parts {
   }
   void apply(const TakeBackDrilled&) {
     marker_is_out = false;  // it is wanted again
-    if (auto entry = drilling.take_back(plan.has_value())) note(std::move(*entry));
+    if (auto entry = drilling.take_back(plan)) note(std::move(*entry));
   }
   void apply(const GiveRegistration& give);
   void apply(const ConfirmTimeOut& time_out);

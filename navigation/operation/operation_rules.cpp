@@ -162,7 +162,7 @@ void Operation::Parts::watch_guidance() {
   }
   grades.add(frame.guidance, frame.timestamp_ns);
   drilling.add(frame.guidance, frame.timestamp_ns);
-  if (frame.guidance.is_valid()) in_view.guided(frame.timestamp_ns);
+  if (frame.guidance.is_valid() || frame.guidance.is_too_late()) in_view.guided(frame.timestamp_ns);
   // The hand follows a drill's numbers as it follows a guide's.
   const bool drill_is_followed = frame.guidance.drill && frame.guidance.drill->is_at_plan();
   if ((frame.guidance.is_valid() || drill_is_followed) && verification() == Verification::NotYet)

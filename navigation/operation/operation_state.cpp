@@ -216,10 +216,12 @@ NextAction next_action_of(const OperationState& state) {
            : registration.touches.has_control_point() ? NextAction::CheckControlPoint
                                                       : NextAction::SetControlPoint;
   if (state.drilled.has_evidence) return NextAction::RecordDrilled;
-  // A bone that is lost guides nobody, however short.
-  const bool only_the_guide_is_away = state.frame.guidance.state == guidance::GuidanceState::GuideLost;
-  return state.frame.guidance.is_valid() || (guides && only_the_guide_is_away) ? NextAction::FollowBullseye
-                                                                               : NextAction::BringGuide;
+  // A bone that is lost guides nobody, however short. What comes too late shows a guide that is in the hand.
+  const auto& guidance = state.frame.guidance;
+  const bool only_the_guide_is_away = guidance.state == guidance::GuidanceState::GuideLost;
+  return guidance.is_valid() || guidance.is_too_late() || (guides && only_the_guide_is_away)
+             ? NextAction::FollowBullseye
+             : NextAction::BringGuide;
 }
 
 Step step_of(NextAction action) {

@@ -33,10 +33,18 @@ std::vector<DrilledByWord> drilled_by_word(const std::vector<SessionEvent>& even
           {tunnel, at == std::string::npos ? "" : event.text.substr(at + kWhy.size()), event.timestamp_ns});
     }
     if (event.kind == kDrilledEvent) forget(name_of_tunnel_in(event.text, bone));
-    // Of one that has no file the word that was said last is taken back.
+    if (event.kind == kSaidTooEarlyEvent) forget(event.text);
+    // In older records: the word that was said last.
     if (event.kind == kDrilledTakenBackEvent && event.text.empty() && !said.empty()) said.pop_back();
   }
   return said;
+}
+
+std::vector<std::string> said_too_early(const std::vector<SessionEvent>& events) {
+  std::vector<std::string> tunnels;
+  for (const SessionEvent& event : events)
+    if (event.kind == kSaidTooEarlyEvent) tunnels.push_back(event.text);
+  return tunnels;
 }
 
 }  // namespace arthronaut::recording

@@ -21,4 +21,8 @@ struct DrilledByWord {
 [[nodiscard]] std::vector<DrilledByWord> drilled_by_word(const std::vector<SessionEvent>& events,
                                                          bones::BoneKind bone);
 
+// The tunnels of which a session says that they are not drilled, whatever an earlier one says; as
+// tunnels::name_of() names them.
+[[nodiscard]] std::vector<std::string> said_too_early(const std::vector<SessionEvent>& events);
+
 }  // namespace arthronaut::recording

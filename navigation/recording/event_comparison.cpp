@@ -16,7 +16,8 @@ namespace arthronaut::recording {
 
 namespace {
 
-// Commands and whatever else the second run is given come back by themselves.
+// Commands and whatever else the second run is given come back by themselves, and so does the word that a
+// tunnel is drilled without poses, or that it is not: older records have it as a note.
 constexpr std::array kDecisions = {kAlarmEvent,
                                    kVoidEvent,
                                    kConfirmedEvent,
@@ -29,7 +30,6 @@ constexpr std::array kDecisions = {kAlarmEvent,
                                    kRegistrationEvent,
                                    kGivenRegistrationEvent,
                                    kDrilledEvent,
-                                   kDrilledByWordEvent,
                                    kDrilledTakenBackEvent};
 
 struct Decision {
@@ -44,7 +44,8 @@ bool names_a_registration(const std::string& kind) {
 std::vector<Decision> decisions_of(const std::vector<SessionEvent>& events) {
   std::vector<Decision> decisions;
   for (const SessionEvent& event : events)
-    if (std::ranges::find(kDecisions, event.kind) != kDecisions.end())
+    if (std::ranges::find(kDecisions, event.kind) != kDecisions.end() &&
+        (event.kind != kDrilledTakenBackEvent || !event.text.empty()))
       decisions.push_back(
           {event.after_frame, event.kind, names_a_registration(event.kind) ? std::string() : event.text});
   return decisions;

@@ -83,6 +83,8 @@ std::string_view kind_of(JournalKind kind) {
       return kDrilledByWordEvent;
     case JournalKind::DrilledTakenBack:
       return kDrilledTakenBackEvent;
+    case JournalKind::SaidTooEarly:
+      return kSaidTooEarlyEvent;
     case JournalKind::Note:
       return "note";
   }

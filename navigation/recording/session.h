@@ -101,7 +101,9 @@ inline constexpr std::string_view kDrilledEvent = "tunnel drilled";      // text
 inline constexpr std::string_view kDrilledByWordEvent =
     "tunnel drilled by word";  // no pose shows where; text: "femur AM: " and why
 inline constexpr std::string_view kDrilledTakenBackEvent =
-    "tunnel not drilled";  // text: the file that held it; empty: it was drilled by word alone
+    "tunnel not drilled";  // text: the file that held it; of older records empty: by word alone
+inline constexpr std::string_view kSaidTooEarlyEvent =
+    "said too early";  // of a tunnel without a file of this record; text: "femur AM"
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier
 inline constexpr std::string_view kSourceEndedEvent = "source ended";
 inline constexpr std::string_view kSourceTroubleEvent = "source trouble";    // text: what; empty: it is over

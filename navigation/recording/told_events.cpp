@@ -28,6 +28,7 @@ constexpr std::array kNames{
     Name{kDrilledEvent, "tunnel drilled", Gravity::Step, true, true},
     Name{kDrilledByWordEvent, "tunnel drilled, by word alone", Gravity::Step, true, false},
     Name{kDrilledTakenBackEvent, "said too early: not drilled", Gravity::Step, true, true},
+    Name{kSaidTooEarlyEvent, "said too early: not drilled", Gravity::Step, true, false},
     Name{kDroppedPicturesEvent, "pictures dropped", Gravity::Alarm, false, false},
     Name{kVideoStoppedEvent, "video stopped", Gravity::Alarm, false, false},
     Name{kRecordingStoppedEvent, "recording stopped", Gravity::Alarm, false, false}};

@@ -69,6 +69,8 @@ std::string what_of(const JournalEntry& entry) {
       return "tunnel drilled, by the surgeon's word alone";
     case JournalKind::DrilledTakenBack:
       return "tunnel not drilled after all";
+    case JournalKind::SaidTooEarly:
+      return "said too early: not drilled";
     case JournalKind::Note:
       return "note";
   }

@@ -130,7 +130,7 @@ bool OperationRun::follow_registration() {
   operation_.take_outcome(registration_->latest());
   operation_.take_look(looks_->latest());
   operation_.heed_pictures();
-  pass_on();
+  pass_on(silence_ns());
   return operation_.outcome() != before;
 }
 
@@ -269,9 +269,10 @@ std::string OperationRun::wrong_with_picture() const {
 void OperationRun::apply(const operation::Command& given) {
   const std::int64_t since_picture_ns = silence_ns();
   operation::Command command = given;
-  // The pictures of one that has ended showed what they showed; of one that is silent nobody knows.
-  if (auto* const drilled = std::get_if<operation::TunnelDrilled>(&command); drilled && has_source())
-    drilled->without_picture_s = static_cast<double>(since_picture_ns) * 1e-9;
+  // The pictures of one that has ended showed what they showed until they failed to come.
+  if (auto* const drilled = std::get_if<operation::TunnelDrilled>(&command))
+    drilled->without_picture_s =
+        static_cast<double>(has_source() ? since_picture_ns : live_.silent_at_end_ns) * 1e-9;
   if (auto* const time_out = std::get_if<operation::ConfirmTimeOut>(&command); time_out && has_source())
     time_out->beside = wrong_with_picture();
   if (const double age_ms = picture_age_ms(); age_ms > kHandRests_ms && is_of_this_moment(command)) {
@@ -305,8 +306,9 @@ void OperationRun::apply(const operation::Command& given) {
 
 void OperationRun::end_source() {
   if (source_ == nullptr) return;
+  live_.silent_at_end_ns = silence_ns();
   operation_.end_source();
-  pass_on();
+  pass_on(live_.silent_at_end_ns);
   const bool was_live = theatre_source_.setup.kind == sources::SourceKind::Live;
   source_.reset();
   outside_ = {};

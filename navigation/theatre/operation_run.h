@@ -158,9 +158,10 @@ class OperationRun {
     SourceWatch watch;
     LatencyMeter meter;
     FrameLatency newest;
-    std::int64_t captured_ns = 0;  // of the newest picture, on the steady clock; 0: nobody knows
-    std::int64_t taken_ns = 0;     // when that was taken up
-    bool is_news = false;          // what is wrong with the source has changed with it
+    std::int64_t captured_ns = 0;       // of the newest picture, on the steady clock; 0: nobody knows
+    std::int64_t taken_ns = 0;          // when that was taken up
+    bool is_news = false;               // what is wrong with the source has changed with it
+    std::int64_t silent_at_end_ns = 0;  // for how long no picture had come when the source ended
   } live_;
   double late_after_s_ = kLateAfter_s;
 };

@@ -135,6 +135,21 @@ TEST(OperationRail, LeadsThroughTheNineSteps) {
   EXPECT_EQ(state_of(course.rail(), Step::Verify), StepState::Done);
 }
 
+// One picture that comes too late takes no guide out of the hand: what is to be done does not blink.
+TEST(OperationRail, APictureThatComesTooLateSendsForNoGuide) {
+  using guidance::GuidanceState;
+  Course course;
+  course.verify();
+  course.state.frame.guidance.state = GuidanceState::NoGuide;
+  (void)course.rail();
+  EXPECT_EQ(course.state.next_action, operation::NextAction::BringGuide);
+  for (const GuidanceState state : {GuidanceState::PictureLate, GuidanceState::PicturesSlow}) {
+    course.state.frame.guidance.state = state;
+    (void)course.rail();
+    EXPECT_EQ(course.state.next_action, operation::NextAction::FollowBullseye);
+  }
+}
+
 // A tunnel that was only said to be drilled brings the finish, and no tick to a step that nobody took.
 TEST(OperationRail, ATunnelByWordAloneTicksNoStepBeforeIt) {
   Course course;

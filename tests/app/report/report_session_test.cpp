@@ -169,6 +169,10 @@ TEST_F(Report, Hazard29NamesTheTunnelThatWasDrilledByWordAlone) {
   EXPECT_TRUE(report.at("achieved").empty());
   ASSERT_EQ(report.at("drilled_by_word").size(), 1U);
   EXPECT_EQ(report.at("drilled_by_word")[0].at("tunnel"), "femur");
+  // The next source is rehearsed on, which says nothing of this knee; the one after it says: not drilled.
+  expect_contains(text_of_session("simulation", {}), "DRILLED BY WORD ALONE: the femur tunnel");
+  const std::string taken_back = text_of_session("live", {{recording::kSaidTooEarlyEvent, "femur"}});
+  EXPECT_EQ(taken_back.find("DRILLED BY WORD ALONE"), std::string::npos);
 }
 
 // Of the sessions of a case the one that is asked for is told, whatever came after it.

@@ -105,10 +105,10 @@ TEST_F(DrillingTest, AReadingIsOfOneHole) {
 
 TEST_F(DrillingTest, TakenBackItRestsOnWhatIsSeenFromThenOn) {
   fill();
-  ASSERT_TRUE(drilling_.take_back(true));
+  ASSERT_TRUE(drilling_.take_back(plan_));
   EXPECT_FALSE(has_seen() || has_said());
   EXPECT_TRUE(drilling_.state().was_taken_back);
-  EXPECT_FALSE(drilling_.take_back(true)) << "once";
+  EXPECT_FALSE(drilling_.take_back(plan_)) << "once";
 }
 
 // What a drill is about to leave is the bone that is operated on, beside the plan too.

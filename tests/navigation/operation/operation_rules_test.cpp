@@ -223,13 +223,12 @@ TEST_F(OperationRules, DrilledThatWasSaidUnderAnotherSourceIsTakenBack) {
   give();
   for (int i = 0; i < 60; ++i) run_.show_guide(0.2);
   run_.apply(TunnelDrilled{});
-  const long notes = run_.count(JournalKind::Note);
   run_.operation().end_source();
   run_.start(test::scripted_source());
   EXPECT_FALSE(run_.state()->drilled.was_taken_back);
   for (int i = 0; i < 2; ++i) run_.apply(TakeBackDrilled{});
   EXPECT_TRUE(run_.state()->drilled.was_taken_back);
-  EXPECT_EQ(run_.count(JournalKind::Note), notes + 1) << "once";
+  EXPECT_EQ(run_.count(JournalKind::SaidTooEarly), 1) << "once";
   EXPECT_EQ(run_.count(JournalKind::DrilledTakenBack), 0) << "nothing of it is in this record";
 }
 
@@ -238,7 +237,7 @@ TEST_F(OperationRules, DrilledByWordAloneIsTakenBackToo) {
   run_.apply(TunnelDrilled{});
   run_.apply(TakeBackDrilled{});
   EXPECT_EQ(run_.state()->drilled.outcome, DrilledState::Outcome::NotSaid);
-  EXPECT_EQ(run_.count(JournalKind::DrilledTakenBack), 1);
+  EXPECT_EQ(run_.count(JournalKind::SaidTooEarly), 1);
 }
 
 // A second press with nothing new seen takes nothing away of what is recorded.
