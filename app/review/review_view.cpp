@@ -264,15 +264,16 @@ void ReviewView::draw_report(const widgets::Ui& ui) const {
     return;
   }
   const std::string problem = report_ != nullptr && report_->has_ended() ? report_->problem() : "";
+  const bool is_of_now = report_ != nullptr && !is_writing_report() && is_report_of_now();
   ui.log.note_state("report", report_ == nullptr    ? "none"
                               : is_writing_report() ? "running"
                               : !problem.empty()    ? "failed"
-                              : is_report_of_now()  ? "written"
+                              : is_of_now           ? "written"
                                                     : "of an earlier plan");
   if (report_ == nullptr) return;
   if (is_writing_report())
     widgets::status_row(ui, widgets::Severity::Quiet, "Report", "is being written");
-  else if (problem.empty() && is_report_of_now())
+  else if (problem.empty() && is_of_now)
     widgets::status_row(ui, widgets::Severity::Good, "Report", report_->file().string());
   else if (problem.empty())
     widgets::status_row(ui, widgets::Severity::Caution, "Report of an earlier plan",

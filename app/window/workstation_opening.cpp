@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "app/folders/folder_listing.h"
 #include "app/library/workstation_library.h"
 #include "app/plan/plan_view.h"
 #include "app/review/review_view.h"
@@ -134,7 +135,7 @@ void WorkstationWindow::take_dropped() {
   if (has_running_work() || opening_ != nullptr) return untaken_.note_drop(GraphicsWindow::now_s());
   failure_.clear();
   const mode::Mode* const in_front = shows_start() || shows_paint() ? nullptr : &shown();
-  if (in_front == plan_ && in_front != nullptr && dropped.front().string().ends_with(".mrk.json"))
+  if (in_front == plan_ && in_front != nullptr && folders::is_markups_name(dropped.front()))
     return plan_->take_markups(dropped.front());
   // In Review what is dropped is what the case looks like now, unless it is another case.
   if (in_front == review_ && in_front != nullptr && !std::filesystem::exists(dropped.front() / "case.json"))

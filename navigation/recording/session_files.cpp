@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "planning/files/atomic_file.h"
+#include "planning/files/csv_cell.h"
 #include "planning/files/json_document.h"
 #include "planning/files/sha256.h"
 
@@ -20,17 +21,6 @@ void append_number(std::string& line, double value) {
   char text[32];
   std::snprintf(text, sizeof text, ",%.6f", value);
   line += text;
-}
-
-// A name as a field of a table; what it has of the table's own characters stands in quotes.
-void append_name(std::string& text, const std::string& name) {
-  if (name.find_first_of(",\"\n") == std::string::npos) {
-    text += name;
-    return;
-  }
-  text += '"';
-  for (const char letter : name) text += letter == '"' ? "\"\"" : std::string(1, letter);
-  text += '"';
 }
 
 // Empty where the drill is not seen, or the number is not known.
@@ -168,7 +158,7 @@ void append_guidance_line(std::int64_t frame, std::int64_t timestamp_ns, const g
   append_drill(text, g, &guidance::DrillDepth::to_exit_mm);
   text += ',';
   for (const tools::Tool& tool : tools.tools)
-    if (g.drill && g.drill->marker_id == tool.marker_id) append_name(text, tool.name);
+    if (g.drill && g.drill->marker_id == tool.marker_id) text += files::csv_cell(tool.name);
   text += '\n';
 }
 

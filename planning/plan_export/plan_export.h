@@ -22,9 +22,9 @@ struct ExportSummary {
 // Writes plan.json, plan.csv, plan.mrk.json and, of every bone that is planned on, femur_drilled.stl and .ply
 // or tibia_drilled.stl and .ply (LPS, mm); one of an earlier plan that this one does not drill is removed.
 // SHA256SUMS, for sha256sum -c, holds the hash of each.
-// Everything is computed before anything is written. A folder that is absent, or holds an earlier export
-// alone, then becomes this one in one step; beside other files each is replaced by itself. Throws
-// InvalidInput when nothing is planned, and as refuse_foreign() does; IoError.
+// Everything is computed before anything is written. A folder that is absent then appears with all of it in
+// one step; in one that is there each file is replaced by itself, and all else stays (files::fill_folder).
+// Throws InvalidInput when nothing is planned, and as refuse_foreign() does; IoError.
 [[nodiscard]] ExportSummary export_plan(const cases::Case& knee, const std::filesystem::path& folder,
                                         const std::stop_token& stop = {});
 
