@@ -83,6 +83,11 @@ const CaseRecord* CaseList::selected() const {
   return row < found_.size() ? &library_.records()[found_[row]] : nullptr;
 }
 
+bool CaseList::lists_built_in() const {
+  const library::CaseQuery& query = view_.query;
+  return query.words.empty() && query.side.empty() && !query.state;
+}
+
 std::size_t CaseList::selected_row() const {
   return static_cast<std::size_t>(
       std::find_if(found_.begin(), found_.end(),
@@ -97,8 +102,8 @@ void CaseList::move_selection(int by) {
     view_.chart = static_cast<std::size_t>(next);
     return;
   }
-  if (is_first_look()) return;
-  const long row = std::clamp(static_cast<long>(selected_row()) + by, 0L, static_cast<long>(found_.size()));
+  if (is_first_look() || row_count() == 0) return;
+  const long row = std::clamp(static_cast<long>(selected_row()) + by, 0L, static_cast<long>(row_count()) - 1);
   view_.selected = row < static_cast<long>(found_.size())
                        ? library_.records()[found_[static_cast<std::size_t>(row)]].folder
                        : fs::path();
@@ -106,7 +111,7 @@ void CaseList::move_selection(int by) {
 }
 
 void CaseList::accept() {
-  if (view_.shows_trends || is_first_look()) return;
+  if (view_.shows_trends || is_first_look() || selected_row() >= row_count()) return;
   open_(view_.selected);
 }
 
@@ -123,8 +128,8 @@ void CaseList::add_actions(widgets::Actions& actions, const std::function<bool()
   actions.add(
       {"start.search",
        "Search",
-       "Words that must all stand in name, note, side, date, state, outcome or what names the patient; Esc "
-       "gives the keys back",
+       "Words that must all stand in name, note, side, date, state, outcome or what names the patient; Enter "
+       "gives the keys back, Esc clears it",
        GLFW_KEY_F,
        0,
        false,

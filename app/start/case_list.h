@@ -21,7 +21,7 @@ namespace arthronaut::start {
 
 class CaseList {
  public:
-  // open: opens a case; an empty path is the built-in knee, which is the list's last row.
+  // open: opens a case; an empty path is the built-in knee, the last row of a list that nothing narrows.
   CaseList(std::function<void(const std::filesystem::path&)> open, std::function<void()> wake);
 
   // All start with "start."; is_shown: whether this page is in front.
@@ -32,8 +32,9 @@ class CaseList {
   void draw(const widgets::Ui& ui, const widgets::Rect& area);
 
   void move_selection(int by);
-  void accept();                 // opens what is selected
+  void accept();                 // opens what is selected; where no case is like what is sought, nothing
   [[nodiscard]] bool go_back();  // out of the trends; false when they are not shown
+  [[nodiscard]] std::size_t row_count() const { return found_.size() + (lists_built_in() ? 1 : 0); }
   // The selected case, where it is there and can be read.
   [[nodiscard]] SendableCase sendable() const;
   [[nodiscard]] bool shows_trends() const { return view_.shows_trends; }
@@ -67,7 +68,9 @@ class CaseList {
   [[nodiscard]] bool is_writing() const {
     return view_.note_of == view_.selected && view_.note != view_.note_before;
   }
-  [[nodiscard]] std::size_t selected_row() const;  // found_.size(): the built-in knee
+  // What is sought may be somebody's knee: the built-in one does not stand in for it.
+  [[nodiscard]] bool lists_built_in() const;
+  [[nodiscard]] std::size_t selected_row() const;  // found_.size(): the built-in knee, or nothing
   [[nodiscard]] bool is_first_look() const { return library_.is_looking() && library_.records().empty(); }
 
   void draw_head(const widgets::Ui& ui, widgets::Rect head);

@@ -47,8 +47,18 @@ Severity severity_of(const CaseRecord& record, const PlanVerdict* verdict) {
     case CaseState::Drilled:
       break;
   }
+  // A tick says that nothing of the last operation is in doubt, not that it went as planned: its numbers
+  // stand beside it. What a CT alone shows is neither.
   const library::SessionFacts* const last = record.last_session();
-  return last != nullptr && !last->problem.empty() ? Severity::Caution : Severity::Good;
+  if (last == nullptr || last->is_simulated()) return Severity::Quiet;
+  return last->problem.empty() && last->doubts().empty() ? Severity::Good : Severity::Caution;
+}
+
+std::string doubts_in_words(const CaseRecord& record) {
+  std::string words;
+  if (record.last_session() != nullptr)
+    for (const std::string& doubt : record.last_session()->doubts()) words += "; " + doubt;
+  return words;
 }
 
 std::string capital(std::string words) {
@@ -75,8 +85,9 @@ void CaseList::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   // Keys are letters while this is so.
   ui.log.note_state("typing", ImGui::GetIO().WantTextInput ? "yes" : "no");
   ui.log.note_state("page", view_.shows_trends ? "trends" : "list");
-  ui.log.note_state("case_selected", selected() != nullptr ? selected()->name : "built-in");
-  ui.log.note_state("case_state", selected() != nullptr ? to_text(selected()->state()) : "built-in");
+  const std::string none = lists_built_in() ? "built-in" : "none";
+  ui.log.note_state("case_selected", selected() != nullptr ? selected()->name : none);
+  ui.log.note_state("case_state", selected() != nullptr ? to_text(selected()->state()) : none);
   ui.log.note_state("note", selected() != nullptr ? selected()->note : "");
   if (view_.shows_trends) return draw_trends(ui, area);
   widgets::Rect rest = area;
@@ -114,8 +125,10 @@ void CaseList::draw_head(const widgets::Ui& ui, widgets::Rect head) {
     ImGui::SetKeyboardFocusHere();
     view_.focus = Focus::None;
   }
-  const bool is_typed = ImGui::InputTextWithHint(
-      "##search", "Search (F): name, note, side, 2026-01, drilled\u2026", &view_.query.words);
+  // What was sought before is selected: the next letters take its place.
+  const bool is_typed =
+      ImGui::InputTextWithHint("##search", "Search (F): name, note, side, 2026-01, drilled\u2026",
+                               &view_.query.words, ImGuiInputTextFlags_AutoSelectAll);
   // Escape alone would bring back what was there before.
   const bool is_cleared = ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGuiKey_Escape);
   if (is_cleared) view_.query.words.clear();
@@ -162,14 +175,15 @@ void CaseList::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {
   }
   if (found_.empty() && !library_.records().empty())
     widgets::text_in(ui.theme.strong, widgets::kCaution,
-                     "No case is like that. Clear the search, or S and A.");
+                     view_.query.words.empty() ? "No case is like that: S and A show other ones."
+                                               : "No case is like that: F, then Esc, clears the search.");
   const float height = ui.theme.px(96);
   const std::size_t row = selected_row();
   bool opens = false;
   // Of a thousand rows those in view are drawn.
   ImGuiListClipper clipper;
   const float step = height + ImGui::GetStyle().ItemSpacing.y;
-  clipper.Begin(static_cast<int>(found_.size()) + 1, step);
+  clipper.Begin(static_cast<int>(row_count()), step);
   if (view_.scrolls_to_selected)
     ImGui::SetScrollFromPosY(
         clipper.StartPosY - ImGui::GetWindowPos().y + step * (static_cast<float>(row) + 0.5F), 0.5F);
@@ -229,7 +243,7 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
   std::string what = capital(record.state() == CaseState::Planned ? plan_in_words(record, verdict)
                                                                   : std::string(to_text(record.state())));
   if (record.state() != CaseState::Planned && (severity == Severity::Caution || severity == Severity::Bad))
-    what += ": " + record.last_outcome();
+    what += ": " + record.last_outcome() + doubts_in_words(record);
   else if (count > 0)
     what += ", " + std::to_string(count) + (count == 1 ? " session" : " sessions, the last") +
             (record.last_session()->is_simulated() ? " simulated: " : ": ") + record.last_outcome();
@@ -247,12 +261,13 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
 
 void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
   const CaseRecord* record = is_first_look() ? nullptr : selected();
+  const bool shows_built_in = !is_first_look() && lists_built_in();
   widgets::begin_panel(ui, "start.details", area,
                        record != nullptr ? record->name
-                       : is_first_look() ? ""
-                                         : "The built-in knee");
+                       : shows_built_in  ? "The built-in knee"
+                                         : "");
   if (record == nullptr) {
-    if (!is_first_look())
+    if (shows_built_in)
       widgets::text_in(
           ui.theme.body, widgets::kQuietText,
           "A right knee to learn on. What is changed in it stays; the simulated operation in F2 drills "
@@ -298,7 +313,7 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
     const std::string tunnel = found.bone + (found.bundle == "am"   ? " AM"
                                              : found.bundle == "pl" ? " PL"
                                                                     : "");
-    widgets::status_row(ui, found.is_reliable ? Severity::Good : Severity::Caution, "After the operation",
+    widgets::status_row(ui, found.is_reliable ? Severity::Quiet : Severity::Caution, "After the operation",
                         found.entry_offset_mm
                             ? files::format("%s %.1f mm, %.1f\u00B0 from the plan", tunnel.c_str(),
                                             *found.entry_offset_mm, found.angle_deg.value_or(0))

@@ -115,7 +115,7 @@ void StartView::tick() {
 std::size_t StartView::row_count() const {
   switch (state_.page) {
     case Page::Cases:
-      return 1;  // the built-in knee at least
+      return cases_.row_count();
     case Page::Browse:
       return browser_.has_rows() ? 1 : 0;  // it knows its own
     case Page::Import:

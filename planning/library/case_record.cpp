@@ -237,6 +237,14 @@ std::string CaseRecord::plan_in_words() const {
   return words;
 }
 
+bool CaseRecord::is_simulated() const {
+  const auto is_known = [](const SessionFacts& session) { return !session.source_kind.empty(); };
+  return std::ranges::any_of(sessions, is_known) &&
+         std::ranges::all_of(sessions, [&](const SessionFacts& session) {
+           return !is_known(session) || session.is_simulated();
+         });
+}
+
 std::string CaseRecord::last_outcome() const {
   if (!is_there) return "its folder is not there now";
   if (!problem.empty()) return "cannot be read: " + problem;

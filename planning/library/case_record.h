@@ -94,6 +94,8 @@ struct CaseRecord {
   [[nodiscard]] const SessionFacts* last_session() const {
     return sessions.empty() ? nullptr : &sessions.back();
   }
+  // A rehearsal: there are sessions, and all of which anything is known were simulated.
+  [[nodiscard]] bool is_simulated() const;
   // Of what the last session came to; of what is wrong with the case; empty without either.
   [[nodiscard]] std::string last_outcome() const;
 };

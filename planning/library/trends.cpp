@@ -51,9 +51,12 @@ void add_comparisons(const CaseRecord& record, Trend trend, const TrendOptions& 
     const auto value = trend == Trend::AchievedOffset ? facts.entry_offset_mm : facts.angle_deg;
     if (!value || !facts.is_reliable || (!options.bone.empty() && facts.bone != options.bone)) continue;
     const SessionFacts* session = compared_session_of(record, facts.bone);
+    // A bone that was never navigated is of what its case is: one that was only rehearsed is nobody's.
+    const bool is_simulated = session != nullptr ? session->is_simulated() : record.is_simulated();
+    if (is_simulated && !options.with_simulated) continue;
     if (session == nullptr)
       points.push_back({record.created_utc, *value, record.name, "", record.folder, facts.bone});
-    else if (!session->is_simulated() || options.with_simulated)
+    else
       points.push_back({session->started_utc, *value, record.name, session->id, record.folder, facts.bone});
   }
 }

@@ -41,7 +41,15 @@ TEST_F(CasesWindow, IsSearchedNotedAndOpenedByKeys) {
   ASSERT_TRUE(app.wait_for_state("cases_listed", "1"));
   app.press("Escape");
   ASSERT_TRUE(app.wait_for_state("cases_listed", "3")) << "the search is cleared";
+  // Nobody is like that: no other knee stands in, and nothing is opened.
   app.press("f");
+  app.type("schmidt");
+  ASSERT_TRUE(app.wait_for_state("cases_listed", "0"));
+  EXPECT_EQ(app.state("case_selected"), "none");
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("typing", "no"));
+  app.press("Return");
+  app.press("f");  // the words of before are replaced
   app.type("bert");
   ASSERT_TRUE(app.wait_for_state("case_selected", "Berta"));
   ASSERT_TRUE(app.wait_for_state("cases_listed", "1"));

@@ -96,6 +96,18 @@ TEST(TrendTest, AComparisonIsOfTheOperation) {
   EXPECT_EQ(points[0].when_utc, "2026-02-03") << "where none is drilled";
 }
 
+// A tibia beside a femur that was only simulated counted as a real one.
+TEST(TrendTest, ABoneThatWasNotNavigatedIsOfWhatItsCaseIs) {
+  std::vector<CaseRecord> records(1);
+  records[0].created_utc = "2026-01-02";
+  records[0].sessions = {session("2026-01-03", 1, "simulation")};
+  records[0].postoperative = {found("femur", 2.5, 4, true), found("tibia", 1.5, 2, true)};
+  EXPECT_TRUE(trend_of(records, Trend::AchievedOffset).empty());
+  EXPECT_EQ(trend_of(records, Trend::AchievedOffset, {.with_simulated = true}).size(), 2U);
+  records[0].sessions.push_back(session("2026-01-04", 1));
+  EXPECT_EQ(trend_of(records, Trend::AchievedOffset).size(), 2U);
+}
+
 // By hand: moving ranges 1, 2, 1, 0, 2, 1, 0 have the mean 1, so the limits are 3 / 1.128 = 2.6596 about 4.5.
 TEST(ControlLimitsTest, AreThoseOfAnIndividualsChart) {
   const std::vector<double> values{4, 5, 3, 4, 4, 6, 5, 5};
