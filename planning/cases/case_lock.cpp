@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <pwd.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -68,8 +69,14 @@ ProcessState state_of(long process) {
 
 struct LockFile {
   LockHolder holder;
-  std::string start;  // see ProcessState
+  std::string start;            // see ProcessState
+  std::int64_t folder_inode{};  // of the folder that it locks; 0: not said
 };
+
+std::int64_t inode_of(const fs::path& folder) {
+  struct stat status {};
+  return ::stat(folder.c_str(), &status) == 0 ? static_cast<std::int64_t>(status.st_ino) : 0;
+}
 
 // Nothing when there is none. A broken one names nobody.
 std::optional<LockFile> read_lock(const fs::path& file) {
@@ -78,7 +85,8 @@ std::optional<LockFile> read_lock(const fs::path& file) {
     const auto root = files::read_json(file, kLockFormat, kLockVersion);
     LockFile lock{{root.text("host"), root.text("user"), static_cast<long>(root.integer("process")),
                    root.text("since_utc")},
-                  root.has("process_start") ? root.text("process_start") : ""};
+                  root.has("process_start") ? root.text("process_start") : "",
+                  root.has("folder_inode") ? root.integer("folder_inode") : 0};
     return lock;
   } catch (const InvalidInput&) {
     return LockFile{};
@@ -91,6 +99,7 @@ void write_lock(const fs::path& file, const LockFile& lock) {
                            {"host", lock.holder.host},
                            {"process", lock.holder.process},
                            {"process_start", lock.start},
+                           {"folder_inode", lock.folder_inode},
                            {"user", lock.holder.user},
                            {"since_utc", lock.holder.since_utc}});
 }
@@ -112,13 +121,21 @@ void make_case_private(const fs::path& folder) {
   if (std::error_code error; fs::exists(folder / "case.json", error)) files::make_private(folder);
 }
 
+// A case that was copied while it was open brings the original's lock along. Another host may number the
+// folders of a shared drive in its own way: there it tells nothing.
+bool is_of_a_copy(const LockFile& lock, const fs::path& file) {
+  return lock.folder_inode != 0 && lock.holder.host == host_name() &&
+         lock.folder_inode != inode_of(file.parent_path());
+}
+
 // Why the lock on file stands in the way; empty when it does not.
 std::string obstacle(const LockFile& lock, const fs::path& file) {
   if (lock.holder.process == 0) return "";  // broken: nobody can be asked
   if (lock.holder.host != host_name()) {
-    return "is open elsewhere: " + lock.holder.in_words() + ". If that program is gone, delete " +
-           file.string();
+    return "is open elsewhere: " + lock.holder.in_words() +
+           ". If that program is gone, or this folder is a copy of its case, delete " + file.string();
   }
+  if (is_of_a_copy(lock, file)) return "";
   return lives_here(lock) ? "is open elsewhere: " + lock.holder.in_words() : "";
 }
 
@@ -222,13 +239,17 @@ CaseLock::CaseLock(const fs::path& case_folder) {
     if (refusal_.empty() && turn) refusal_ = turn->refusal();
     if (refusal_.empty()) {
       make_case_private(case_folder);
-      LockFile mine{{host_name(), user_name(), ::getpid(), files::utc_now()}, state_of(::getpid()).start};
+      LockFile mine{{host_name(), user_name(), ::getpid(), files::utc_now()},
+                    state_of(::getpid()).start,
+                    inode_of(case_folder)};
       write_lock(file, mine);
       // Where the kernel's locks end at this machine another one may have come so far; the later file counts.
       const auto there = read_lock(file);
       if (there && is_same(*there, mine)) {
         state_ = std::make_unique<State>(case_folder, kernel.descriptor, std::move(mine));
-        if (before) {
+        if (before && is_of_a_copy(*before, file) && lives_here(*before)) {
+          notice_ = "A copy of a case that was open: " + before->holder.in_words();
+        } else if (before) {
           dead_since_utc_ = before->holder.since_utc;
           notice_ = before->holder.process > 0
                         ? "Taken over from " + before->holder.in_words() + ", which ended without closing it"

@@ -7,6 +7,7 @@
 //
 //   nobody holds the kernel's lock, no case.lock                       -> taken
 //   ..., case.lock names a process that is gone from this host         -> taken over, and that is said
+//   ..., case.lock is of another folder of this host: this is a copy   -> taken, and that is said
 //   ..., case.lock names a living process of this host, or another host -> refused
 //   somebody holds the kernel's lock                                   -> refused
 //
@@ -50,7 +51,8 @@ class CaseLock {
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
   // It is not held, and another program is why: it may become free.
   [[nodiscard]] bool is_held_elsewhere() const { return is_held_elsewhere_; }
-  // What the user should know although it is held: that it was taken over, and from whom. Else empty.
+  // What the user should know although it is held: that it was taken over, and from whom, or that it is a
+  // copy of what was open. Else empty.
   [[nodiscard]] const std::string& notice() const { return notice_; }
   // Since when, in UTC, that other program had it; empty: it was not taken over, or nobody knows.
   [[nodiscard]] const std::string& dead_since_utc() const { return dead_since_utc_; }

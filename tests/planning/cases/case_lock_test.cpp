@@ -237,6 +237,21 @@ TEST_F(CaseLockTest, Hazard15ALivingProcessOfThisHostHolds) {
   EXPECT_FALSE(CaseLock(folder_).is_held());
 }
 
+// A case that is copied while it is open brings the lock of the original along.
+TEST_F(CaseLockTest, ACopyOfAnOpenCaseIsFree) {
+  const OtherProcess other(taking());
+  ASSERT_TRUE(other.result());
+  const std::filesystem::path copy = temporary_ / "Copy.arthro";
+  std::filesystem::copy(folder_, copy, std::filesystem::copy_options::recursive);
+  {
+    const CaseLock lock(copy);
+    EXPECT_TRUE(lock.is_held()) << lock.refusal();
+    EXPECT_THAT(lock.notice(), HasSubstr("copy of a case that was open"));
+    EXPECT_THAT(lock.dead_since_utc(), IsEmpty());
+  }
+  EXPECT_FALSE(CaseLock(folder_).is_held()) << "the original is the other program's";
+}
+
 // Nobody here can know whether a process of another machine lives: it is said what to do.
 TEST_F(CaseLockTest, Hazard15AnotherMachinesLockIsNeverTakenOver) {
   write_lock("theatre-2", 4711, "");
