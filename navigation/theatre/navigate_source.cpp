@@ -77,12 +77,16 @@ class Navigation {
       run_.keep_video(record.keep, record.video);
     }
     if (options.registration) apply(*options.registration);
-    if (options.is_confirmed) {
-      apply(operation::ConfirmTimeOut{});
-      apply(operation::TrustGuide{});
-    }
+    if (options.is_confirmed) confirm();
     // Somebody who stands by may draw whatever is known: it verifies what was given.
     apply(operation::Draw{true});
+  }
+
+  // What is asked of this source, and no more: a record that tells of a time-out that was not due would say
+  // that somebody confirmed something.
+  void confirm() {
+    if (run_.state()->time_out == operation::TimeOut::Due) apply(operation::ConfirmTimeOut{});
+    if (!run_.state()->guide_check.may_guide()) apply(operation::TrustGuide{});
   }
 
   // False at the end.

@@ -71,6 +71,18 @@ TEST_F(NavigateSource, AMeasuredGuideAndARecordingAskForNothing) {
   EXPECT_TRUE(events(recording::kGuideCheckedEvent).empty());
 }
 
+// Nobody confirmed a time-out of a recording: its record must not say so.
+TEST_F(NavigateSource, OfARecordingNothingIsConfirmed) {
+  NavigateOptions video = options(sources::SourceKind::Recording);
+  video.source.pipeline.tools.tools.back().provenance.origin = provenance::Origin::Nominal;
+  video.is_confirmed = true;
+  (void)navigate_source(pictures(5), video, record());
+  for (const std::string& command : events(recording::kCommandEvent)) {
+    EXPECT_EQ(command.find("confirm"), std::string::npos) << command;
+    EXPECT_EQ(command.find("trust"), std::string::npos) << command;
+  }
+}
+
 // How much of the operation was watched is what `navigate` says at its end.
 TEST_F(NavigateSource, CountsPicturesThatShowedTheBoneWhereItLay) {
   constexpr long kPictures = 60;
