@@ -301,6 +301,7 @@ class Demo {
           result.camera_from_world.target_from_source * registration->marker_from_bone;
       scene::draw_overlay(picture, overlay.project(result.camera, camera_from_bone, clear));
     }
+    scene::mark_simulated(picture);
     scene::write_png(options_.case_folder / "pictures" / (name + ".png"), picture);
   }
 

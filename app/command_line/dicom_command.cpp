@@ -55,6 +55,19 @@ void add_plan_pictures(const cases::Case& knee, std::vector<dicom_out::KeyPictur
   }
 }
 
+// In an archive nothing else tells a simulator's picture from a patient's.
+std::string title_of_pictures(const fs::path& case_folder) {
+  switch (recording::pictured_knee(case_folder)) {
+    case recording::PicturedKnee::Patient:
+      return "Picture of the operation";
+    case recording::PicturedKnee::Nobody:
+      return "SIMULATION, nobody's knee: picture";
+    case recording::PicturedKnee::Either:
+      return "Picture of the operation or of a SIMULATION";
+  }
+  return "Picture";
+}
+
 // Screenshots (F12), by their time, and those in the case's own folder of pictures, by name.
 void add_pictures_of_operation(const fs::path& case_folder, std::vector<dicom_out::KeyPicture>& pictures) {
   std::vector<fs::path> files;
@@ -69,11 +82,12 @@ void add_pictures_of_operation(const fs::path& case_folder, std::vector<dicom_ou
     std::sort(files.begin() + first, files.end());
   }
   int number = 0;
+  const std::string title = title_of_pictures(case_folder);
   for (const fs::path& file : files) {
     camera::Frame frame = sources::read_picture(file);
     for (std::size_t at = 0; at + 2 < frame.bgr.size(); at += 3) std::swap(frame.bgr[at], frame.bgr[at + 2]);
     // Not by the file's name: it may be the patient's.
-    pictures.push_back({.title = "Picture of the operation " + std::to_string(++number),
+    pictures.push_back({.title = title + " " + std::to_string(++number),
                         .width = frame.width,
                         .height = frame.height,
                         .rgb = std::move(frame.bgr)});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <opencv2/imgproc.hpp>
 
 namespace arthronaut::scene {
 
@@ -34,6 +35,16 @@ void draw_overlay(Image& picture, const PlanOverlay& overlay, const FrameCut& cu
         dot(picture, (from + (to - from) * k / count).array().round().cast<int>(), colour);
     }
   }
+}
+
+void mark_simulated(Image& picture) {
+  cv::Mat pixels(picture.height, picture.width, CV_8UC3, picture.rgb.data());
+  const int bar_px = std::max(1, picture.height / 16);
+  pixels.rowRange(0, bar_px).setTo(cv::Scalar(0, 0, 0));
+  constexpr double kHeightAtScaleOne_px = 21;  // of OpenCV's plain letters
+  const double scale = 0.5 * bar_px / kHeightAtScaleOne_px;
+  cv::putText(pixels, "SIMULATION: nobody's knee", {bar_px / 2, bar_px * 7 / 10}, cv::FONT_HERSHEY_SIMPLEX,
+              scale, cv::Scalar(255, 200, 60), std::max(1, bar_px / 20), cv::LINE_AA);
 }
 
 }  // namespace arthronaut::scene

@@ -19,4 +19,7 @@ struct FrameCut {
 // Lines of three pixels, no faces. Hidden ones are dotted: form, not colour alone, tells them apart.
 void draw_overlay(Image& picture, const PlanOverlay& overlay, const FrameCut& cut = {});
 
+// Across the top, in the pixels: a picture that was drawn by a simulator is nobody's knee, wherever it goes.
+void mark_simulated(Image& picture);
+
 }  // namespace arthronaut::scene

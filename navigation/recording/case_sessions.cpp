@@ -47,6 +47,17 @@ std::optional<KnownRegistration> registration_of(const std::filesystem::path& fo
   return known;
 }
 
+// Empty where it cannot be read.
+std::optional<SessionHeader> header_of(const std::filesystem::path& session_folder) {
+  try {
+    pipeline::PipelineOptions options;
+    return read_session_header(session_folder, options);
+  } catch (const InvalidInput&) {
+  } catch (const IoError&) {
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool is_exercise(const SessionHeader& header) {
@@ -54,13 +65,18 @@ bool is_exercise(const SessionHeader& header) {
 }
 
 bool is_exercise(const std::filesystem::path& session_folder) {
-  try {
-    pipeline::PipelineOptions options;
-    return is_exercise(read_session_header(session_folder, options));
-  } catch (const InvalidInput&) {  // then nothing says that it is one
-  } catch (const IoError&) {
+  const auto header = header_of(session_folder);
+  return header && is_exercise(*header);  // without it nothing says that it is one
+}
+
+PicturedKnee pictured_knee(const std::filesystem::path& case_folder) {
+  bool has_simulation = false, has_other = false;
+  for (const std::filesystem::path& folder : cases::session_folders(case_folder)) {
+    const auto header = header_of(folder);
+    const bool is_simulation = header && header->source_kind == "simulation";
+    (is_simulation ? has_simulation : has_other) = true;
   }
-  return false;
+  return !has_simulation ? PicturedKnee::Patient : has_other ? PicturedKnee::Either : PicturedKnee::Nobody;
 }
 
 std::vector<std::filesystem::path> operation_folders(const std::filesystem::path& case_folder) {

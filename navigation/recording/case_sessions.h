@@ -20,6 +20,9 @@ struct SessionHeader;
 [[nodiscard]] bool is_exercise(const SessionHeader& header);
 // The same of a session's folder. False where its header cannot be read. Does not throw for that.
 [[nodiscard]] bool is_exercise(const std::filesystem::path& session_folder);
+// Whose pictures a case may hold, by the sources of its sessions, exercises among them.
+enum class PicturedKnee { Patient, Nobody, Either };
+[[nodiscard]] PicturedKnee pictured_knee(const std::filesystem::path& case_folder);
 // The sessions of a case that are operations, oldest first: what is reported, trended or sent counts no
 // other.
 [[nodiscard]] std::vector<std::filesystem::path> operation_folders(const std::filesystem::path& case_folder);

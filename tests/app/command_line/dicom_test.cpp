@@ -176,8 +176,16 @@ TEST_F(DicomCommand, Hazard40AnExerciseDatesNothing) {
     options.tools = tools::standard_tools();
     recording::SessionRecorder(session, header, options).finish();
   };
+  const auto comments = [&](const char* folder) {
+    DcmFileFormat picture;
+    EXPECT_TRUE(picture.loadFile((folder_ / folder / "image_003.dcm").c_str()).good());
+    return text(*picture.getDataset(), DCM_ImageComments);
+  };
+  ASSERT_EQ(run("none").exit_code, 0);
+  EXPECT_THAT(comments("none"), HasSubstr("Picture of the operation"));
   add_session("0001-20260131-120000", "an operation");
   ASSERT_EQ(run("before").exit_code, 0);
+  EXPECT_THAT(comments("before"), HasSubstr("SIMULATION")) << "nobody's knee in a hospital's archive";
   add_session("0002-20260315-080000", std::string(sources::kExerciseSource));
   ASSERT_EQ(run("after").exit_code, 0);
   EXPECT_EQ(contents_of(folder_ / "before"), contents_of(folder_ / "after"));

@@ -43,5 +43,20 @@ TEST(OverlayPicture, FollowsTheCut) {
   EXPECT_FALSE(is_drawn(picture, 50, 38));
 }
 
+// Read in the picture itself: what is written beside it is lost on the way to an archive.
+TEST(OverlayPicture, ASimulatorsPictureSaysSoInItsPixels) {
+  constexpr int kWidth_px = 960, kHeight_px = 540;
+  Image picture{kWidth_px, kHeight_px, std::vector<std::uint8_t>(3UL * kWidth_px * kHeight_px, 90)};
+  mark_simulated(picture);
+  std::size_t bright = 0, below = 0;
+  for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
+    const bool is_bar = i / 3 / kWidth_px < kHeight_px / 16;
+    bright += is_bar && picture.rgb[i] > 200;
+    below += !is_bar && picture.rgb[i] != 90;
+  }
+  EXPECT_GT(bright, 500U) << "letters";
+  EXPECT_EQ(below, 0U) << "the picture itself is left as it is";
+}
+
 }  // namespace
 }  // namespace arthronaut::scene
