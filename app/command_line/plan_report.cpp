@@ -10,6 +10,7 @@
 #include "planning/plan_review/landmark_check.h"
 #include "planning/plan_review/proposed_landmarks.h"
 #include "planning/tunnels/breach.h"
+#include "planning/tunnels/check_numbers.h"
 
 namespace arthronaut::command_line {
 
@@ -46,15 +47,6 @@ const char* state_of_grid(const cases::Case& knee, const plan_review::CaseReview
   if (!surroundings.quadrant && !surroundings.plateau) return "missing";
   return plan_review::state_of_grid(knee, bone) == landmarks::LandmarkState::Confirmed ? "confirmed"
                                                                                        : "proposed";
-}
-
-// What it was held against, as data.
-void put_numbers(const PlanCheck& check, nlohmann::ordered_json& entry) {
-  if (!check.value) return;
-  entry["value"] = *check.value;
-  entry["unit"] = check.unit;
-  if (check.least) entry["least"] = *check.least;
-  if (check.greatest) entry["greatest"] = *check.greatest;
 }
 
 }  // namespace
@@ -122,7 +114,7 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review
                                     {"verdict", to_text(check.verdict)},
                                     {"text", check.text},
                                     {"source", check.source}};
-    put_numbers(check, entry);
+    tunnels::put_numbers(check, entry);
     checks.push_back(std::move(entry));
   }
   node["checks"] = std::move(checks);

@@ -10,6 +10,7 @@
 #include "planning/files/json_document.h"
 #include "planning/files/utc_clock.h"
 #include "planning/postop/achieved_file.h"
+#include "planning/tunnels/check_numbers.h"
 
 namespace arthronaut::report {
 
@@ -49,12 +50,7 @@ ordered_json tunnels_of(const Content& content) {
     node["checks"] = ordered_json::array();
     for (const tunnels::PlanCheck& check : review.checks(key)) {
       ordered_json entry = {{"name", check.name}, {"verdict", to_text(check.verdict)}, {"text", check.text}};
-      if (check.value) {
-        entry["value"] = *check.value;
-        entry["unit"] = check.unit;
-        if (check.least) entry["least"] = *check.least;
-        if (check.greatest) entry["greatest"] = *check.greatest;
-      }
+      tunnels::put_numbers(check, entry);
       if (!check.source.empty()) entry["source"] = check.source;
       node["checks"].push_back(std::move(entry));
     }
