@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/report/flowing_pages.h"
+#include "app/report/other_sessions.h"
 #include "app/report/pdf_document.h"
 #include "app/report/plan_sheet.h"
 #include "app/report/postop_section.h"

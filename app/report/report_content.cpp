@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <utility>
 
+#include "app/report/other_sessions.h"
 #include "app/report/report_words.h"
 #include "app/report/session_rows.h"
 #include "navigation/operation/achieved_tunnel.h"
@@ -26,22 +26,6 @@
 namespace arthronaut::report {
 
 namespace {
-
-// A broken session takes nothing else away: it is named, and another one is told of. Where the case lies is
-// told nowhere: a folder may bear the patient's name.
-template <typename Read>
-void unless_unreadable(const std::filesystem::path& session, Content& content, const Read& read) {
-  const std::string name = session.filename().string();
-  const auto is_known = [&](const auto& one) { return one.first == name; };
-  if (std::any_of(content.unreadable.begin(), content.unreadable.end(), is_known)) return;
-  try {
-    read();
-  } catch (const InvalidInput& error) {
-    content.unreadable.emplace_back(name, files::within_folder(content.folder, error.what()));
-  } catch (const IoError& error) {
-    content.unreadable.emplace_back(name, files::within_folder(content.folder, error.what()));
-  }
-}
 
 struct ReadSession {
   std::unique_ptr<recording::RecordedSession> session;
@@ -108,73 +92,6 @@ bool is_of_another_surface(const Content& content) {
   const auto bone = content.knee.bones.find(header.bone);
   return bone != content.knee.bones.end() &&
          recording::is_of_another_surface(header, bones::mesh_sha256(bone->second.mesh));
-}
-
-// Whether a tunnel that was drilled then, in an earlier session, is a part of what `content` tells of.
-bool belongs_to(const Content& content, const recording::SessionHeader& then) {
-  const recording::SessionHeader& now = content.session->header();
-  if (then.source_kind != now.source_kind) return false;
-  if (then.bone == now.bone) return !recording::is_of_another_surface(then, now.mesh_sha256);
-  const auto bone = content.knee.bones.find(then.bone);
-  return bone != content.knee.bones.end() &&
-         !recording::is_of_another_surface(then, bones::mesh_sha256(bone->second.mesh));
-}
-
-// The newest of each tunnel that is planned and not among the session's own.
-void add_earlier(const std::vector<std::filesystem::path>& sessions, Content& content) {
-  const bool tells_of_own =
-      !content.achieved.empty() ||
-      std::ranges::any_of(content.by_word, [](const Content::ByWord& said) { return said.at_s.has_value(); });
-  if (!tells_of_own) return;
-  std::set<tunnels::TunnelKey> known;
-  for (const auto& achieved : content.achieved) known.insert(achieved.planned.key());
-  for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
-    unless_unreadable(*it, content, [&] {
-      for (const auto& file : operation::achieved_files(*it)) {
-        auto achieved = operation::read_achieved_file(file);
-        const tunnels::TunnelKey key = achieved.planned.key();
-        // Beside a bone's single tunnel what was before it is not planned.
-        const bool is_told = known.contains(key) || known.contains(tunnels::TunnelKey(key.bone));
-        if (is_told || !content.knee.plan.tunnels.contains(key)) continue;
-        if (!belongs_to(content, recording::RecordedSession(*it).header())) continue;
-        known.insert(key);
-        content.earlier.push_back({std::move(achieved), it->filename().string()});
-      }
-    });
-  }
-}
-
-// Of each tunnel the newest session that says anything of it decides.
-void add_by_word(const std::vector<std::filesystem::path>& sessions, Content& content) {
-  if (content.session == nullptr) return;
-  std::set<std::string> known;
-  for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
-    if (!std::filesystem::exists(*it / "session.json")) continue;
-    unless_unreadable(*it, content, [&] {
-      const recording::SessionOverview then = recording::read_overview(*it);
-      const bool is_own = content.session->folder() == *it;
-      if (!is_own && !belongs_to(content, then.header)) return;
-      for (const recording::DrilledByWord& said : recording::drilled_by_word(then.events, then.header.bone)) {
-        if (!known.insert(said.tunnel).second) continue;
-        content.by_word.push_back(
-            {said.tunnel, said.why, it->filename().string(),
-             is_own ? std::optional(time_s(*content.session, said.timestamp_ns)) : std::nullopt});
-      }
-      for (const std::string& tunnel : recording::said_too_early(then.events)) known.insert(tunnel);
-      for (const auto& file : operation::achieved_files(*it))
-        known.insert(tunnels::name_of(operation::read_achieved_file(file).planned.key()));
-    });
-  }
-}
-
-// Recorded by its poses, and said once more when none came: both are told, and which is which.
-void note_figures_of_before(Content& content) {
-  std::set<std::string> with_figures;
-  for (const auto& achieved : content.achieved) with_figures.insert(tunnels::name_of(achieved.planned.key()));
-  for (const auto& earlier : content.earlier)
-    with_figures.insert(tunnels::name_of(earlier.achieved.planned.key()));
-  for (Content::ByWord& said : content.by_word)
-    said.has_figures_of_before = with_figures.contains(said.tunnel);
 }
 
 // A broken file of marks takes nothing else away.
@@ -282,16 +199,6 @@ void blank_for_strangers(Content& content) {
 }
 
 }  // namespace
-
-std::string in_words(const Content::ByWord& said) {
-  const std::string when = said.at_s              ? ", at " + clock_text(*said.at_s)
-                           : said.session.empty() ? ", in an earlier session"
-                                                  : ", in the session " + said.session;
-  return "DRILLED BY WORD ALONE: the " + said.tunnel + " tunnel was said to be drilled" + when +
-         ", and no pose shows where it runs (" + said.why + "): " +
-         (said.has_figures_of_before ? "the numbers above are of what was recorded before."
-                                     : "no number is told of it.");
-}
 
 std::vector<std::string> shortcomings_of(const Content& content) {
   std::vector<std::string> sentences;
@@ -401,9 +308,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   const auto by_shape = plan_review::propose_landmarks(content.knee, plan_review::Proposing::Planned);
   content.review = std::make_unique<const plan_review::CaseReview>(content.knee, by_shape);
   content.is_of_another_surface = is_of_another_surface(content);
-  add_by_word(sessions, content);
-  add_earlier(sessions, content);
-  note_figures_of_before(content);
+  add_other_sessions(sessions, content);
   add_postoperative(content);
   add_places(content);
   add_camera(content);

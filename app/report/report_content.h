@@ -80,9 +80,6 @@ struct Content {
 // InvalidInput (file, place, reason).
 [[nodiscard]] Content gather(const std::filesystem::path& folder, const ReportOptions& options);
 
-// That it was said, when, and why no number is told of it.
-[[nodiscard]] std::string in_words(const Content::ByWord& said);
-
 // What the report tells less of than was recorded, or tells of what was not: a sentence each.
 [[nodiscard]] std::vector<std::string> shortcomings_of(const Content& content);
 // Whether percentages and axes of this bone follow from landmarks of which nobody has looked at all.
