@@ -6,6 +6,7 @@
 #include "app/command_line/cartilage_option.h"
 #include "app/command_line/command.h"
 #include "app/command_line/interruption.h"
+#include "app/command_line/known_registration.h"
 #include "app/command_line/medium_option.h"
 #include "app/command_line/navigation_report.h"
 #include "app/command_line/option_checks.h"
@@ -15,8 +16,6 @@
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
 #include "navigation/openigtlink/igtl_server.h"
-#include "navigation/recording/case_sessions.h"
-#include "navigation/registration/registration_file.h"
 #include "navigation/sources/camera_device.h"
 #include "navigation/theatre/navigate_source.h"
 #include "planning/bones/mesh_hash.h"
@@ -99,57 +98,6 @@ pipeline::PipelineOptions pipeline_options(const NavigateArguments& arguments, c
   return options;
 }
 
-// The newest session alone is asked: what an older one says of the bone may have been overtaken by it.
-constexpr const char* kOlder = "; --registration takes an older session's registration.json";
-
-// A registration that was given by name and is of something else is refused; one of the case is passed over,
-// and so is any of it where live pictures are to guide.
-std::optional<operation::GiveRegistration> known_registration(const Context& context,
-                                                              const NavigateArguments& arguments,
-                                                              const cases::Case& knee,
-                                                              const theatre::NavigateOptions& options) {
-  const registration::Provenance now = operation::provenance_of(options.operation, options.source);
-  const bones::BoneKind bone = options.operation.bone;
-  const bool is_live = now.source == sources::SourceKind::Live;
-  if (!arguments.registration.empty()) {
-    const auto record = registration::read_registration_record(arguments.registration);
-    const auto mismatch = record.of ? registration::mismatch_of(*record.of, now) : std::nullopt;
-    if (mismatch)
-      throw InvalidInput(arguments.registration, "of",
-                         "does not match: " + registration::in_words(*mismatch, *record.of, now));
-    if (record.mesh && !registration::may_be(*record.mesh, knee.bones.at(bone).mesh))
-      throw InvalidInput(arguments.registration, "mesh",
-                         "does not match: the bone that it was found on lies elsewhere than the case's " +
-                             std::string(bones::to_text(bone)));
-    if (is_live)
-      context.say("registration: given; that the world marker has not moved since it was found is your word");
-    return operation::GiveRegistration{record.registration, record.of.value_or(now)};
-  }
-  const auto known = recording::find_registration(arguments.case_folder, bone, options.source.pipeline.tools);
-  if (!known) return std::nullopt;
-  const std::string session = known->session_folder.filename().string();
-  for (const std::string& broken : known->passed_over) context.say("registration: passed over " + broken);
-  if (!known->is_usable()) {
-    context.say("registration: that of session " + session + " is not used: " + known->refusal + kOlder);
-    return std::nullopt;
-  }
-  if (const auto mismatch = known->of ? registration::mismatch_of(*known->of, now) : std::nullopt) {
-    context.say("registration: that of session " + session +
-                " is not used: " + registration::in_words(*mismatch, *known->of, now) + kOlder);
-    return std::nullopt;
-  }
-  // Here nobody touches the bone: no hand would show that its marker sits where it sat.
-  if (is_live) {
-    context.say("registration: that of session " + session +
-                " is not used: nobody has seen the world marker since; strokes give a new one, and "
-                "--registration takes " +
-                (known->session_folder / "registration.json").string() + " at your word");
-    return std::nullopt;
-  }
-  context.say("registration: of session " + session);
-  return operation::GiveRegistration{known->registration, known->of.value_or(now)};
-}
-
 // Which of the bone's planned tunnels is guided to; nullopt where none is planned. Throws InvalidInput where
 // two are planned and none is named, or one is named that is not planned: which one is drilled is never
 // guessed.
@@ -203,7 +151,8 @@ theatre::NavigateOptions navigate_options(const Context& context, const Navigate
   options.source.pipeline.axes = landmarks::anatomical_axes(
       bone, knee.side, landmarks != knee.landmarks.end() ? landmarks->second : landmarks::Landmarks(),
       found->second.mesh);
-  options.registration = known_registration(context, arguments, knee, options);
+  options.registration =
+      known_registration(context, arguments.registration, arguments.case_folder, knee, options);
   listen_to_tracker(context, options);
   // Case, bone, medium and source are all named by whoever typed the command.
   options.is_confirmed = true;

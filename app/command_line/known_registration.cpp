@@ -1,0 +1,66 @@
+#include "app/command_line/known_registration.h"
+
+#include <string>
+
+#include "navigation/operation/operation.h"
+#include "navigation/recording/case_sessions.h"
+#include "navigation/registration/registration_file.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::command_line {
+
+namespace {
+
+// The newest session alone is asked: what an older one says of the bone may have been overtaken by it.
+constexpr const char* kOlder = "; --registration takes an older session's registration.json";
+
+}  // namespace
+
+std::optional<operation::GiveRegistration> known_registration(const Context& context,
+                                                              const std::filesystem::path& given,
+                                                              const std::filesystem::path& case_folder,
+                                                              const cases::Case& knee,
+                                                              const theatre::NavigateOptions& options) {
+  const registration::Provenance now = operation::provenance_of(options.operation, options.source);
+  const bones::BoneKind bone = options.operation.bone;
+  const bool is_live = now.source == sources::SourceKind::Live;
+  if (!given.empty()) {
+    const auto record = registration::read_registration_record(given);
+    const auto mismatch = record.of ? registration::mismatch_of(*record.of, now) : std::nullopt;
+    if (mismatch)
+      throw InvalidInput(given, "of",
+                         "does not match: " + registration::in_words(*mismatch, *record.of, now));
+    if (record.mesh && !registration::may_be(*record.mesh, knee.bones.at(bone).mesh))
+      throw InvalidInput(given, "mesh",
+                         "does not match: the bone that it was found on lies elsewhere than the case's " +
+                             std::string(bones::to_text(bone)));
+    if (is_live)
+      context.say("registration: given; that the world marker has not moved since it was found is your word");
+    return operation::GiveRegistration{record.registration, record.of.value_or(now)};
+  }
+  const auto known = recording::find_registration(case_folder, bone, options.source.pipeline.tools);
+  if (!known) return std::nullopt;
+  const std::string session = known->session_folder.filename().string();
+  for (const std::string& broken : known->passed_over) context.say("registration: passed over " + broken);
+  if (!known->is_usable()) {
+    context.say("registration: that of session " + session + " is not used: " + known->refusal + kOlder);
+    return std::nullopt;
+  }
+  if (const auto mismatch = known->of ? registration::mismatch_of(*known->of, now) : std::nullopt) {
+    context.say("registration: that of session " + session +
+                " is not used: " + registration::in_words(*mismatch, *known->of, now) + kOlder);
+    return std::nullopt;
+  }
+  // Here nobody touches the bone: no hand would show that its marker sits where it sat.
+  if (is_live) {
+    context.say("registration: that of session " + session +
+                " is not used: nobody has seen the world marker since; strokes give a new one, and "
+                "--registration takes " +
+                (known->session_folder / "registration.json").string() + " at your word");
+    return std::nullopt;
+  }
+  context.say("registration: of session " + session);
+  return operation::GiveRegistration{known->registration, known->of.value_or(now)};
+}
+
+}  // namespace arthronaut::command_line
