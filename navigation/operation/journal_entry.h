@@ -45,8 +45,8 @@ enum class JournalKind {
 
 struct JournalEntry {
   std::int64_t after_frame = -1;  // index of the last frame before it; -1: none of this source yet
-  std::int64_t timestamp_ns =
-      0;  // of that frame; the operation has no clock, and whoever has one may date it
+  // Of that frame: the operation has no clock, and whoever has one may date it.
+  std::int64_t timestamp_ns = 0;
   JournalKind kind = JournalKind::Note;
   std::string text;
   RegistrationPtr registration;  // with RegistrationInForce
