@@ -5,7 +5,10 @@
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <imgui_internal.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <future>
@@ -13,8 +16,8 @@
 #include <utility>
 
 #include "app/widgets/draw_pace.h"
+#include "app/widgets/input_queue.h"
 #include "app/widgets/key_labels.h"
-#include "app/widgets/key_queue.h"
 #include "app/widgets/screen_drawing.h"
 #include "app/widgets/software_drawing.h"
 #include "app/widgets/two_screens.h"
@@ -53,8 +56,10 @@ struct GraphicsWindow::State {
   GLFWwindow* window = nullptr;
   ImFontAtlas fonts;
   Theme theme;
-  KeyQueue queue;
-  std::vector<KeyEvent> dealt;
+  InputQueue queue;
+  std::vector<InputEvent> dealt;
+  std::optional<CursorPlace> cursor;  // the newest that was told; none: the window was moved since
+  std::array<bool, ImGuiMouseButton_COUNT> buttons = {};  // that are down in this frame
   std::vector<KeyPress> keys;
   std::vector<int> released;
   std::vector<std::filesystem::path> dropped;
@@ -68,20 +73,41 @@ struct GraphicsWindow::State {
 
   static State& of(GLFWwindow* window) { return *static_cast<State*>(glfwGetWindowUserPointer(window)); }
   static void on_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
-    const auto kind = action == GLFW_RELEASE  ? KeyEvent::Kind::Release
-                      : action == GLFW_REPEAT ? KeyEvent::Kind::Repeat
-                                              : KeyEvent::Kind::Press;
+    const auto kind = action == GLFW_RELEASE  ? InputEvent::Kind::Release
+                      : action == GLFW_REPEAT ? InputEvent::Kind::Repeat
+                                              : InputEvent::Kind::Press;
     of(window).has_input = true;
     of(window).queue.add({kind, key, scancode, mods, 0});
   }
-  static void on_mouse(GLFWwindow* window, double, double) { of(window).has_input = true; }
+  static void on_cursor(GLFWwindow* window, double x_px, double y_px) {
+    of(window).has_input = true;
+    of(window).cursor = CursorPlace{x_px, y_px};
+  }
+  static void on_moved(GLFWwindow* window, int, int) { of(window).cursor.reset(); }
+  // Where it was for the event that is told now: on a machine that is late, not where it is now.
+  [[nodiscard]] CursorPlace cursor_place() const {
+    CursorPlace place = cursor.value_or(CursorPlace{});
+    if (!cursor) glfwGetCursorPos(window, &place.x_px, &place.y_px);
+    return place;
+  }
+  static void on_wheel(GLFWwindow* window, double x, double y) {
+    State& s = of(window);
+    s.has_input = true;
+    s.queue.add({InputEvent::Kind::Wheel, 0, 0, 0, 0, s.cursor_place(), x, y});
+  }
   static void on_uncovered(GLFWwindow* window) {
     of(window).drawing.forget();
     of(window).has_input = true;
   }
-  static void on_button(GLFWwindow* window, int, int, int) { of(window).has_input = true; }
+  static void on_button(GLFWwindow* window, int button, int action, int mods) {
+    State& s = of(window);
+    s.has_input = true;
+    const auto kind =
+        action == GLFW_RELEASE ? InputEvent::Kind::ButtonRelease : InputEvent::Kind::ButtonPress;
+    s.queue.add({kind, button, 0, mods, 0, s.cursor_place()});
+  }
   static void on_letter(GLFWwindow* window, unsigned codepoint) {
-    of(window).queue.add({KeyEvent::Kind::Text, 0, 0, 0, codepoint});
+    of(window).queue.add({InputEvent::Kind::Text, 0, 0, 0, codepoint});
   }
   static void on_drop(GLFWwindow* window, int count, const char** paths) {
     for (int i = 0; i < count; ++i) of(window).dropped.emplace_back(paths[i]);
@@ -126,36 +152,52 @@ struct GraphicsWindow::State {
     theme = build_theme(fonts, scale, afar_px(screen(), scale));
     build_style(scale);
   }
-  void deal_keys() {
+  // Whether a field has the keys in the frame that is about to begin: asked before ImGui tells by io.
+  [[nodiscard]] static bool takes_text() { return ImGui::GetCurrentContext()->WantTextInputNextFrame == 1; }
+  void deal_input() {
     keys.clear();
     released.clear();
     dealt.clear();
-    if (frames_to_hold > 0 && !ImGui::GetIO().WantTextInput) {
+    if (frames_to_hold > 0 && !takes_text()) {
       --frames_to_hold;
       return;
     }
     frames_to_hold = 0;
-    queue.take_frame(dealt, ImGui::GetIO().WantTextInput);
-    constexpr int kOurs = GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT;
-    for (const KeyEvent& event : dealt) {
-      if (event.kind == KeyEvent::Kind::Text) {
+    queue.take_frame(dealt, takes_text());
+    for (const InputEvent& event : dealt) {
+      if (event.kind == InputEvent::Kind::Text)
         ImGui_ImplGlfw_CharCallback(window, event.codepoint);
-        continue;
-      }
-      const bool is_release = event.kind == KeyEvent::Kind::Release;
-      const bool is_repeat = event.kind == KeyEvent::Kind::Repeat;
-      ImGui_ImplGlfw_KeyCallback(window, event.key, event.scancode,
-                                 is_release  ? GLFW_RELEASE
-                                 : is_repeat ? GLFW_REPEAT
-                                             : GLFW_PRESS,
-                                 event.mods);
-      const char* printed = glfwGetKeyName(event.key, event.scancode);
-      const LabelledKey key = labelled_key(event.key, event.mods & kOurs, printed != nullptr ? printed : "");
-      if (is_release)
-        released.push_back(key.key);
-      else
-        keys.push_back({key.key, key.mods, is_repeat});
+      else if (!is_of_mouse(event))
+        deal_key(event);
     }
+  }
+  void deal_key(const InputEvent& event) {
+    constexpr int kOurs = GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT;
+    const bool is_release = event.kind == InputEvent::Kind::Release;
+    const bool is_repeat = event.kind == InputEvent::Kind::Repeat;
+    const int action = is_release ? GLFW_RELEASE : is_repeat ? GLFW_REPEAT : GLFW_PRESS;
+    ImGui_ImplGlfw_KeyCallback(window, event.key, event.scancode, action, event.mods);
+    const char* printed = glfwGetKeyName(event.key, event.scancode);
+    const LabelledKey key = labelled_key(event.key, event.mods & kOurs, printed != nullptr ? printed : "");
+    if (is_release)
+      released.push_back(key.key);
+    else
+      keys.push_back({key.key, key.mods, is_repeat});
+  }
+  // In the place of the mouse as it is now, which ImGui's backend has just asked for: the mouse as it was
+  // when what belongs to this frame came. While a click still waits, it stands where it stood.
+  void place_mouse(const ImVec2& before) {
+    ImGuiIO& io = ImGui::GetIO();
+    if (queue.waits_with_mouse()) io.MousePos = before;
+    for (const InputEvent& event : dealt) {
+      if (!is_of_mouse(event)) continue;
+      io.MousePos = ImVec2(static_cast<float>(event.place.x_px), static_cast<float>(event.place.y_px));
+      io.MouseWheelH += static_cast<float>(event.wheel_x);
+      io.MouseWheel += static_cast<float>(event.wheel_y);
+      if (event.kind != InputEvent::Kind::Wheel && event.key < static_cast<int>(buttons.size()))
+        buttons.at(static_cast<std::size_t>(event.key)) = event.kind == InputEvent::Kind::ButtonPress;
+    }
+    std::copy(buttons.begin(), buttons.end(), io.MouseDown);
   }
 };
 
@@ -206,16 +248,17 @@ GraphicsWindow::GraphicsWindow(const std::string& title, double diagonal_mm)
   state_->drawing = ScreenDrawing(state_->window, state_->by_processor);
   glfwSetWindowRefreshCallback(state_->window, &State::on_uncovered);
   // ImGui's own, which follow, call these.
-  glfwSetCursorPosCallback(state_->window, &State::on_mouse);
-  glfwSetScrollCallback(state_->window, &State::on_mouse);
-  glfwSetMouseButtonCallback(state_->window, &State::on_button);
+  glfwSetCursorPosCallback(state_->window, &State::on_cursor);
+  glfwSetWindowPosCallback(state_->window, &State::on_moved);
   state_->theme = letters.get();  // before there is a context
   IMGUI_CHECKVERSION();
   ImGui::CreateContext(&state_->fonts);
   build_style(scale);
   ImGui::GetIO().IniFilename = nullptr;  // the layout is ours: nothing to remember
   ImGui_ImplGlfw_InitForOpenGL(state_->window, true);
-  // In the place of ImGui's own, which are called when a key's frame has come.
+  // In the place of ImGui's own, whose work is done when an event's frame has come.
+  glfwSetMouseButtonCallback(state_->window, &State::on_button);
+  glfwSetScrollCallback(state_->window, &State::on_wheel);
   glfwSetKeyCallback(state_->window, &State::on_key);
   glfwSetCharCallback(state_->window, &State::on_letter);
   glfwSetDropCallback(state_->window, &State::on_drop);
@@ -243,9 +286,11 @@ bool GraphicsWindow::begin_frame(double timeout_s) {
     ImGui_ImplOpenGL3_CreateFontsTexture();
     s.drawing.forget();
   }
-  s.deal_keys();
+  s.deal_input();
   ImGui_ImplOpenGL3_NewFrame();
+  const ImVec2 mouse_before = ImGui::GetIO().MousePos;
   ImGui_ImplGlfw_NewFrame();
+  s.place_mouse(mouse_before);
   ImGui::NewFrame();
   // A field takes every key but the one that means nothing in a line of text: the pedal for the way back,
   // which must not be dead in a field that was opened by a slip.

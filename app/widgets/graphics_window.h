@@ -30,8 +30,8 @@ class GraphicsWindow {
 
   // Waits for input at most `timeout_s` (0: does not wait), or until wake(), then starts a frame. Where the
   // processor draws, a frame without input waits for its turn beyond that (DrawPace); one with input never
-  // does. Keys are dealt out as KeyQueue does; while some wait there is no wait for input. Returns whether
-  // input or wake() cut the wait for it short.
+  // does. Keys and clicks are dealt out as InputQueue does; while some wait there is no wait for input.
+  // Returns whether input or wake() cut the wait for it short.
   bool begin_frame(double timeout_s);
   void draw_frame();
   // pictures_are_late: the next frames leave them more time (DrawPace).

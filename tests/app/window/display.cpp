@@ -209,8 +209,12 @@ bool RunningWorkstation::hold_click_until(const std::string& widget, const std::
 }
 
 void RunningWorkstation::freeze(double seconds) const {
+  while_frozen([seconds] { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); });
+}
+
+void RunningWorkstation::while_frozen(const std::function<void()>& act) const {
   ::kill(process_, SIGSTOP);
-  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  act();
   ::kill(process_, SIGCONT);
 }
 

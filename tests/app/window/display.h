@@ -5,6 +5,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -85,6 +86,7 @@ class RunningWorkstation {
   [[nodiscard]] bool hold_click_until(const std::string& widget, const std::string& state,
                                       const std::string& value, double seconds = 40) const;
   void freeze(double seconds) const;  // the program stands still, as a machine that is overloaded
+  void while_frozen(const std::function<void()>& act) const;  // so that all of it comes between two frames
   void click_at(int x, int y) const;
   void scroll_up(const std::string& widget) const;  // one step of the wheel over it
   void drag(int x0, int y0, int x1, int y1) const;
