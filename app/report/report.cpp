@@ -11,6 +11,7 @@
 #include "app/report/report_content.h"
 #include "app/report/report_data.h"
 #include "app/report/report_words.h"
+#include "app/report/result_summary.h"
 #include "app/report/session_rows.h"
 #include "app/report/settings_section.h"
 #include "app/report/stills.h"
@@ -157,6 +158,7 @@ void Report::plan_page() {
   if (options_.says_when_made) about.push_back({"Report made", files::utc_now_as("%Y-%m-%d %H:%M:%S UTC")});
   pages_.table({45, 125}, about);
   pages_.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
+  draw_result_summary(pages_, content_);
   pages_.heading("Planned tunnels");
   if (content_.knee.plan.tunnels.empty()) {
     pages_.sentence("No tunnel is planned.");

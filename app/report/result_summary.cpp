@@ -1,0 +1,100 @@
+#include "app/report/result_summary.h"
+
+#include <algorithm>
+#include <map>
+
+#include "app/report/report_words.h"
+#include "app/report/session_rows.h"
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::report {
+
+namespace {
+
+std::string off_by(double entry_mm, double angle_deg) {
+  return number(entry_mm, " mm") + ", " + number(angle_deg, "\u00B0");
+}
+
+std::string by_navigation(const Content& content, const TunnelResult& result) {
+  if (result.is_by_word) return "drilled by word alone: no pose shows where";
+  if (result.navigated == nullptr) return content.session ? "not drilled" : "\u2013";
+  const operation::AchievedTunnel& achieved = *result.navigated;
+  const operation::TunnelDifference off = operation::compare(achieved.planned, achieved.measured);
+  return off_by(off.entry_mm, off.angle_deg) +
+         (changed_since(content, achieved.planned).empty() ? "" : "; off a plan of before");
+}
+
+std::string by_ct(const Content& content, const TunnelResult& result) {
+  if (result.imaged == nullptr) return "\u2013";
+  const std::string verdict = verdict_of(content, result.key);
+  const postop::AchievedTunnel& found = result.imaged->tunnel;
+  if (!found.is_found) return verdict;
+  return off_by(found.offset_mm, geometry::deg_from_rad(found.angle_rad)) +
+         (verdict == "reliable" ? "" : "; " + verdict);
+}
+
+// Whether the CT's numbers stand, whatever became of the plan since.
+bool is_relied_on(const postop::Comparison& comparison) {
+  return comparison.bone.is_found && comparison.bone.reliable && comparison.tunnel.is_found &&
+         comparison.tunnel.reliable;
+}
+
+}  // namespace
+
+std::vector<TunnelResult> results_of(const Content& content) {
+  std::map<tunnels::TunnelKey, TunnelResult> results;
+  const auto result_of = [&](const tunnels::TunnelKey& key) -> TunnelResult& {
+    return results.try_emplace(key, TunnelResult{.key = key}).first->second;
+  };
+  for (const auto& [key, tunnel] : content.knee.plan.tunnels) result_of(key);
+  for (const Content::Earlier& earlier : content.earlier)
+    result_of(earlier.achieved.planned.key()).navigated = &earlier.achieved;
+  for (const operation::AchievedTunnel& achieved : content.achieved)
+    result_of(achieved.planned.key()).navigated = &achieved;
+  for (const auto& [key, comparison] : content.postoperative) result_of(key).imaged = &comparison;
+  std::vector<TunnelResult> in_order;
+  for (auto& [key, result] : results) {
+    result.is_by_word = std::ranges::any_of(content.by_word, [&](const Content::ByWord& said) {
+      return said.tunnel == tunnels::name_of(result.key);
+    });
+    // What was measured in another surface lies in another frame.
+    const bool is_of_this_bone =
+        !content.is_of_another_surface || content.session->header().bone != result.key.bone;
+    if (result.navigated != nullptr && !result.is_by_word && is_of_this_bone && result.imaged != nullptr &&
+        is_relied_on(*result.imaged))
+      result.navigated_to_imaged =
+          operation::compare(result.navigated->measured, result.imaged->tunnel.tunnel);
+    in_order.push_back(result);
+  }
+  return in_order;
+}
+
+void draw_result_summary(FlowingPages& pages, const Content& content) {
+  const std::vector<TunnelResult> results = results_of(content);
+  if (!content.session && content.postoperative.empty()) return;
+  pages.heading("Result");
+  if (content.session && content.session->header().source_kind == "simulation")
+    pages.sentence("SIMULATION: nobody's knee.", {.bold = true, .ink = kWarning});
+  std::vector<std::vector<std::string>> rows = {
+      {"Tunnel", "Navigation, off the plan", "CT after, off the plan", "CT against navigation"}};
+  for (const TunnelResult& result : results)
+    rows.push_back({tunnels::name_of(result.key), by_navigation(content, result), by_ct(content, result),
+                    result.navigated_to_imaged
+                        ? off_by(result.navigated_to_imaged->entry_mm, result.navigated_to_imaged->angle_deg)
+                        : "\u2013"});
+  if (!results.empty()) pages.table({20, 54, 54, 42}, rows);
+  if (!content.session) return;
+  std::string words =
+      content.registration_problem.empty() ? "No registration was kept." : "NOT READABLE: the registration.";
+  if (content.registration)
+    words = "Registration " + std::string(content.registration->reliable ? "reliable" : "NOT RELIABLE") +
+            (content.registration->has_pose ? ", predicted error at the target " +
+                                                  number(content.registration->predicted_tre_mm, " mm", 2)
+                                            : "") +
+            ".";
+  for (const std::vector<std::string>& row : safety_rows(*content.session, content.cut_short))
+    if (row.front() == "Verification") words += " Verification: " + row.back() + ".";
+  pages.sentence(words, {.size_pt = 8.5});
+}
+
+}  // namespace arthronaut::report
