@@ -50,13 +50,16 @@ class CameraDevice final : public FrameSource {
     info_.name = device->name();
     take_input(*device, address.wish);
     refuse_without_signal(*device);
-    const CameraMode mode = mode_to_take(*device, address.wish);
+    CameraWish wish = address.wish;
+    if (opening.is_again) wish.prefers_px = opening.first_size_px;  // it may have more modes by now
+    const CameraMode mode = mode_to_take(*device, wish);
     const v4l2_pix_format format = take_mode(*device, mode);
     const double rate = rate_of(*device);
     info_.frames_per_second = rate > 0 ? rate : mode.frames_per_second;
     info_.image_size_px = mode.size_px;
     info_.kind = SourceKind::Live;
     info_.ends = false;
+    info_.keeps_size = true;
     opening.identity = device_identity("/dev/video" + std::to_string(address.index));
     device_ = device.get();
     buffers_ = std::make_shared<CameraBuffers>(std::move(device));

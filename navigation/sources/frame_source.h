@@ -27,6 +27,9 @@ struct SourceInfo {
   // Of a live source that comes back by itself: why no picture comes, and how it is told to end. Null else.
   std::shared_ptr<SourceLine> line = nullptr;
   bool ends = true;  // false: an end is a fault, and the source is to be taken up again
+  // Its pictures are of the size that was agreed on when it was opened (a camera's mode): where that is not
+  // the right one, no other comes before it is opened anew. A stream changes by itself.
+  bool keeps_size = false;
   // Of a live source whose pictures came encoded: what they were decoded from. Null else.
   std::shared_ptr<EncodedPackets> packets = nullptr;
 };

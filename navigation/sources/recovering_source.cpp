@@ -20,14 +20,14 @@ constexpr auto kBeforeAsking = std::chrono::seconds(1);
 // dates are where they were, and with it all that looks for a picture that is frozen, or a mark that is lost.
 constexpr std::int64_t kStandsAtMost_ns = 1'000'000'000;
 
-std::string size_text(int width, int height) {
-  return std::to_string(width) + " x " + std::to_string(height);
+std::string size_text(const Eigen::Vector2i& size_px) {
+  return std::to_string(size_px.x()) + " x " + std::to_string(size_px.y());
 }
 
 class RecoveringSource final : public FrameSource {
  public:
   explicit RecoveringSource(LiveOpener opener) : opener_(std::move(opener)) {
-    source_ = opener_({stamps_, false, identity_, remark_});
+    source_ = opener_({stamps_, false, {0, 0}, identity_, remark_});
     info_ = source_->info();
     info_.line = line_;
   }
@@ -37,7 +37,7 @@ class RecoveringSource final : public FrameSource {
   [[nodiscard]] camera::FramePtr next() override {
     while (!line_->ends()) {
       if (source_ == nullptr && !open_again()) {
-        line_->rest(is_another_ ? kBeforeAsking : kBeforeAgain);
+        line_->rest(is_other_ ? kBeforeAsking : kBeforeAgain);
         continue;
       }
       camera::FramePtr frame = take();
@@ -50,14 +50,17 @@ class RecoveringSource final : public FrameSource {
         tell_of_pictures();
         return frame;
       }
-      tell(info_.name + ": gives pictures of " + size_text(frame->width, frame->height) +
-           " now, and gave such of " + size_text(info_.image_size_px.x(), info_.image_size_px.y()) +
-           ": another camera, or another format");
+      tell_size({frame->width, frame->height});
     }
     return nullptr;
   }
 
  private:
+  void tell_size(const Eigen::Vector2i& now_px) {
+    tell(info_.name + ": gives pictures of " + size_text(now_px) + " now, and gave such of " +
+         size_text(info_.image_size_px) + ": another camera, or another format");
+  }
+
   camera::FramePtr take() {
     try {
       camera::FramePtr frame = source_->next();
@@ -80,20 +83,25 @@ class RecoveringSource final : public FrameSource {
   bool open_again() {
     try {
       std::string identity;
-      std::unique_ptr<FrameSource> source = opener_({stamps_, true, identity, remark_});
-      is_another_ = !identity_.empty() && identity != identity_;
-      if (is_another_) {
+      std::unique_ptr<FrameSource> source = opener_({stamps_, true, info_.image_size_px, identity, remark_});
+      is_other_ = !identity_.empty() && identity != identity_;
+      if (is_other_) {
         tell(info_.name + ": another camera is there (" +
              (identity.empty() ? "it does not say which" : identity) +
              "), and the calibration is of the first one (" + identity_ +
              "): connect that one, or start anew");
         return false;
       }
+      is_other_ = source->info().keeps_size && source->info().image_size_px != info_.image_size_px;
+      if (is_other_) {
+        tell_size(source->info().image_size_px);
+        return false;
+      }
       source_ = std::move(source);
       log::info("source taken up again: " + info_.name);
       return true;
     } catch (const DeviceError& error) {
-      is_another_ = false;
+      is_other_ = false;
       tell(std::string("connecting again: ") + error.what());
     } catch (const InvalidInput& error) {  // a plug-in that is gone meanwhile
       tell(error.what());
@@ -121,7 +129,8 @@ class RecoveringSource final : public FrameSource {
   std::string remark_;                   // on what source_ gives
   std::string told_of_pictures_;         // of it, while pictures come
   std::unique_ptr<FrameSource> source_;  // null: broken
-  bool has_ended_ = false, is_another_ = false;
+  bool has_ended_ = false;
+  bool is_other_ = false;  // what was there last: another camera, or one in another format
 };
 
 }  // namespace

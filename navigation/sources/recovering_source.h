@@ -7,12 +7,13 @@
 //     -> giving -> broken (DeviceError, or null) -> opened again, every 0.1 s -> giving
 //     -> another size -> giving
 //     -> there, but without a picture (null and a remark) -> giving, or broken
-//     -> opened again, and it says to be another one -> not taken, looked at every second until it is the
-//     first
-//        one again
+//     -> opened again, and it says to be another one, or is a camera that gives another size now -> not
+//     taken,
+//        looked at every second until it is the first one again
 //   ended: line->end() was called, or a source that is not live came to its end
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
 #include <string>
 
@@ -35,6 +36,7 @@ class LiveStamps {
 struct Opening {
   LiveStamps& stamps;  // outlives the source that is opened
   bool is_again = false;
+  Eigen::Vector2i first_size_px{0, 0};  // of what it gave first, while it is opened again
   // Who the source says it is, whatever format it gives: written by the opener. Left empty: nobody knows, and
   // a source that never said it is known by the size of its pictures alone.
   std::string& identity;

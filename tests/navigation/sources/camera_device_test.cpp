@@ -313,6 +313,65 @@ TEST(CameraDevice, TellsThatTheFormatHasChanged) {
   EXPECT_GE(told_after_ms(*source, "gives pictures of 64 x 48 now, and gave such of 320 x 240"), 0);
 }
 
+// A card whose signal comes back in another format is refused for as long as that lasts, and taken up again
+// by itself with the right one: also where its driver says nothing of the change.
+TEST(CameraDevice, IsTakenUpAgainInTheRightFormat) {
+  for (const bool is_told : {true, false}) {
+    CameraRoom room;
+    room.add_mode(0, V4L2_PIX_FMT_YUYV, clip(320, 240), {60});
+    room.add_mode(0, V4L2_PIX_FMT_YUYV, clip(64, 48), {60});
+    room.camera().tells_sizes = false;
+    room.plug();
+    const auto source = open_source("/dev/video0");
+    ASSERT_NE(source->next(), nullptr);
+    room.camera().first_mode = 1;
+    ++room.camera().source_changes;
+    std::jthread looker([&, line = source->info().line] {
+      const auto waits_for = [](const auto& is_so) {
+        for (int i = 0; i < 5000 && !is_so(); ++i) std::this_thread::sleep_for(milliseconds(1));
+        return is_so();
+      };
+      EXPECT_TRUE(waits_for([&] { return line->trouble().find("64 x 48 now") != std::string::npos; }))
+          << line->trouble();
+      room.camera().first_mode = 0;
+      if (is_told) ++room.camera().source_changes;
+      EXPECT_TRUE(waits_for([&] { return line->trouble().empty(); })) << line->trouble();
+      if (!line->trouble().empty()) line->end();
+    });
+    for (int count = 0; count < 30; ++count) {
+      const camera::FramePtr frame = source->next();
+      ASSERT_NE(frame, nullptr) << is_told;
+      EXPECT_EQ(frame->width, 320);
+    }
+  }
+}
+
+// A camera that has more modes when it is plugged in again (another socket) goes on in the one that it had.
+TEST(CameraDevice, GoesOnInItsModeWhereItHasLargerOnesByNow) {
+  CameraRoom room;
+  room.add_mode(0, V4L2_PIX_FMT_YUYV, clip(64, 48), {60});
+  room.plug();
+  const auto source = open_source("/dev/video0");
+  ASSERT_NE(source->next(), nullptr);
+  room.unplug();
+  room.add_mode(0, V4L2_PIX_FMT_YUYV, clip(320, 240), {60});
+  room.plug();
+  room.camera().picture_error = ENODEV;  // what the first file answers
+  std::atomic<bool> goes_on = false;
+  std::jthread plugged([&, line = source->info().line] {
+    std::this_thread::sleep_for(milliseconds(50));
+    room.camera().picture_error = 0;
+    for (int i = 0; i < 5000 && !goes_on; ++i) std::this_thread::sleep_for(milliseconds(1));
+    if (!goes_on) line->end();
+  });
+  for (int count = 0; count < 60; ++count) {
+    const camera::FramePtr frame = source->next();
+    ASSERT_NE(frame, nullptr);
+    EXPECT_EQ(frame->width, 64);
+  }
+  goes_on = true;
+}
+
 // Another camera at the same plug is not taken for the first one.
 TEST(CameraDevice, AnotherCameraIsNotTakenForIt) {
   CameraRoom room;
