@@ -46,7 +46,7 @@ std::string_view to_text(EvidenceOutcome outcome) {
     case EvidenceOutcome::Seen:
       return "seen";
     case EvidenceOutcome::NoPicture:
-      return "no picture came when it was said";
+      return "no picture showed anything when it was said";
   }
   return "unknown";
 }

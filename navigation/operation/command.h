@@ -64,8 +64,8 @@ struct ReadDepthStop {
 };
 // The tunnel is drilled: the surgeon's word. What was seen of the guide or the drill is the evidence.
 struct TunnelDrilled {
-  // So long no picture of the live source had come when it was said; 0: they came. What was seen before that
-  // is no evidence then: nobody saw what was drilled since.
+  // So long no picture of the live source had come when it was said, or none but plain and frozen ones; 0:
+  // they came. What was seen before that is no evidence then: nobody saw what was drilled since.
   double without_picture_s = 0;
 };
 // It is not drilled after all: said too early. What was recorded of it is taken back, and that is recorded.

@@ -162,10 +162,11 @@ void OperationRecord::keep_video(KeepVideo keep, const std::filesystem::path& vi
 void OperationRecord::add(const std::vector<JournalEntry>& entries) {
   for (const JournalEntry& entry : entries) {
     if (entry.kind == JournalKind::RegistrationInForce)
-      recorder_->set_registration(*entry.registration, !entry.registration_was_given, &entry.of);
+      recorder_->set_registration(*entry.registration, !entry.registration_was_given, &entry.of,
+                                  entry.timestamp_ns);
     if (entry.kind == JournalKind::Plan)
       recorder_->set_plan(entry.plan ? std::optional(entry.plan->tunnel) : std::nullopt,
-                          entry.plan ? entry.plan->length_mm : 0);
+                          entry.plan ? entry.plan->length_mm : 0, entry.timestamp_ns);
     if (entry.achieved) recorder_->add_file([folder = folder_, entry] { write_achieved(folder, entry); });
     if (const auto event = event_of(entry)) recorder_->add_event(*event);
   }

@@ -188,10 +188,13 @@ class SessionRecorder {
   void add_event(const SessionEvent& event);
   // A file of the record, written by `write` in the writer's thread, before whatever is told after it.
   void add_file(std::function<void()> write);
-  // What guidance is computed from, from the next frame on.
-  void set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm);
+  // What guidance is computed from, from the next frame on. at_ns: when, on the pictures' clock; nullopt:
+  // with the newest frame.
+  void set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm,
+                std::optional<std::int64_t> at_ns = std::nullopt);
   void set_registration(const registration::RegistrationSummary& registration,
-                        bool found_in_this_session = true, const registration::Provenance* of = nullptr);
+                        bool found_in_this_session = true, const registration::Provenance* of = nullptr,
+                        std::optional<std::int64_t> at_ns = std::nullopt);
   // Replaces the curves. Kept on disk at once.
   void set_curves(const strokes::Curves& curves);
   // Commits and closes. The open formats are written as frames come, so that this takes the same short time

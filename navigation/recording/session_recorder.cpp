@@ -128,8 +128,8 @@ struct SessionRecorder::State {
     if (error) std::rethrow_exception(error);
   }
 
-  void send_event(std::string_view kind, std::string text) {
-    send(SessionEvent{last_timestamp_ns, std::string(kind), std::move(text), last_frame});
+  void send_event(std::string_view kind, std::string text, std::optional<std::int64_t> at_ns = std::nullopt) {
+    send(SessionEvent{at_ns.value_or(last_timestamp_ns), std::string(kind), std::move(text), last_frame});
   }
 
   // The header as it is to be from now on; pictures have a thread of their own.
@@ -301,15 +301,17 @@ void SessionRecorder::add_event(const SessionEvent& event) {
   state_->send(std::move(placed));
 }
 
-void SessionRecorder::set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm) {
-  state_->send_event(kPlanEvent, plan_to_text(plan, planned_length_mm));
+void SessionRecorder::set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm,
+                               std::optional<std::int64_t> at_ns) {
+  state_->send_event(kPlanEvent, plan_to_text(plan, planned_length_mm), at_ns);
 }
 
 void SessionRecorder::set_registration(const registration::RegistrationSummary& registration,
-                                       bool found_in_this_session, const registration::Provenance* of) {
+                                       bool found_in_this_session, const registration::Provenance* of,
+                                       std::optional<std::int64_t> at_ns) {
   const std::string name = registration_name(++state_->registration_count);
   state_->send(RegistrationFile{name, registration, of != nullptr ? std::optional(*of) : std::nullopt});
-  state_->send_event(found_in_this_session ? kRegistrationEvent : kGivenRegistrationEvent, name);
+  state_->send_event(found_in_this_session ? kRegistrationEvent : kGivenRegistrationEvent, name, at_ns);
 }
 
 void SessionRecorder::set_curves(const strokes::Curves& curves) { state_->send(curves); }

@@ -231,6 +231,9 @@ void OperationRun::measure(const camera::Frame& frame, std::int64_t taken_ns) {
   newest.guidance_ms = between_ms(frame.captured_ns, ready_ns);
   live_.meter.add(newest);
   live_.captured_ns = frame.captured_ns;
+  const pipeline::FrameResult& result = frame_state_->frame;
+  if (!result.is_blank && !result.is_frozen)
+    live_.showed_ns = frame.captured_ns > 0 ? frame.captured_ns : taken_ns;
 }
 
 // In the record and the log, when it begins, changes and ends.
@@ -254,8 +257,16 @@ double OperationRun::picture_age_ms() const {
 
 std::int64_t OperationRun::silence_ns() const {
   if (theatre_source_.setup.kind != sources::SourceKind::Live || live_.taken_ns <= 0) return 0;
-  const std::int64_t since_ns =
-      sources::steady_now_ns() - (live_.captured_ns > 0 ? live_.captured_ns : live_.taken_ns);
+  return since_ns(live_.captured_ns > 0 ? live_.captured_ns : live_.taken_ns);
+}
+
+std::int64_t OperationRun::unseen_ns() const {
+  if (theatre_source_.setup.kind != sources::SourceKind::Live || live_.showed_ns <= 0) return silence_ns();
+  return since_ns(live_.showed_ns);
+}
+
+std::int64_t OperationRun::since_ns(std::int64_t captured_ns) const {
+  const std::int64_t since_ns = sources::steady_now_ns() - captured_ns;
   return since_ns > static_cast<std::int64_t>(1e6 * kHandRests_ms) ? since_ns : 0;
 }
 
@@ -269,10 +280,10 @@ std::string OperationRun::wrong_with_picture() const {
 void OperationRun::apply(const operation::Command& given) {
   const std::int64_t since_picture_ns = silence_ns();
   operation::Command command = given;
-  // The pictures of one that has ended showed what they showed until they failed to come.
+  // The pictures of one that has ended showed what they showed until they failed to come, or showed nothing.
   if (auto* const drilled = std::get_if<operation::TunnelDrilled>(&command))
     drilled->without_picture_s =
-        static_cast<double>(has_source() ? since_picture_ns : live_.silent_at_end_ns) * 1e-9;
+        static_cast<double>(has_source() ? unseen_ns() : live_.unseen_at_end_ns) * 1e-9;
   if (auto* const time_out = std::get_if<operation::ConfirmTimeOut>(&command); time_out && has_source())
     time_out->beside = wrong_with_picture();
   if (const double age_ms = picture_age_ms(); age_ms > kHandRests_ms && is_of_this_moment(command)) {
@@ -306,9 +317,10 @@ void OperationRun::apply(const operation::Command& given) {
 
 void OperationRun::end_source() {
   if (source_ == nullptr) return;
-  live_.silent_at_end_ns = silence_ns();
+  live_.unseen_at_end_ns = unseen_ns();
+  const std::int64_t silent_at_end_ns = silence_ns();
   operation_.end_source();
-  pass_on(live_.silent_at_end_ns);
+  pass_on(silent_at_end_ns);
   const bool was_live = theatre_source_.setup.kind == sources::SourceKind::Live;
   source_.reset();
   outside_ = {};

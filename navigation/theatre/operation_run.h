@@ -124,6 +124,9 @@ class OperationRun {
   [[nodiscard]] double picture_age_ms() const;  // below 0 where nobody knows, or no live source runs
   // Since the newest picture of the live source that runs, or ran last, for as long as none comes; else 0.
   [[nodiscard]] std::int64_t silence_ns() const;
+  // The same since the newest one that showed anything: neither a plain picture nor a frozen one does.
+  [[nodiscard]] std::int64_t unseen_ns() const;
+  [[nodiscard]] std::int64_t since_ns(std::int64_t captured_ns) const;
   // "no picture", "plain picture", "frozen picture"; empty: it shows what there is.
   [[nodiscard]] std::string wrong_with_picture() const;
   void note_trouble(std::int64_t since_picture_ns = 0);
@@ -161,7 +164,8 @@ class OperationRun {
     std::int64_t captured_ns = 0;       // of the newest picture, on the steady clock; 0: nobody knows
     std::int64_t taken_ns = 0;          // when that was taken up
     bool is_news = false;               // what is wrong with the source has changed with it
-    std::int64_t silent_at_end_ns = 0;  // for how long no picture had come when the source ended
+    std::int64_t showed_ns = 0;         // when the newest that showed anything was captured, or taken up
+    std::int64_t unseen_at_end_ns = 0;  // for how long none had come that did when the source ended
   } live_;
   double late_after_s_ = kLateAfter_s;
 };

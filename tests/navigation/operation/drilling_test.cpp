@@ -86,7 +86,7 @@ TEST_F(DrillingTest, Hazard29SaidWithoutAPictureItRestsOnNoPose) {
   ASSERT_TRUE(entry);
   EXPECT_EQ(entry->kind, JournalKind::DrilledByWord);
   EXPECT_FALSE(entry->achieved);
-  EXPECT_EQ(entry->text, "femur: no picture came when it was said");
+  EXPECT_EQ(entry->text, "femur: no picture showed anything when it was said");
   EXPECT_EQ(drilling_.state().outcome, DrilledState::Outcome::NoEvidence);
   EXPECT_EQ(drilling_.state().evidence, guidance::EvidenceOutcome::NoPicture);
   // A pause of the source is no silence; nor is what was seen gone.

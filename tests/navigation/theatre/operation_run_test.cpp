@@ -151,22 +151,78 @@ TEST_F(OperationRunTest, Hazard29WhatIsSaidWithoutAPictureIsDatedWhenItIsSaid) {
   const std::int64_t last_ns = run.state_of_frame()->frame.timestamp_ns;
   run.apply(operation::TunnelDrilled{});
   EXPECT_EQ(run.state()->drilled.evidence, guidance::EvidenceOutcome::NoPicture);
+  operation::PlannedTunnel wider = run.state()->plan.value();
+  wider.tunnel.diameter_mm += 1;
+  run.apply(operation::OfferPlan{wider});
+  run.apply(operation::TakePlanOver{});
+  give(run);
   run.end_source();
   run.apply(operation::ReadDepthStop{21});
   std::vector<std::int64_t> said_ns;
   const recording::RecordedSession recorded(session);
   for (const recording::SessionEvent& event : recorded.events())
     if (event.kind == recording::kCommandEvent) said_ns.push_back(event.timestamp_ns);
-  ASSERT_EQ(said_ns.size(), 3U);
+  ASSERT_EQ(said_ns.size(), 6U);
   EXPECT_LT(said_ns[0], last_ns) << "of the picture that was there";
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   EXPECT_NEAR(static_cast<double>(said_ns[1] - last_ns) / kSecond_ns, 29, 5);
-  EXPECT_GE(said_ns[2], said_ns[1]);
+  EXPECT_GE(said_ns[5], said_ns[1]);
+  const auto newest_ns = [&](std::string_view kind) {
+    std::int64_t at_ns = -1;
+    for (const recording::SessionEvent& event : recorded.events())
+      if (event.kind == kind) at_ns = event.timestamp_ns;
+    return at_ns;
+  };
+  EXPECT_EQ(newest_ns(recording::kPlanEvent), said_ns[3]) << "taken over without a picture";
+  EXPECT_EQ(newest_ns(recording::kGivenRegistrationEvent), said_ns[4]);
   const auto word = std::find_if(
       recorded.events().begin(), recorded.events().end(),
       [](const recording::SessionEvent& event) { return event.kind == recording::kDrilledByWordEvent; });
   ASSERT_NE(word, recorded.events().end());
   EXPECT_EQ(word->timestamp_ns, said_ns[1]);
+}
+
+// Nor has one that is said over pictures that show nothing: a scope that was drawn out with its light off,
+// and one whose picture stands still. They count from the last one that showed something.
+TEST_F(OperationRunTest, Hazard29WhatIsSaidOverAPlainOrAFrozenPictureRestsOnNoPose) {
+  constexpr int kCount = 65, kRate = 30;
+  class DeadPictures : public test::PlainSource {
+   public:
+    explicit DeadPictures(bool is_frozen) : PlainSource(kCount, false, kRate), is_frozen_(is_frozen) {}
+    [[nodiscard]] camera::FramePtr next() override {
+      const camera::FramePtr plain = PlainSource::next();
+      if (plain == nullptr) return nullptr;
+      constexpr std::int64_t kAlive = 5;
+      const auto alive = static_cast<std::uint8_t>(100 + 7 * std::min(plain->index, kAlive));
+      auto frame = std::make_shared<camera::Frame>(test::round_frame(plain->index, alive));
+      if (plain->index > kAlive && !is_frozen_)
+        std::fill(frame->bgr.begin(), frame->bgr.end(), std::uint8_t{0});
+      frame->timestamp_ns = frame->index * 1'000'000'000 / kRate;
+      frame->decoded_ns = frame->received_ns = frame->captured_ns = sources::steady_now_ns();
+      return frame;
+    }
+
+   private:
+    bool is_frozen_;
+  };
+  for (const bool is_frozen : {false, true}) {
+    OperationRun run(setup_, test::at_once(setup_), {});
+    TheatreSource source = test::plain_source(0, false, sources::SourceKind::Live);
+    source.open = [=] { return std::make_unique<DeadPictures>(is_frozen); };
+    run.start(source);
+    while (run.step().picture == nullptr || run.state_of_frame()->frame.frame_index < 4) {
+    }
+    run.apply(operation::TunnelDrilled{});
+    EXPECT_EQ(run.state()->drilled.evidence, guidance::EvidenceOutcome::NoGuidance) << "that was seen";
+    run.apply(operation::TakeBackDrilled{});
+    while (run.state_of_frame()->frame.frame_index < kCount - 2) (void)run.step();
+    run.apply(operation::TunnelDrilled{});
+    EXPECT_EQ(run.state()->drilled.evidence, guidance::EvidenceOutcome::NoPicture) << is_frozen;
+    run.end_source();
+    run.apply(operation::TakeBackDrilled{});
+    run.apply(operation::TunnelDrilled{});
+    EXPECT_EQ(run.state()->drilled.evidence, guidance::EvidenceOutcome::NoPicture) << "after its end, too";
+  }
 }
 
 // A time-out that is confirmed while the picture shows nothing is recorded as such.
