@@ -27,7 +27,9 @@ Severity severity_of_plan(const CaseRecord& record, const PlanVerdict* verdict) 
 }
 
 std::string plan_in_words(const CaseRecord& record, const PlanVerdict* verdict) {
-  if (verdict == nullptr || verdict->wrong.empty()) return record.plan_in_words();
+  if (record.planned.empty()) return record.plan_in_words();
+  if (verdict == nullptr) return record.plan_in_words() + "; not checked yet";
+  if (verdict->wrong.empty()) return record.plan_in_words();
   const std::size_t more = verdict->wrong.size() - 1;
   return record.plan_in_words() + "; wrong: " + verdict->wrong.front() +
          (more > 0 ? "; and " + std::to_string(more) + " more" : "");
