@@ -104,8 +104,7 @@ std::vector<tunnels::TunnelKey> better_kept_in(const std::filesystem::path& file
     for (const auto& [key, kept] : postop::read_achieved_file(file)) {
       const auto now = answer.comparisons.find(key);
       if (now == answer.comparisons.end() || !is_relied_on(kept) || is_relied_on(now->second)) continue;
-      const auto plan = answer.planned.find(key);
-      if (plan == answer.planned.end() || postop::is_against(kept.tunnel, plan->second))
+      if (!answer.planned.contains(key) || postop::is_against(kept.tunnel, key, answer.planned))
         better.push_back(key);
     }
   } catch (const InvalidInput&) {  // broken: it tells nobody anything

@@ -115,9 +115,8 @@ void add_looked_at(Content& content) {
 
 bool is_of_the_plan(const Content& content, const tunnels::TunnelKey& key,
                     const postop::AchievedTunnel& found) {
-  const auto plan = content.knee.plan.tunnels.find(key);
-  return plan != content.knee.plan.tunnels.end() && cases::plan_fit(content.knee, key).is_valid() &&
-         postop::is_against(found, plan->second);
+  return postop::is_against(found, key, content.knee.plan.tunnels) &&
+         cases::plan_fit(content.knee, key).is_valid();
 }
 
 void add_places(Content& content) {

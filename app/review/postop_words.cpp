@@ -48,8 +48,7 @@ std::vector<AchievedRow> achieved_rows(const Comparisons& comparisons,
                   : tunnel.reliable         ? "reliable"
                                             : "not reliable";
     row.reasons = comparison.bone.reasons;
-    const auto plan = planned.find(key);
-    const bool is_of_plan = plan != planned.end() && postop::is_against(tunnel, plan->second);
+    const bool is_of_plan = postop::is_against(tunnel, key, planned);
     if (const auto place = places.find(key); place != places.end() && tunnel.is_found && is_of_plan) {
       row.offset += ": " + postop::off_in_words(place->second);
       row.grid = postop::grid_in_words(place->second);

@@ -11,7 +11,7 @@
 
 namespace arthronaut::setup {
 
-class CalibrateStation : public Station {
+class CalibrateStation : public JobStation<CalibrateJob> {
  public:
   // wake: ends the window's wait for input; called from other threads. ending: takes what is stopped.
   CalibrateStation(std::function<void()> wake, sources::BackgroundEnd& ending)
@@ -25,18 +25,12 @@ class CalibrateStation : public Station {
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] std::vector<const char*> buttons() const override;
   [[nodiscard]] Then take_next_step() override;
-  [[nodiscard]] bool has_run() const override { return run_ != nullptr; }
   [[nodiscard]] bool is_busy() const override;
-  [[nodiscard]] bool gives_pictures() const override {
-    return run_ != nullptr && status_.phase == FeedPhase::Running;
-  }
   [[nodiscard]] bool awaits_text() const override { return form_.wants_focus; }
   [[nodiscard]] std::string next_step() const override { return display_.next_text; }
   [[nodiscard]] Row adopted() const override { return adopted_; }
 
  private:
-  using Run = LiveRun<CalibrateJob>;
-
   void read_adopted();
   void set_square(double square_mm);
   void calibrate();
@@ -57,9 +51,7 @@ class CalibrateStation : public Station {
   sources::BackgroundEnd& ending_;
   Form form_;
   bool takes_by_itself_ = true;
-  std::unique_ptr<Run> run_;
-  CalibrateRunStatus status_;  // of this frame
-  CalibrateDisplay display_;   // of this frame
+  CalibrateDisplay display_;  // of this frame
   std::shared_ptr<const calibration::CalibrationSummary> adopted_result_;
   Row adopted_;
   std::string kept_because_;  // see open_case::camera_is_kept()

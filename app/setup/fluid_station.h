@@ -11,7 +11,7 @@
 
 namespace arthronaut::setup {
 
-class FluidStation : public Station {
+class FluidStation : public JobStation<FluidJob> {
  public:
   // wake: ends the window's wait for input; called from other threads. ending: takes what is stopped.
   FluidStation(std::function<void()> wake, sources::BackgroundEnd& ending)
@@ -26,17 +26,11 @@ class FluidStation : public Station {
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] std::vector<const char*> buttons() const override;
   [[nodiscard]] Then take_next_step() override;
-  [[nodiscard]] bool has_run() const override { return run_ != nullptr; }
   [[nodiscard]] bool is_busy() const override;
-  [[nodiscard]] bool gives_pictures() const override {
-    return run_ != nullptr && status_.phase == FeedPhase::Running;
-  }
   [[nodiscard]] std::string next_step() const override { return display_.next_text; }
   [[nodiscard]] Row adopted() const override { return checked_; }
 
  private:
-  using Run = LiveRun<FluidJob>;
-
   void keep_verdict();
   void read_standing();  // what the case's last verdict says of the medium
   void draw_picture_with_ruler(const widgets::Ui& ui, const widgets::Rect& area);
@@ -46,9 +40,7 @@ class FluidStation : public Station {
   std::function<void()> wake_;
   sources::BackgroundEnd& ending_;
   double refractive_index_ = 1;
-  std::unique_ptr<Run> run_;
   std::string camera_sha256_;  // of the camera.json when the run began
-  FluidRunStatus status_;      // of this frame
   FluidDisplay display_;       // of this frame
   std::string standing_;       // the same in a sentence
   Row checked_;                // what the case's last verdict says of this medium

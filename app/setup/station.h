@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,21 @@ class Station {
   [[nodiscard]] virtual bool gives_pictures() const = 0;    // at least one came, and it has not ended
   [[nodiscard]] virtual std::string next_step() const = 0;  // in words, once has_run()
   [[nodiscard]] virtual Row adopted() const = 0;            // what the case has of this step
+};
+
+// One that works by a job of this kind.
+template <typename Job>
+class JobStation : public Station {
+ public:
+  [[nodiscard]] bool has_run() const final { return run_ != nullptr; }
+  [[nodiscard]] bool gives_pictures() const final {
+    return run_ != nullptr && status_.phase == FeedPhase::Running;
+  }
+
+ protected:
+  using Run = LiveRun<Job>;
+  std::unique_ptr<Run> run_;
+  typename Run::Status status_;  // of this frame
 };
 
 }  // namespace arthronaut::setup

@@ -11,7 +11,7 @@
 
 namespace arthronaut::setup {
 
-class ToolStation : public Station {
+class ToolStation : public JobStation<ToolJob> {
  public:
   // wake: ends the window's wait for input; called from other threads. ending: takes what is stopped.
   ToolStation(std::function<void()> wake, sources::BackgroundEnd& ending)
@@ -26,17 +26,11 @@ class ToolStation : public Station {
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] std::vector<const char*> buttons() const override;
   [[nodiscard]] Then take_next_step() override;
-  [[nodiscard]] bool has_run() const override { return run_ != nullptr; }
   [[nodiscard]] bool is_busy() const override;
-  [[nodiscard]] bool gives_pictures() const override {
-    return run_ != nullptr && status_.phase == FeedPhase::Running;
-  }
   [[nodiscard]] std::string next_step() const override { return display_.next_text; }
   [[nodiscard]] Row adopted() const override { return adopted_; }
 
  private:
-  using Run = LiveRun<ToolJob>;
-
   void read_adopted();
   void adopt();
   [[nodiscard]] bool is_of_camera_before() const;
@@ -50,9 +44,7 @@ class ToolStation : public Station {
   std::vector<ToolChoice> choices_;
   std::size_t chosen_ = 0;
   double refractive_index_;
-  std::unique_ptr<Run> run_;
-  ToolRunStatus status_;  // of this frame
-  ToolDisplay display_;   // of this frame
+  ToolDisplay display_;  // of this frame
   std::shared_ptr<const ToolResult> adopted_result_;
   Row adopted_;
   bool finds_simulated_ = false;  // what this run finds is of the simulator

@@ -89,6 +89,12 @@ bool is_against(const AchievedTunnel& achieved, const tunnels::Tunnel& plan) {
                   achieved.angle_rad) < kRounded_rad;
 }
 
+bool is_against(const AchievedTunnel& achieved, const tunnels::TunnelKey& key,
+                const std::map<tunnels::TunnelKey, tunnels::Tunnel>& planned) {
+  const auto plan = planned.find(key);
+  return plan != planned.end() && is_against(achieved, plan->second);
+}
+
 struct PostopImages::Prepared {
   const images::Volume& volume;
   images::VolumeSampler sampler;

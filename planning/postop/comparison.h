@@ -22,6 +22,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -65,6 +66,9 @@ struct AchievedTunnel {
 
 // Whether the differences are those to this plan, and not to one of before: to what files round.
 [[nodiscard]] bool is_against(const AchievedTunnel& achieved, const tunnels::Tunnel& plan);
+// The same of the plan that has this tunnel; false where it has none.
+[[nodiscard]] bool is_against(const AchievedTunnel& achieved, const tunnels::TunnelKey& key,
+                              const std::map<tunnels::TunnelKey, tunnels::Tunnel>& planned);
 
 struct AchievedBone {
   bool is_found = false;  // false: the pose is meaningless
