@@ -58,8 +58,11 @@ class Mode {
 
   // Another case: ends what runs on the one before and forgets it.
   virtual void case_opened(const OpenCase& opened) = 0;
-  virtual void enter() {}                 // comes to the front
-  virtual void leave() {}                 // another mode comes to the front, or the program ends
+  virtual void enter() {}  // comes to the front
+  virtual void leave() {}  // another mode comes to the front, or the program ends
+  // The window's list of keys lies over it, or no more: told in every frame that it is in front, before
+  // tick().
+  virtual void cover(bool /*is_covered*/) {}
   virtual void tick(double /*now_s*/) {}  // once a frame, shown or not, before anything is drawn
   virtual void draw(const widgets::Ui& ui, const widgets::Rect& area) = 0;
   // What draw() made last stands on the screen now. Called after every frame while the mode is in front, also

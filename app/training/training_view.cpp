@@ -3,6 +3,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "app/case/exercise_case.h"
@@ -30,17 +31,27 @@ void HandInbox::press(simulator::Press press) {
   presses_.push_back(press);
 }
 
+void HandInbox::hold_up(bool on) {
+  const std::lock_guard lock(mutex_);
+  is_held_up_ = on;
+  goes_on_.notify_all();
+}
+
 void HandInbox::end() {
   const std::lock_guard lock(mutex_);
   is_over_ = true;
+  goes_on_.notify_all();
 }
 
 simulator::Hand HandInbox::hand(const std::shared_ptr<HandInbox>& self) const {
   return [self](const simulator::HandScene&,
                 const simulator::HandState&) -> std::optional<simulator::HandInput> {
-    const std::lock_guard lock(self->mutex_);
+    std::unique_lock lock(self->mutex_);
+    const auto asked = std::chrono::steady_clock::now();
+    self->goes_on_.wait(lock, [&] { return self->is_over_ || !self->is_held_up_; });
     if (self->is_over_) return std::nullopt;
     simulator::HandInput input = self->input_;
+    input.held_up_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
     if (!self->presses_.empty()) {
       input.press = self->presses_.front();
       self->presses_.pop_front();
@@ -195,7 +206,13 @@ void TrainingView::leave() {
   is_shown_ = false;
   // It is not the theatre's, where a real operation may begin now, and takes a core of its own.
   if (is_with_board()) return stop(false);
-  if (run_) run_->inbox->set({.held = run_->held});
+  if (!run_) return;
+  run_->inbox->set({.held = run_->held});
+  run_->inbox->hold_up(false);
+}
+
+void TrainingView::cover(bool is_covered) {
+  if (run_) run_->inbox->hold_up(is_covered);
 }
 
 // Another place for everything each time: who learns the places learns nothing.
@@ -236,6 +253,8 @@ void TrainingView::start() {
   theatre_.screen->enter();
   theatre::TheatreSource source =
       training::exercise_source(run_->setup, run_->inbox->hand(run_->inbox), run_->watch, true);
+  constexpr double kHeldUp_s = 8 * 3600;  // that long nobody reads a list of keys
+  source.patience_s = kHeldUp_s;
   run_->source = source.setup;
   theatre_.start(exercise.bone, std::move(source),
                  [watch = run_->watch, goal = exercise.goal, live = theatre_.live]() -> std::string {

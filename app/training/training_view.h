@@ -10,6 +10,7 @@
 // Pages: the exercises -> one that runs, on the theatre's screen -> its score -> the exercises.
 #pragma once
 
+#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -56,14 +57,17 @@ class HandInbox {
  public:
   void set(const simulator::HandInput& input);
   void press(simulator::Press press);  // with the next picture that none was pressed for before
+  // The simulator waits where it is, and its clock with it, until that is taken back or the end.
+  void hold_up(bool on);
   void end();
   [[nodiscard]] simulator::Hand hand(const std::shared_ptr<HandInbox>& self) const;
 
  private:
   mutable std::mutex mutex_;
+  mutable std::condition_variable goes_on_;
   simulator::HandInput input_;
   std::deque<simulator::Press> presses_;
-  bool is_over_ = false;
+  bool is_over_ = false, is_held_up_ = false;
 };
 
 enum class Page { List, Running, Score };
@@ -89,8 +93,9 @@ class TrainingView : public mode::Mode {
     return page_ == Page::Running ? keys_of_the_hands() : std::vector<mode::HeldKeys>();
   }
   void case_opened(const mode::OpenCase& opened) override;
-  void enter() override;  // reads the scores again
-  void leave() override;  // lets go of everything; a calibration is over
+  void enter() override;                 // reads the scores again
+  void leave() override;                 // lets go of everything; a calibration is over
+  void cover(bool is_covered) override;  // holds the exercise up
   void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] std::optional<widgets::Rect> header_in(const widgets::Ui& ui,

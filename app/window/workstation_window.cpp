@@ -211,6 +211,7 @@ void WorkstationWindow::work() {
     if (shows_start_ && start_.wants_to_close()) close_start();
     take_chosen_markups();
   });
+  if (!shows_start() && !shows_paint()) guarded([this] { shown().cover(shows_keys_); });
   for (const auto& mode : modes_) guarded([&] { mode->tick(GraphicsWindow::now_s()); });
   guarded([this] { offer_cut_off(); });
   guarded([this] {

@@ -23,6 +23,11 @@ class FramePace {
     at_s_ += step_s;
     return step_s;
   }
+  // What passed without the scene: no picture is late for it.
+  void leave_out(double passed_s) {
+    if (began_ && passed_s > 0)
+      *began_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(passed_s));
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -147,6 +147,7 @@ camera::FramePtr HandBoard::next() {
   const double dt_s = state_->pace.next_s();
   const auto input = state_->hand.hand(state_->scene, state_->now);
   if (!input) return nullptr;
+  state_->pace.leave_out(input->held_up_s);
   state_->push(*input, dt_s);
   state_->truth.input = *input;
   return state_->render();

@@ -47,6 +47,9 @@ struct HandInput {
   double turn_lens = 0;  // clockwise on the screen
   double drill = 0;      // 0 to 1: how fast it goes in
   Press press = Press::None;
+  // In real time: for how long the hand was held up before it gave this, as while something covers its
+  // screen. No time passes for the scene meanwhile.
+  double held_up_s = 0;
 };
 
 struct HandLimits {

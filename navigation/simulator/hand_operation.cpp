@@ -237,6 +237,7 @@ struct HandOperation::State {
     const double dt_s = pace.next_s();
     const auto input = hand.hand(scene, control.state());
     if (!input) return false;
+    pace.leave_out(input->held_up_s);
     const Vector3d tip_before = control.state().probe_tip_mm;
     const bool touched_before = control.state().touches_bone;
     const HandState& now = control.step(*input, dt_s);

@@ -132,6 +132,33 @@ TEST_F(WorkstationTraining, Hazard40NavigateStartsNothingWhileItIsLent) {
   EXPECT_EQ(app.state("train_done"), "no");
 }
 
+// While the list of keys covers it, an exercise waits, and its clock with it.
+TEST_F(WorkstationTraining, TheListOfKeysHoldsAnExerciseUp) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  ASSERT_NO_FATAL_FAILURE(open_list(app));
+  for (int i = 0; i < 3; ++i) app.press("Down");
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("train_hand", "guide", 120));
+  const auto time_s = [&] { return std::stod("0" + app.state("train_time")); };
+  app.press("F10");
+  ASSERT_TRUE(app.wait_for_state("key_list", "shown"));
+  std::this_thread::sleep_for(std::chrono::seconds(1));  // the picture that was being drawn
+  const double covered_s = time_s();
+  std::this_thread::sleep_for(std::chrono::seconds(4));
+  EXPECT_EQ(time_s(), covered_s);
+  app.press("F10");
+  ASSERT_TRUE(app.wait_for_state("key_list", "none"));
+  for (int i = 0; i < 100 && time_s() <= covered_s; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_GT(time_s(), covered_s);
+  EXPECT_LT(time_s(), covered_s + 3) << "what was covered counts nothing";
+  // And it can be ended under the list.
+  app.press("F10");
+  ASSERT_TRUE(app.wait_for_state("key_list", "shown"));
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
 // Esc must be held, and what is not done counts nothing.
 TEST_F(WorkstationTraining, WhatIsStoppedCountsNothing) {
   const VirtualDisplay display(1280, 720);
