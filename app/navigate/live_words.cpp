@@ -102,6 +102,24 @@ std::string words_beside_no_picture(theatre::SourceTrouble trouble, NextAction a
   }
 }
 
+std::string words_of(Repeat repeat, operation::Step step, bool is_shown, theatre::SourceTrouble trouble) {
+  const auto wanted = [&] {
+    switch (repeat) {
+      case Repeat::TouchControl:
+        return NextAction::CheckControlPoint;
+      case Repeat::Draw:
+        return NextAction::Draw;
+      case Repeat::Touch:
+        return NextAction::VerifyByTouch;
+      default:
+        return is_shown ? NextAction::FollowBullseye : NextAction::StartSource;  // by no picture
+    }
+  }();
+  const std::string wait = words_without_pictures(trouble, wanted);
+  if (!wait.empty()) return wait;
+  return is_shown ? words_of(wanted) : words_of(repeat, step);
+}
+
 namespace {
 constexpr const char* kLooksOtherwise = "bone looks otherwise: ";
 constexpr const char* kWasOutOfSight = "marker was out of sight: ";

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "app/navigate/operation_rail.h"
 #include "navigation/theatre/live_operation.h"
 
 namespace arthronaut::navigate {
@@ -25,6 +26,10 @@ namespace arthronaut::navigate {
 // picture comes; ". Empty while pictures come, and for all other steps.
 [[nodiscard]] std::string words_beside_no_picture(theatre::SourceTrouble trouble,
                                                   operation::NextAction action);
+// Of a step that the surgeon went back to while a source runs: what a press does, or that what it takes is in
+// no picture now. is_shown: what it would show stands on the screen already, and is to be followed.
+[[nodiscard]] std::string words_of(Repeat repeat, operation::Step step, bool is_shown,
+                                   theatre::SourceTrouble trouble);
 // What was asked for a moment ago and not done, with why: "no touch: the probe moves". Short enough to stand
 // in full size beside the step. Empty once it was done, or when that is longer ago than it takes to read.
 [[nodiscard]] std::string refusal_notice(const theatre::LiveState& live, double now_s);

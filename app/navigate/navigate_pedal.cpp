@@ -13,7 +13,8 @@ using Phase = theatre::LiveState::Phase;
 
 namespace {
 constexpr double kReadable_s = 1.5;  // of what a press would say for the surgeon
-}
+constexpr const char* kWrongMedium = "wrong medium: hold Esc, then M for the other one, then start again";
+}  // namespace
 
 bool NavigateView::can_simulate() const {
   if (model_ == nullptr) return false;
@@ -82,6 +83,14 @@ NextAction NavigateView::action_now() const {
   return touches && live_->phase != Phase::Starting && !is_running() ? NextAction::StartSource : action;
 }
 
+std::string NavigateView::words_of_repeat(operation::Step step) const {
+  const Repeat repeat = repeat_of(step);
+  if (!is_running()) return words_of(repeat, step);
+  const bool is_shown = repeat == Repeat::ShowGuide && finishes();
+  return is_shown && is_in_wrong_medium() ? kWrongMedium
+                                          : navigate::words_of(repeat, step, is_shown, live_->trouble);
+}
+
 std::string NavigateView::next_step() {
   if (model_ == nullptr) return "open a case";
   if (resume_.is_looking()) return "wait: the case's last operation is looked for";
@@ -91,11 +100,7 @@ std::string NavigateView::next_step() {
   }
   if (left_behind() != nullptr) return "resume the operation that was left";
   if (const std::string own = lent_step(); !own.empty()) return own;
-  if (choices_.looked_at) {
-    const Repeat repeat = repeat_of(*choices_.looked_at);
-    const bool is_shown = repeat == Repeat::ShowGuide && finishes() && is_running();
-    return is_shown ? words_of(NextAction::FollowBullseye) : words_of(repeat, *choices_.looked_at);
-  }
+  if (choices_.looked_at) return words_of_repeat(*choices_.looked_at);
   const NextAction action = action_now();
   if (const auto offered = tunnel_to_choose()) return words_of_choosing(*offered);
   if (choices_.goes_to_other_bone) return "wait: the pictures end";
@@ -107,7 +112,7 @@ std::string NavigateView::next_step() {
     return "take over the tunnel " + tunnels::name_of(*guided);
   if (awaits_picture(*live_))
     return started_.stops_once_open() ? "wait: it stops once it is open" : "wait for the first picture";
-  if (is_in_wrong_medium()) return "wrong medium: hold Esc, then M for the other one, then start again";
+  if (is_in_wrong_medium()) return kWrongMedium;
   if (const std::string wait = words_without_pictures(); !wait.empty()) return wait;
   const std::string beside = is_running() ? words_beside_no_picture(live_->trouble, action) : "";
   if (takes_guide_in_simulation()) return "take the guide (simulation)";

@@ -98,6 +98,7 @@ class NavigateView : public mode::Mode {
   void take_step_back();
   [[nodiscard]] Repeat repeat_of(operation::Step step) const;
   [[nodiscard]] bool stays_there();
+  [[nodiscard]] std::string words_of_repeat(operation::Step step) const;  // where the way back leads
   void repeat_step(operation::Step step);
   [[nodiscard]] bool pedal_acts();
   [[nodiscard]] RailContext rail_context() const;

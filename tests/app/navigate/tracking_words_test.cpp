@@ -40,6 +40,19 @@ TEST(WordsWithoutPictures, StandBesideWhatIsTakenOnSomebodysWord) {
   EXPECT_EQ(words_beside_no_picture(SourceTrouble::NoPicture, NextAction::Draw), "");
 }
 
+// Nor is anybody told, of a step that he went back to, to follow what is not there.
+TEST(WordsWithoutPictures, TakeThePlaceOfWhatIsToBeDoneOnceMore) {
+  using operation::Step;
+  using theatre::SourceTrouble;
+  EXPECT_EQ(words_of(Repeat::ShowGuide, Step::Guide, true, SourceTrouble::None), "follow the bullseye");
+  EXPECT_EQ(words_of(Repeat::ShowGuide, Step::Guide, true, SourceTrouble::NoPicture),
+            "wait: no picture comes");
+  EXPECT_EQ(words_of(Repeat::Touch, Step::Verify, false, SourceTrouble::Frozen),
+            "look after cable and camera: the picture is frozen");
+  for (const Repeat repeat : {Repeat::ShowPlan, Repeat::NotDrilled, Repeat::RegisterAnew, Repeat::ShowGuide})
+    EXPECT_EQ(words_of(repeat, Step::Guide, false, SourceTrouble::Plain), words_of(repeat, Step::Guide));
+}
+
 using widgets::Severity;
 using Phase = theatre::LiveState::Phase;
 
