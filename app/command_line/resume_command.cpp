@@ -34,6 +34,7 @@ nlohmann::ordered_json json_of(const recording::ResumeSearch& search) {
   json["source"] = found.header.source_kind;
   json["was_cut_off"] = !found.was_finished && !found.is_being_recorded;
   json["is_being_recorded"] = found.is_being_recorded;
+  json["was_declined"] = found.was_declined;
   json["registration"] = nullptr;
   if (was.registration) {
     json["registration"] = {{"marker_from_bone", files::to_json(was.registration->marker_from_bone)},
@@ -61,7 +62,8 @@ void say(const Context& context, const recording::Resumable& found) {
               found.header.source_kind +
               (found.is_being_recorded ? ", being recorded now"
                : found.was_finished    ? ""
-                                       : ", cut off"));
+                                       : ", cut off") +
+              (found.was_declined ? "; declined in Navigate" : ""));
   if (was.registration)
     context.say(files::format("registration: predicted error %.2f mm%s; guides after one touch on the bone",
                               was.registration->predicted_tre_mm,

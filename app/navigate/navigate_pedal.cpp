@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/navigate/navigate_view.h"
+#include "planning/geometry/error.h"
 #include "planning/log/log.h"
 
 namespace arthronaut::navigate {
@@ -73,7 +74,12 @@ void NavigateView::resume() {
 void NavigateView::decline_resume() {
   if (const LeftBehind* const left = left_behind())
     log::info("not resumed: session " + left->found.operation.session);
-  resume_.answer(choices_.bone);
+  try {
+    resume_.decline(choices_.bone);
+    notice_ = "Not resumed: Review (F3) takes it up again";
+  } catch (const IoError& error) {
+    notice_ = error.what();
+  }
 }
 
 NextAction NavigateView::action_now() const {

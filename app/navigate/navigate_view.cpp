@@ -77,6 +77,7 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
 }
 
 void NavigateView::enter() {
+  resume_.look_again();
   choices_.videos = sources::videos_in(case_folder_);
   choices_.has_real_scope = has_real_scope(case_folder_);
   choices_.has_camera_file =

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "app/case/case_calibration.h"
+#include "navigation/recording/declined_resume.h"
 #include "navigation/registration/provenance.h"
 #include "navigation/worker/freed_memory.h"
 #include "planning/bones/mesh_hash.h"
@@ -80,6 +81,25 @@ void ResumeOffer::follow() {
   if (newest == nullptr || newest->number != number_) return;
   is_looking_ = false;
   left_ = newest->left;
+  for (const auto& [bone, left] : left_)
+    if (left.found.was_declined) answered_.insert(bone);
+}
+
+void ResumeOffer::decline(bones::BoneKind bone) {
+  answer(bone);
+  const auto left = left_.find(bone);
+  if (left == left_.end()) return;
+  left->second.found.was_declined = true;
+  recording::decline_resume(left->second.found.folder);
+}
+
+void ResumeOffer::look_again() {
+  follow();
+  for (auto& [bone, left] : left_) {
+    if (!left.found.was_declined || recording::is_resume_declined(left.found.folder)) continue;
+    left.found.was_declined = false;
+    answered_.erase(bone);
+  }
 }
 
 const LeftBehind* ResumeOffer::of(bones::BoneKind bone) {

@@ -41,8 +41,13 @@ class ResumeOffer {
   // The bone whose operation was cut off last, by a crash that is so short ago that the patient may still lie
   // there, and that is on offer; empty: none. What was left by closing the window is no crash.
   [[nodiscard]] std::optional<bones::BoneKind> cut_off(std::chrono::system_clock::time_point now);
-  // Resumed, declined, or begun without it: it is not offered again while this case is open.
+  // Resumed, or begun without it: it is not offered again while this case is open.
   void answer(bones::BoneKind bone) { answered_.insert(bone); }
+  // That is kept with the session: no later opening offers it, until it is taken back there. Throws IoError
+  // where it cannot be kept; it is not offered again while this case is open all the same.
+  void decline(bones::BoneKind bone);
+  // Offers what was declined, and is not any more by what is kept.
+  void look_again();
 
  private:
   struct Search {

@@ -274,11 +274,34 @@ void ReviewView::add_folder_actions(widgets::Actions& actions) {
        }});
 }
 
+void ReviewView::resume() {
+  try {
+    recording::take_back_declined_resume(open_->review.folder);
+    open_->can_be_resumed = false;
+    to_theatre_();
+  } catch (const IoError& error) {
+    notice_ = error.what();
+  }
+}
+
+void ReviewView::add_resume_action(widgets::Actions& actions) {
+  actions.add({"review.resume",
+               "Resume",
+               "Offers in Navigate to go on with this operation, which was declined there",
+               GLFW_KEY_G,
+               0,
+               false,
+               [this] { return open_ && open_->can_be_resumed; },
+               {},
+               [this] { resume(); }});
+}
+
 void ReviewView::add_actions(widgets::Actions& actions) {
   add_playing_actions(actions);
   add_mark_actions(actions);
   add_postop_actions(actions);
   add_folder_actions(actions);
+  add_resume_action(actions);
   actions.add(
       {"review.today", "Today",
        "What today's program makes of the same pictures and commands, beside the screen; again to stop",

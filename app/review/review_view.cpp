@@ -31,8 +31,13 @@ bool was_kept(const recording::SessionOverview& session, std::int64_t frame) {
 
 }  // namespace
 
-ReviewView::ReviewView(std::function<void()> make_current, std::function<void()> wake)
-    : wake_(std::move(wake)), pane_(make_current), sessions_(wake_), postop_(make_current, wake_) {}
+ReviewView::ReviewView(std::function<void()> make_current, std::function<void()> wake,
+                       std::function<void()> to_theatre)
+    : wake_(std::move(wake)),
+      to_theatre_(std::move(to_theatre)),
+      pane_(make_current),
+      sessions_(wake_),
+      postop_(make_current, wake_) {}
 
 mode::ModeTitle ReviewView::title() const {
   return {"review", "mode.review", "Review", "What happened", GLFW_KEY_F3};
@@ -69,10 +74,9 @@ void ReviewView::enter() {
   }
   // What was chosen keeps its place in the list as new sessions come.
   const auto same = open_ ? std::find(folders.begin(), folders.end(), open_->review.folder) : folders.end();
-  if (same != folders.end())
-    chosen_ = static_cast<std::size_t>(same - folders.begin());
-  else
-    choose(0);
+  if (same == folders.end()) return choose(0);
+  chosen_ = static_cast<std::size_t>(same - folders.begin());
+  open_->can_be_resumed = can_be_resumed();  // maybe it was declined just now, in Navigate
 }
 
 void ReviewView::choose(std::size_t session) {
@@ -107,6 +111,7 @@ void ReviewView::take_opened() {
   OpenSession& open = *open_;
   open.marks = MarkBook(open.review.folder, read_only_);
   open.check = std::make_unique<CheckRun>(open.review.folder, wake_);
+  open.can_be_resumed = can_be_resumed();
   if (!has_frames()) return;
   // Where the user most wants to look first: the last moment with guidance.
   const auto& frames = open.timeline().frames();
@@ -293,6 +298,10 @@ void ReviewView::draw_buttons(const widgets::Ui& ui) {
   pair("review.mark", "review.unmark");
   pair("review.today", "review.achieved");
   widgets::action_button(ui, "review.report", width);
+  if (open_ && open_->can_be_resumed) {
+    ImGui::SameLine();
+    widgets::action_button(ui, "review.resume", width);
+  }
   draw_report(ui);
   if (!open_ || !open_->today) return ui.log.note_state("today", "none");
   const TodayProgress progress = open_->today->progress();

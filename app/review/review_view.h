@@ -19,6 +19,7 @@
 #include "app/review/session_list.h"
 #include "app/widgets/scene_pane.h"
 #include "app/widgets/video_texture.h"
+#include "navigation/recording/declined_resume.h"
 #include "navigation/worker/awaited.h"
 
 namespace arthronaut::review {
@@ -33,6 +34,7 @@ struct OpenSession {
   std::unique_ptr<TodayRun> today;         // null: was not asked for
   std::unique_ptr<CheckRun> check;         // whether it is as it was recorded; never null once it is open
   std::optional<std::size_t> shown_frame;  // of the 3D view
+  bool can_be_resumed = false;             // it was declined, and no newer session of its bone decides
 
   [[nodiscard]] const recording::SessionTimeline& timeline() const { return *review.timeline; }
   [[nodiscard]] const recording::FrameGlance& glance() const { return timeline().frames()[playback.frame]; }
@@ -41,7 +43,9 @@ struct OpenSession {
 
 class ReviewView : public mode::Mode {
  public:
-  ReviewView(std::function<void()> make_current, std::function<void()> wake);
+  // to_theatre: shows Navigate.
+  ReviewView(std::function<void()> make_current, std::function<void()> wake,
+             std::function<void()> to_theatre);
 
   [[nodiscard]] mode::ModeTitle title() const override;
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const override { return {"review."}; }
@@ -84,6 +88,11 @@ class ReviewView : public mode::Mode {
   // A change that the disk refuses is told, and the marks stay as they were.
   void change_marks(const std::function<void(MarkBook&)>& change);
   void toggle_today();
+  void add_resume_action(widgets::Actions& actions);
+  [[nodiscard]] bool can_be_resumed() const {  // precondition: open_
+    return read_only_.empty() && recording::can_be_taken_back(case_folder_, open_->review.folder);
+  }
+  void resume();
   [[nodiscard]] bool has_frames() const;
   [[nodiscard]] bool shows_frames() { return has_frames() && !shows_postop_; }
   [[nodiscard]] bool runs_today() const;
@@ -108,7 +117,7 @@ class ReviewView : public mode::Mode {
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
   std::string read_only_;
-  std::function<void()> wake_;
+  std::function<void()> wake_, to_theatre_;
   widgets::ScenePane pane_;
   widgets::VideoTexture video_;
   SessionList sessions_;

@@ -7,6 +7,8 @@
 
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
+#include "navigation/recording/declined_resume.h"
+#include "navigation/recording/hash_chain.h"
 #include "navigation/recording/recording_lock.h"
 #include "navigation/recording/rerun.h"
 #include "navigation/recording/session_files.h"
@@ -76,12 +78,13 @@ class LastRegistration {
   bool was_verified_ = false;
 };
 
+// By its chain of hashes, which is written with all that is recorded, and after it: a database that was cut
+// off is put in order by whoever reads it, and would be of now with every look. (Only of before there was a
+// chain it is all there is.)
 std::chrono::system_clock::time_point last_written(const std::filesystem::path& session_folder) {
-  std::filesystem::file_time_type newest = std::filesystem::last_write_time(database_file(session_folder));
-  std::error_code none;  // the part that is not folded in yet
-  const auto waiting =
-      std::filesystem::last_write_time(database_file(session_folder).string() + "-wal", none);
-  if (!none) newest = std::max(newest, waiting);
+  std::error_code none;
+  std::filesystem::file_time_type newest = std::filesystem::last_write_time(chain_file(session_folder), none);
+  if (none) newest = std::filesystem::last_write_time(database_file(session_folder));
   return std::chrono::time_point_cast<std::chrono::system_clock::duration>(
       std::chrono::file_clock::to_sys(newest));
 }
@@ -189,6 +192,8 @@ std::optional<Resumable> resumable_from(const RecordedSession& newest) {
   found.header = newest.header();
   found.was_finished = newest.was_finished();
   found.last_written = last_written(newest.folder());
+  found.folder = newest.folder();
+  found.was_declined = is_resume_declined(newest.folder());
   return found;
 }
 

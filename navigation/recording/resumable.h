@@ -26,6 +26,8 @@ struct Resumable {
   std::chrono::system_clock::time_point last_written;  // when that was
   bool was_finished = false;                           // false: it was cut off, as by a crash; or it goes on:
   bool is_being_recorded = false;                      // now, in another window or program
+  bool was_declined = false;                           // see declined_resume.h
+  std::filesystem::path folder;                        // of that newest session
 };
 
 struct ResumeSearch {

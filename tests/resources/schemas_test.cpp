@@ -6,6 +6,7 @@
 
 #include "navigation/calibration/fluid_file.h"
 #include "navigation/camera/doubted_camera_file.h"
+#include "navigation/recording/declined_resume.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/recording/session_marks.h"
 #include "navigation/registration/registration.h"
@@ -194,6 +195,12 @@ TEST_F(Schemas, DescribeTheMarks) {
   recording::write_marks(folder_.path(), {{12, 200'000'000, "first touch"}, {30, 500'000'000, ""}});
   expect_described(recording::marks_file(folder_.path()), "marks",
                    [&] { (void)recording::read_marks(folder_.path()); });
+}
+
+TEST_F(Schemas, DescribeThatAnOperationIsNotToBeResumed) {
+  recording::decline_resume(folder_.path());
+  expect_described(recording::declined_file(folder_.path()), "declined",
+                   [&] { EXPECT_TRUE(recording::is_resume_declined(folder_.path())); });
 }
 
 // Of a session that says little, and of one that says all, in two parts of video.

@@ -194,6 +194,23 @@ TEST_F(Theatre, Hazard12WhatWasLeftCanBeDeclined) {
   EXPECT_EQ(app.state("resumed"), "none");
   app.press("ctrl+q");
   EXPECT_EQ(app.wait_for_exit(60), 0);
+
+  // It stays declined when the case is opened again, until somebody takes it up in Review.
+  RunningWorkstation again(display, folder_.path());
+  ASSERT_TRUE(again.wait_for_state("case", "open", 120));
+  show_navigate(again);
+  EXPECT_TRUE(again.wait_for_state("next", "start the simulated operation", 60));
+  EXPECT_EQ(again.state("resume"), "none");
+  again.press("F3");
+  ASSERT_TRUE(again.wait_for_state("session", left));
+  ASSERT_TRUE(again.wait_for_widget("review.resume"));
+  again.press("g");
+  EXPECT_TRUE(again.wait_for_state("mode", "navigate"));
+  EXPECT_TRUE(again.wait_for_state("resume", left));
+  again.press("space");
+  EXPECT_TRUE(again.wait_for_state("resumed", left));
+  again.press("ctrl+q");
+  EXPECT_EQ(again.wait_for_exit(60), 0);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "navigation/recording/declined_resume.h"
 #include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session_check.h"
 #include "navigation/sources/exercise_source.h"
@@ -36,6 +37,43 @@ TEST_F(ResumableTest, Hazard40AnExerciseIsPassedOver) {
   end(again);
   ASSERT_TRUE(found());
   EXPECT_EQ(found()->operation.session, left);
+}
+
+// Of one that was cut off the database is put in order by whoever reads it: it is no younger for that.
+TEST_F(ResumableTest, IsAsOldAsWhatWasRecordedWheneverItWasReadLast) {
+  PhantomOperation run;
+  operate(run, test::scripted_source(SourceKind::Live));
+  end(run);
+  const std::filesystem::path session = cases::session_folders(folder_.path()).back();
+  const auto then = std::filesystem::file_time_type::clock::now() - std::chrono::hours(13);
+  std::filesystem::last_write_time(session / "chain.csv", then);
+  const auto left = found();
+  ASSERT_TRUE(left);
+  EXPECT_GT(std::chrono::system_clock::now() - left->last_written, std::chrono::hours(12));
+  EXPECT_EQ(left->folder, session);
+}
+
+// What was declined says so, until that is taken back; a newer session of the bone decides in its place.
+TEST_F(ResumableTest, WhatWasDeclinedStaysDeclined) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source(SourceKind::Live);
+  operate(run, source);
+  end(run);
+  const auto left = found();
+  ASSERT_TRUE(left);
+  EXPECT_FALSE(left->was_declined);
+  EXPECT_FALSE(can_be_taken_back(folder_.path(), left->folder));
+  decline_resume(left->folder);
+  EXPECT_TRUE(found()->was_declined);
+  EXPECT_TRUE(can_be_taken_back(folder_.path(), left->folder));
+  continues_.clear();
+  PhantomOperation afresh;
+  operate(afresh, source);
+  end(afresh);
+  EXPECT_FALSE(found()->was_declined);
+  EXPECT_FALSE(can_be_taken_back(folder_.path(), left->folder));
+  take_back_declined_resume(left->folder);
+  EXPECT_FALSE(is_resume_declined(left->folder));
 }
 
 // While it goes on it was not cut off.
