@@ -49,14 +49,25 @@ void doubt(postop::Comparison& comparison, const std::string& reason) {
     reasons->insert(reasons->begin(), reason);
 }
 
-void add_places(cases::Case knee, PostopAnswer& answer) {
+// Why it is not relied on, in the order in which it is told; empty: nobody says.
+std::string first_doubt(const postop::Comparison& one) {
+  if (!one.bone.reliable && !one.bone.reasons.empty()) return one.bone.reasons.front();
+  return !one.tunnel.reliable && !one.tunnel.reasons.empty() ? one.tunnel.reasons.front() : "";
+}
+
+using Comparisons = std::map<tunnels::TunnelKey, postop::Comparison>;
+
+std::map<tunnels::TunnelKey, postop::AchievedPlace> places_of(cases::Case knee,
+                                                              const Comparisons& comparisons) {
+  std::map<tunnels::TunnelKey, postop::AchievedPlace> places;
   plan_review::propose_landmarks(knee, plan_review::Proposing::WithoutGrid);
   const plan_review::CaseReview review(knee);
-  for (const auto& [key, comparison] : answer.comparisons)
+  for (const auto& [key, comparison] : comparisons)
     if (comparison.tunnel.is_found)
-      answer.places.emplace(key, postop::place_of(comparison.tunnel, knee.plan.tunnels.at(key),
-                                                  review.bone(key.bone).surroundings,
-                                                  plan_review::state_of_grid(knee, key.bone)));
+      places.emplace(key, postop::place_of(comparison.tunnel, knee.plan.tunnels.at(key),
+                                           review.bone(key.bone).surroundings,
+                                           plan_review::state_of_grid(knee, key.bone)));
+  return places;
 }
 
 void compare_all(const cases::Case& knee, const std::vector<tunnels::Tunnel>& plan,
@@ -76,7 +87,7 @@ void compare_all(const cases::Case& knee, const std::vector<tunnels::Tunnel>& pl
       if (other.bone == tunnel.bone && other.bundle != tunnel.bundle) others.push_back(other);
     answer.comparisons[tunnel.key()] = images.compare(knee.bones.at(tunnel.bone).mesh, tunnel, others);
   }
-  add_places(knee, answer);
+  answer.places = places_of(knee, answer.comparisons);
   tell("Compared", plan.size());
 }
 
@@ -93,22 +104,46 @@ std::vector<std::string> PostopAnswer::doubts() const {
   return reasons;
 }
 
-std::vector<tunnels::TunnelKey> better_kept_in(const std::filesystem::path& file,
-                                               const PostopAnswer& answer) {
+std::vector<BetterKept> better_kept_in(const std::filesystem::path& file, const PostopAnswer& answer) {
   const auto is_relied_on = [](const postop::Comparison& one) {
     return one.bone.reliable && one.tunnel.reliable;
   };
-  std::vector<tunnels::TunnelKey> better;
+  std::vector<BetterKept> better;
   try {
     if (!std::filesystem::is_regular_file(file)) return better;
     for (const auto& [key, kept] : postop::read_achieved_file(file)) {
       const auto now = answer.comparisons.find(key);
       if (now == answer.comparisons.end() || !is_relied_on(kept) || is_relied_on(now->second)) continue;
       if (!answer.planned.contains(key) || postop::is_against(kept.tunnel, key, answer.planned))
-        better.push_back(key);
+        better.push_back({key, first_doubt(now->second)});
     }
   } catch (const InvalidInput&) {  // broken: it tells nobody anything
   }
+  return better;
+}
+
+std::vector<BetterKept> keep_tunnel_by_tunnel(const std::filesystem::path& file,
+                                              const std::filesystem::path& case_folder,
+                                              const PostopAnswer& answer) {
+  std::vector<BetterKept> better = better_kept_in(file, answer);
+  if (better.empty()) {
+    postop::write_achieved_file(file, answer.comparisons, answer.places);
+    return better;
+  }
+  if (better.size() == answer.comparisons.size()) return better;
+  const Comparisons before = postop::read_achieved_file(file);
+  Comparisons kept;
+  for (const auto& [key, why_not_now] : better) {
+    postop::Comparison& stays = kept[key] = before.at(key);
+    stays.kept_because =
+        "newer images show it less well" + (why_not_now.empty() ? std::string() : ": " + why_not_now);
+  }
+  // Of this plan's, by the landmarks of now, as those beside them.
+  auto places = places_of(cases::load_case(case_folder), kept);
+  places.insert(answer.places.begin(), answer.places.end());
+  Comparisons together = kept;
+  together.insert(answer.comparisons.begin(), answer.comparisons.end());
+  postop::write_achieved_file(file, together, places);
   return better;
 }
 

@@ -50,9 +50,22 @@ struct PostopAnswer {
 // that cannot be read or show no bone.
 [[nodiscard]] PostopAnswer compare_with_postop(const PostopQuestion& question);
 
+// A tunnel that a file holds relied on, against the same plan, and that is not relied on now.
+struct BetterKept {
+  tunnels::TunnelKey key;
+  std::string why_not_now;  // may be empty
+};
+
 // Of what was compared, the tunnels that `file` holds relied on, against the same plan, and that are not
 // relied on now. None where there is no such file, or it is broken.
-[[nodiscard]] std::vector<tunnels::TunnelKey> better_kept_in(const std::filesystem::path& file,
-                                                             const PostopAnswer& answer);
+[[nodiscard]] std::vector<BetterKept> better_kept_in(const std::filesystem::path& file,
+                                                     const PostopAnswer& answer);
+
+// Writes what was compared into a case's `file`, tunnel by tunnel: those of better_kept_in(), which it
+// returns, stay, each with its bone as its own images showed it. Where these are all, nothing is written.
+// Throws IoError or InvalidInput; `file` is as it was then.
+std::vector<BetterKept> keep_tunnel_by_tunnel(const std::filesystem::path& file,
+                                              const std::filesystem::path& case_folder,
+                                              const PostopAnswer& answer);
 
 }  // namespace arthronaut::open_case

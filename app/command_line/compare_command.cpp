@@ -15,6 +15,7 @@ namespace {
 struct CompareArguments {
   std::string case_folder, source, output, bone, series;
   std::vector<int> labels;
+  bool replaces = false;
 };
 
 // Where it lies: which way its entry is off, its percentages, its wall.
@@ -81,11 +82,15 @@ void compare(Context& context, const CompareArguments& arguments) {
   if (!case_of_output.empty() && !answer.other_patient.empty())
     throw InvalidInput(arguments.source, "",
                        "is of " + answer.other_patient + ": nothing is written into the case; -o elsewhere");
-  const std::vector<tunnels::TunnelKey> better = arguments.output == "-"
-                                                     ? std::vector<tunnels::TunnelKey>{}
-                                                     : open_case::better_kept_in(arguments.output, answer);
-  const bool keeps = !case_of_output.empty() && !better.empty();
-  if (!keeps) postop::write_achieved_file(arguments.output, answer.comparisons, answer.places);
+  const bool keeps = !case_of_output.empty() && !arguments.replaces;
+  std::vector<open_case::BetterKept> better;
+  if (keeps) {
+    better = open_case::keep_tunnel_by_tunnel(arguments.output, arguments.case_folder, answer);
+  } else {
+    if (arguments.output != "-") better = open_case::better_kept_in(arguments.output, answer);
+    postop::write_achieved_file(arguments.output, answer.comparisons, answer.places);
+  }
+  const bool is_written = !keeps || better.size() < answer.comparisons.size();
   if (arguments.output != "-") {
     for (const auto& [key, comparison] : answer.comparisons) {
       if (comparison.bone.is_found)
@@ -95,12 +100,12 @@ void compare(Context& context, const CompareArguments& arguments) {
       if (const auto place = answer.places.find(key); place != answer.places.end())
         context.say(place_line(key, place->second));
     }
-    if (!keeps) context.say("Wrote " + arguments.output + ".");
+    if (is_written) context.say("Wrote " + arguments.output + ".");
   }
   auto doubts = answer.doubts();
-  for (const tunnels::TunnelKey& key : better)
+  for (const auto& [key, why_not_now] : better)
     doubts.push_back(tunnels::name_of(key) + ": " + arguments.output + " held one that is reliable" +
-                     (keeps ? ", which the case keeps; this one is not written: -o elsewhere"
+                     (keeps ? ", which the case keeps; this one is not written: -o elsewhere, or --replace"
                             : ", which this one has replaced"));
   if (!answer.other_patient.empty()) doubts.push_back("the images are of " + answer.other_patient);
   if (!doubts.empty()) context.say_unreliable("The comparison", doubts);
@@ -128,6 +133,9 @@ void add_compare_command(CLI::App& app, Context& context) {
   sub->add_option("--label", arguments->labels, "Label maps: the labels that are bone; default: all but 0")
       ->delimiter(',')
       ->allow_extra_args(false);  // the case may follow
+  sub->add_flag("--replace", arguments->replaces,
+                "In a case: also in the place of a tunnel that it holds reliable, and that is not so now. "
+                "Default: that one stays");
   sub->callback([&context, arguments] { compare(context, *arguments); });
 }
 

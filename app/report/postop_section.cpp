@@ -91,6 +91,11 @@ void draw_postop_section(FlowingPages& pages, const Content& content) {
   }
   pages.table(widths_mm, rows);
   for (const auto& [key, comparison] : content.postoperative)
+    if (!comparison.kept_because.empty())
+      pages.sentence(
+          "\u2013 " + tunnels::name_of(key) + ", kept from earlier images: " + comparison.kept_because,
+          {.ink = kWarning});
+  for (const auto& [key, comparison] : content.postoperative)
     for (const std::string& doubt : doubts_of(content, key))
       pages.sentence("\u2013 " + tunnels::name_of(key) + ": " + doubt, {.ink = kWarning});
   pages.sentence(

@@ -142,6 +142,7 @@ ordered_json postoperative_of(const Content& content) {
     ordered_json node = {{"tunnel", tunnels::name_of(key)}, {"verdict", verdict_of(content, key)}};
     node["reliable"] = node["verdict"] == "reliable";
     node["reasons"] = doubts_of(content, key);
+    if (!comparison.kept_because.empty()) node["kept_because"] = comparison.kept_because;
     node["planned"] = nullptr;
     // Of an earlier plan the differences alone are known, not what they are from.
     if (const auto plan = content.knee.plan.tunnels.find(key);

@@ -73,6 +73,17 @@ void PostopPage::choose_next() {
   scene_is_stale_ = true;
 }
 
+void PostopPage::replace_kept() {
+  if (!may_replace_kept()) return;
+  try {  // the disk may refuse: what is kept stays
+    postop::write_achieved_file(achieved_file(case_folder_), shown_.answer->comparisons,
+                                shown_.answer->places);
+    better_kept_.clear();
+  } catch (const IoError& error) {
+    problem_ = error.what();
+  }
+}
+
 void PostopPage::ask_for_path() { field_ = {true, true, field_.text}; }
 
 void PostopPage::browse() {
@@ -166,6 +177,7 @@ void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
                               : !which_.empty()                                                ? "asks"
                               : !problem_.empty()                                              ? "failed"
                               : !shown_.other_patient.empty() || !shown_.not_its_bones.empty() ? "refused"
+                              : !better_kept_.empty()                                          ? "better kept"
                               : shown_.answer != nullptr                                       ? "compared"
                               : shown_.comparisons.empty()                                     ? "none"
                                                                                                : "kept");
@@ -199,6 +211,7 @@ void PostopPage::draw_head(const widgets::Ui& ui, widgets::Rect area) {
     widgets::action_button(ui, action);
     ImGui::SameLine();
   }
+  if (may_replace_kept()) widgets::action_button(ui, "review.postop_replace");
   ImGui::NewLine();
   if (field_.is_open) {
     if (field_.takes_focus) ImGui::SetKeyboardFocusHere();
@@ -231,7 +244,7 @@ void PostopPage::draw_head(const widgets::Ui& ui, widgets::Rect area) {
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      "As kept in the case (achieved.json). Its images are read again by a comparison (C).");
   } else if (!better_kept_.empty()) {
-    widgets::status_row(ui, widgets::Severity::Caution, "Not kept", better_kept_);
+    widgets::status_row(ui, widgets::Severity::Caution, "Kept from before", better_kept_);
   } else if (!read_only_.empty() && shown_.answer != nullptr) {
     widgets::status_row(ui, widgets::Severity::Caution, "Not kept", read_only_);
   }

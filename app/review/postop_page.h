@@ -63,6 +63,11 @@ class PostopPage {
     return shown_.comparisons.empty() && shown_.other_patient.empty() && problem_.empty() && !is_running();
   }
   void choose_next();  // of the tunnels
+  // What was compared takes the place of what stayed kept before.
+  [[nodiscard]] bool may_replace_kept() const {
+    return !better_kept_.empty() && shown_.answer != nullptr && read_only_.empty() && !is_running();
+  }
+  void replace_kept();
   void ask_for_path();
   // The images are looked for in the folders of this machine, in the place of what is compared.
   void browse();

@@ -40,17 +40,19 @@ bool keep(const open_case::PostopAnswer& answer, const std::filesystem::path& ca
   const std::filesystem::path file = achieved_file(case_folder);
   if (!answer.other_patient.empty()) return false;
   if (!has_a_bone(answer.comparisons) && has_a_bone(kept_in(file))) return false;
-  if (!better_kept(answer, case_folder).empty()) return false;
-  postop::write_achieved_file(file, answer.comparisons, answer.places);
-  return true;
+  return open_case::keep_tunnel_by_tunnel(file, case_folder, answer).size() < answer.comparisons.size();
 }
 
 std::string better_kept(const open_case::PostopAnswer& answer, const std::filesystem::path& case_folder) {
-  std::string names;
-  for (const tunnels::TunnelKey& key : open_case::better_kept_in(achieved_file(case_folder), answer))
+  std::string names, reasons;
+  for (const auto& [key, why_not_now] : open_case::better_kept_in(achieved_file(case_folder), answer)) {
     names += (names.empty() ? "" : ", ") + tunnels::name_of(key);
-  return names.empty() ? ""
-                       : "the case keeps a comparison that is reliable for " + names + ", as this is not";
+    if (!why_not_now.empty())
+      reasons += (reasons.empty() ? ": " : "; ") + tunnels::name_of(key) + ": " + why_not_now;
+  }
+  return names.empty()
+             ? ""
+             : "the case keeps a comparison that is reliable for " + names + ", as this is not" + reasons;
 }
 
 bool take_answer(std::shared_ptr<const open_case::PostopAnswer> answer, PostopShown& shown) {

@@ -27,7 +27,7 @@ struct PostopProgress {
   double share = 0;                                       // of that, 0 to 1
   std::shared_ptr<const open_case::PostopAnswer> answer;  // null: not yet, it failed, or it asks
   std::vector<images::ImageSeries> which = {};            // it asks: one of these
-  std::string better_kept = {};  // why the answer is not kept; empty: it is, or may not
+  std::string better_kept = {};  // which tunnels stay as they were kept, and why; empty: none, or it may not
 };
 
 class PostopRun {
@@ -51,7 +51,8 @@ using Comparisons = std::map<tunnels::TunnelKey, postop::Comparison>;
 
 // Keeps a comparison as the case's achieved.json. What is kept stays where these images are another
 // patient's, or are known to show none of the plan's bones and the kept ones do: a CT that names nobody may
-// be anybody's; and where better_kept() says so. False then. Throws IoError.
+// be anybody's. So does each tunnel of better_kept(), beside the others. False where nothing was written.
+// Throws IoError or InvalidInput (the case).
 bool keep(const open_case::PostopAnswer& answer, const std::filesystem::path& case_folder);
 
 // In words, that the case keeps tunnels that are relied on and are not in this comparison; empty: none.

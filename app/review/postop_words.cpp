@@ -59,6 +59,8 @@ std::vector<AchievedRow> achieved_rows(const Comparisons& comparisons,
       row.verdict = "of an earlier plan";
       row.reasons.insert(row.reasons.begin(), "the plan was changed since: compare again");
     }
+    if (!comparison.kept_because.empty())
+      row.reasons.push_back("kept from earlier images: " + comparison.kept_because);
     for (const std::string& reason : tunnel.reasons)
       if (std::find(row.reasons.begin(), row.reasons.end(), reason) == row.reasons.end())
         row.reasons.push_back(reason);

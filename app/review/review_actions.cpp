@@ -199,6 +199,15 @@ void ReviewView::add_postop_actions(widgets::Actions& actions) {
                [this] { return postop_.is_running(); },
                {},
                [this] { postop_.stop(); }});
+  actions.add({"review.postop_replace",
+               "Keep these",
+               "What these images show takes the place of the tunnels that the case keeps from before",
+               GLFW_KEY_K,
+               0,
+               false,
+               [this] { return shows_postop_ && postop_.may_replace_kept(); },
+               {},
+               [this] { postop_.replace_kept(); }});
   actions.add({"review.postop_next",
                "Next tunnel",
                "Shows another of the planned tunnels",

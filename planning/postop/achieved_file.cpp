@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "planning/files/achieved_shape.h"
 #include "planning/files/json_document.h"
@@ -57,6 +56,16 @@ ordered_json bone_json(bones::BoneKind kind, const AchievedBone& bone) {
   json["on_edge_share"] = number(bone.is_found, bone.on_edge_share);
   json["in_view_share"] = number(bone.is_found, bone.in_view_share);
   return json;
+}
+
+// Where two tunnels were found in the same bone: as the images that were compared last show it.
+std::map<bones::BoneKind, const AchievedBone*> bones_of(
+    const std::map<tunnels::TunnelKey, Comparison>& comparisons) {
+  std::map<bones::BoneKind, const AchievedBone*> newest;
+  for (const bool is_kept : {false, true})
+    for (const auto& [key, comparison] : comparisons)
+      if (comparison.kept_because.empty() != is_kept) newest.emplace(key.bone, &comparison.bone);
+  return newest;
 }
 
 AchievedBone bone_of(const files::JsonObject& node) {
@@ -119,7 +128,11 @@ std::map<tunnels::TunnelKey, Comparison> read_achieved_file(const std::filesyste
         node.has("bundle") ? norms::bundle_from_text(node.text("bundle")) : norms::Bundle::Whole};
     Comparison& comparison = comparisons[key];
     comparison.tunnel = tunnel_of(node, key);
-    if (const auto bone = found.find(key.bone); bone != found.end()) comparison.bone = bone->second;
+    if (node.has("kept_because")) comparison.kept_because = node.text("kept_because");
+    if (node.has("bone_then"))
+      comparison.bone = bone_of(node.object("bone_then"));
+    else if (const auto bone = found.find(key.bone); bone != found.end())
+      comparison.bone = bone->second;
   }
   return comparisons;
 }
@@ -150,13 +163,15 @@ void write_achieved_file(const std::filesystem::path& file,
   document["version"] = 1;
   document["tunnels"] = ordered_json::array();
   document["bones"] = ordered_json::array();
-  std::set<bones::BoneKind> told;
   for (const auto& [key, comparison] : comparisons) {
     document["tunnels"].push_back(tunnel_json(key, comparison.tunnel));
     if (const auto place = places.find(key); place != places.end())
       put_place(document["tunnels"].back(), place->second);
-    if (told.insert(key.bone).second) document["bones"].push_back(bone_json(key.bone, comparison.bone));
+    if (comparison.kept_because.empty()) continue;
+    document["tunnels"].back()["kept_because"] = comparison.kept_because;
+    document["tunnels"].back()["bone_then"] = bone_json(key.bone, comparison.bone);
   }
+  for (const auto& [kind, bone] : bones_of(comparisons)) document["bones"].push_back(bone_json(kind, *bone));
   files::write_json(file, document);
 }
 

@@ -7,7 +7,8 @@
 // entry's way from the planned one along the bone's axes, "grid" in percent, "landmarks", what those are that
 // both follow from, "wall_mm" and "planned_wall_mm". These are for other programs; they follow from the bone
 // and are not read back. A tunnel of one bundle has "bundle", am or pl; a bone with two stands there once, as
-// the first found it.
+// the first found it. A tunnel that was kept when newer images were compared has "kept_because", and in
+// "bone_then" its bone as its own images showed it: "bones" are of the newer ones.
 #pragma once
 
 #include <filesystem>

@@ -84,6 +84,8 @@ struct AchievedBone {
 struct Comparison {
   AchievedBone bone;
   AchievedTunnel tunnel;  // reliable only when the bone is
+  // Why a file holds this one, though newer images were compared since; empty: none were, or this is of them.
+  std::string kept_because = {};
 };
 
 struct ComparisonOptions {

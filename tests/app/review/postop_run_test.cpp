@@ -5,8 +5,13 @@
 
 #include <chrono>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
 
+#include "planning/bones/mesh_hash.h"
+#include "planning/cases/case.h"
+#include "planning/files/atomic_file.h"
+#include "planning/phantom/phantom_case.h"
 #include "planning/postop/achieved_file.h"
 #include "tests/temporary_folder.h"
 
@@ -102,6 +107,59 @@ TEST(PostopRun, ATunnelThatIsReliedOnStaysKept) {
   open_case::PostopAnswer of_another_plan = answer(false);
   of_another_plan.planned[bones::BoneKind::Femur].entry_mm = {0, 0, 5};
   EXPECT_TRUE(keep(of_another_plan, folder.path()));
+}
+
+// One poorer tunnel kept a whole comparison out of the case, the good one beside it, too.
+TEST(PostopRun, WhatStaysKeptKeepsNothingElseOut) {
+  const test::TemporaryFolder folder;
+  const tunnels::TunnelKey am{bones::BoneKind::Femur, norms::Bundle::Anteromedial},
+      pl{bones::BoneKind::Femur, norms::Bundle::Posterolateral};
+  cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Phantom");
+  tunnels::Tunnel planned = knee.plan.tunnels.at(bones::BoneKind::Femur);
+  const std::string mesh = bones::mesh_sha256(knee.bones.at(bones::BoneKind::Femur).mesh);
+  for (const tunnels::TunnelKey& key : {am, pl}) {
+    planned.bundle = key.bundle;
+    knee.plan.put(planned, mesh);
+    planned.entry_mm.y() += 8;
+  }
+  cases::save_case(folder.path(), knee);
+  const auto answer = [&](double bone_x_mm, bool am_is_reliable, bool pl_is_reliable) {
+    open_case::PostopAnswer made;
+    for (const auto& [key, is_reliable] : {std::pair(am, am_is_reliable), std::pair(pl, pl_is_reliable)}) {
+      postop::Comparison& one = made.comparisons[key];
+      one.bone.is_found = one.bone.reliable = one.tunnel.is_found = true;
+      one.bone.reasons.clear();
+      one.bone.plan_from_postop.translation_mm = {bone_x_mm, 0, 0};
+      one.tunnel.tunnel = knee.plan.tunnels.at(key);
+      one.tunnel.length_mm = 30;
+      one.tunnel.reliable = is_reliable;
+      one.tunnel.reasons = {"not straight"};
+      if (is_reliable) one.tunnel.reasons.clear();
+    }
+    return made;
+  };
+  const auto kept = [&] { return postop::read_achieved_file(achieved_file(folder.path())); };
+  ASSERT_TRUE(keep(answer(1, true, false), folder.path()));
+  const open_case::PostopAnswer newer = answer(2, false, true);
+  EXPECT_EQ(
+      better_kept(newer, folder.path()),
+      "the case keeps a comparison that is reliable for femur AM, as this is not: femur AM: not straight");
+  EXPECT_TRUE(keep(newer, folder.path()));
+  EXPECT_TRUE(kept().at(am).tunnel.reliable);
+  EXPECT_TRUE(kept().at(pl).tunnel.reliable);
+  EXPECT_EQ(kept().at(am).kept_because, "newer images show it less well: not straight");
+  EXPECT_EQ(kept().at(pl).kept_because, "");
+  // Each bone as the tunnel's own images showed it.
+  EXPECT_EQ(kept().at(am).bone.plan_from_postop.translation_mm.x(), 1);
+  EXPECT_EQ(kept().at(pl).bone.plan_from_postop.translation_mm.x(), 2);
+  const auto file = nlohmann::json::parse(files::read_text(achieved_file(folder.path())));
+  EXPECT_EQ(file.at("bones").size(), 1U);
+  EXPECT_EQ(file.at("bones").at(0).at("plan_from_postop").at("t_mm").at(0), 2);
+  EXPECT_TRUE(file.at("tunnels").at(0).contains("off_plan")) << "where it lies is told of what stays, too";
+  // Newer and good: nothing is of before any more.
+  EXPECT_TRUE(keep(answer(3, true, true), folder.path()));
+  EXPECT_EQ(kept().at(am).kept_because, "");
+  EXPECT_EQ(kept().at(am).bone.plan_from_postop.translation_mm.x(), 3);
 }
 
 }  // namespace
