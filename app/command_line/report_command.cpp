@@ -1,5 +1,6 @@
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
+#include "app/own_process/own_process.h"
 #include "app/report/report.h"
 
 namespace arthronaut::command_line {
@@ -20,6 +21,7 @@ void refuse_another_ending(const std::filesystem::path& output) {
 void add_report_command(CLI::App& app, Context& context) {
   struct Arguments {
     std::string case_folder, output, paper = "a4";
+    int progress_descriptor = -1;
     report::ReportOptions options;
   };
   const auto arguments = std::make_shared<Arguments>();
@@ -39,11 +41,24 @@ void add_report_command(CLI::App& app, Context& context) {
                 "own name does");
   sub->add_option("--paper", arguments->paper, "a4 or letter; default: a4")
       ->check(CLI::IsMember({"a4", "letter"}));
+  sub->add_option("--progress-fd", arguments->progress_descriptor,
+                  "For the program that started this one: an open file for what goes on")
+      ->group("");
   sub->callback([arguments, &context] {
     refuse_another_ending(arguments->output);
     refuse_before_the_work({.read = {}, .written = {arguments->output}});
     arguments->options.paper = report::paper_from_text(arguments->paper);
-    const auto missing = report::write_report(arguments->case_folder, arguments->output, arguments->options);
+    std::vector<std::string> missing;
+    {
+      Progress progress("Reading the case and its sessions", 100);
+      arguments->options.on_progress = [&](const std::string& what, double share) {
+        progress.name(what);
+        progress.advance_to(static_cast<long>(100 * share));
+        if (arguments->progress_descriptor >= 0)
+          own_process::tell_progress(arguments->progress_descriptor, what, share);
+      };
+      missing = report::write_report(arguments->case_folder, arguments->output, arguments->options);
+    }
     context.say("Wrote " + arguments->output + ".");
     if (!missing.empty()) context.say_unreliable("the report", missing);
   });

@@ -17,10 +17,19 @@ struct CommandOutcome {
   std::string words;  // its doubts, or why it failed; may be empty
 };
 
+// What goes on, and how much of the whole is done, 0 to 1.
+using OnProgress = std::function<void(const std::string& what, double share)>;
+
 // Blocks; `stops` is asked again and again, and true kills the process. log: a file for what it says, in a
-// folder that is there; it is removed when the process has ended. Throws IoError where it cannot be started.
+// folder that is there; it is removed when the process has ended. on_progress: where it is given, the command
+// gets "--progress-fd 3" and writes lines there, see tell_progress(). Throws IoError where it cannot be
+// started.
 [[nodiscard]] CommandOutcome run_command(const std::filesystem::path& program,
                                          std::vector<std::string> arguments, const std::filesystem::path& log,
-                                         const std::function<bool()>& stops);
+                                         const std::function<bool()>& stops,
+                                         const OnProgress& on_progress = {});
+
+// In the process that was started: "0.250 Drawing the plan", a line each. Without effect where nobody reads.
+void tell_progress(int descriptor, const std::string& what, double share);
 
 }  // namespace arthronaut::own_process

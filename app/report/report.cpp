@@ -1,5 +1,6 @@
 #include "app/report/report.h"
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -49,8 +50,12 @@ class Report {
 
   // Whole.
   PdfDocument& drawn() {
+    const auto grafts = planned_grafts(content_.knee.plan);
+    parts_ = 3 + static_cast<double>(grafts.size());
+    begin_part("Drawing the plan");
     plan_page();
-    for (const norms::Bundle graft : planned_grafts(content_.knee.plan)) {
+    for (const norms::Bundle graft : grafts) {
+      begin_part("Drawing the plan on one sheet");
       const std::string of_graft = graft == norms::Bundle::Whole          ? ""
                                    : graft == norms::Bundle::Anteromedial ? ", AM graft"
                                                                           : ", PL graft";
@@ -65,6 +70,7 @@ class Report {
                        .picture_px_per_mm = options_.picture_px_per_mm},
                       content_, graft);
     }
+    begin_part("Taking the session's pictures");
     navigate_page();
     result_pictures();
     draw_settings_section(pages_, content_);
@@ -72,6 +78,9 @@ class Report {
   }
 
  private:
+  void begin_part(const std::string& what) {
+    options_.tell(what, kGatheredShare + (1 - kGatheredShare) * std::min(1.0, done_++ / parts_));
+  }
   // What a picture shows beside the plan.
   struct Result {
     std::vector<tunnels::Tunnel> achieved;
@@ -143,6 +152,7 @@ class Report {
   const ReportOptions options_;
   PdfDocument pdf_;
   FlowingPages pages_;
+  double parts_ = 1, done_ = 0;
 };
 
 void Report::plan_page() {
@@ -338,6 +348,7 @@ void Report::result_pictures() {
   if (content_.session) {
     pages_.continue_as("Result, camera, tools and versions");
     if (!options_.is_deidentified) draw_stills_section(pages_, content_);
+    begin_part("Drawing what was achieved");
     const Result navigated =
         content_.is_of_another_surface ? Result{} : Result{navigated_tunnels(), touched_points()};
     pictures(joint_view(), scene::ViewDirection::Lateral, navigated);

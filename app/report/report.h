@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,12 @@ struct ReportOptions {
   double picture_px_per_mm = 12;
   // Tells of this session, by its folder's name, whatever it came to, and of what was drilled before it.
   std::string session = {};
+  // What goes on, and how much of the whole is done, 0 to 1. May be empty.
+  std::function<void(const std::string& what, double share)> on_progress = {};
+
+  void tell(const std::string& what, double share) const {
+    if (on_progress) on_progress(what, share);
+  }
 };
 
 // Where none is named, the newest session with a drilled tunnel is reported, else the newest with a

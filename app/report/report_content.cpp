@@ -95,7 +95,7 @@ bool is_of_another_surface(const Content& content) {
 }
 
 // A broken file of marks takes nothing else away.
-void add_looked_at(Content& content) {
+void add_looked_at(Content& content, const ReportOptions& options) {
   const std::filesystem::path folder = content.session->folder();
   content.session_name = content.session->header().id;
   content.started_utc = content.session->header().started_utc;
@@ -103,7 +103,11 @@ void add_looked_at(Content& content) {
       recording::cut_short_in_words(content.session->was_finished(), content.session->events(),
                                     recording::is_being_recorded(content.session->folder()));
   content.last_hash = recording::chain_head(folder);
-  content.check = recording::check_session(folder);
+  constexpr double kRead = 0.1;
+  content.check = recording::check_session(folder, [&](std::int64_t done, std::int64_t all) {
+    options.tell("Checking the record by its hashes",
+                 kRead + (kGatheredShare - kRead) * static_cast<double>(done) / static_cast<double>(all));
+  });
   try {
     content.marks = recording::read_marks(folder);
   } catch (const InvalidInput& error) {
@@ -266,6 +270,7 @@ std::vector<std::string> doubts_of(const Content& content, const tunnels::Tunnel
 }
 
 Content gather(const std::filesystem::path& folder, const ReportOptions& options) {
+  options.tell("Reading the case and its sessions", 0);
   Content content{.folder = folder,
                   .knee = cases::load_case(folder),
                   .review = nullptr,
@@ -311,7 +316,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   add_postoperative(content);
   add_places(content);
   add_camera(content);
-  if (content.session) add_looked_at(content);
+  if (content.session) add_looked_at(content, options);
   if (options.is_deidentified) blank_for_strangers(content);
   return content;
 }

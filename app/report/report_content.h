@@ -76,6 +76,9 @@ struct Content {
   std::optional<cases::Identity> identity;  // where it is to be named
 };
 
+// How much of a report is done once it is gathered: the record is read for its hashes, the rest is drawing.
+inline constexpr double kGatheredShare = 0.3;
+
 // For strangers it names no patient, no session and no day, whatever is drawn of it. Throws IoError or
 // InvalidInput (file, place, reason).
 [[nodiscard]] Content gather(const std::filesystem::path& folder, const ReportOptions& options);

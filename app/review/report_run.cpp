@@ -20,16 +20,33 @@ ReportRun::ReportRun(const std::filesystem::path& case_folder, const cases::Plan
             std::vector<std::string> words{"report", case_folder.string()};
             if (!session.empty()) words.insert(words.end(), {"--session", session});
             words.insert(words.end(), {"-o", file.string()});
-            inbox.publish(own_process::run_command(program, words, file.string() + ".log",
-                                                   [&inbox] { return inbox.stops(); }));
+            Progress progress;
+            progress.outcome = own_process::run_command(
+                program, words, file.string() + ".log", [&inbox] { return inbox.stops(); },
+                [&](const std::string& what, double share) {
+                  progress.what = what;
+                  progress.share = share;
+                  inbox.publish(progress);
+                });
+            inbox.publish(progress);
           },
           std::move(on_news)) {}
+
+ReportRun::Progress ReportRun::progress() const {
+  const auto latest = worker_.latest();
+  return latest != nullptr ? *latest : Progress{};
+}
+
+bool ReportRun::was_stopped() const {
+  const auto outcome = progress().outcome;
+  return outcome && outcome->end == own_process::CommandOutcome::End::Stopped;
+}
 
 std::string ReportRun::problem() const {
   using End = own_process::CommandOutcome::End;
   if (const std::string failure = worker_.failure(); !failure.empty()) return failure;
-  const auto outcome = worker_.latest();
-  if (outcome == nullptr) return "the report is not written yet";
+  const auto outcome = progress().outcome;
+  if (!outcome) return "the report is not written yet";
   if (outcome->end == End::Done || outcome->end == End::Unreliable) return {};
   return outcome->words.empty() ? "the report could not be written" : outcome->words;
 }

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "app/own_process/own_process.h"
@@ -18,10 +19,21 @@ namespace arthronaut::review {
 class ReportRun {
  public:
   // plan: cases::with_named_meshes() of the case, as it is saved: what the report names is its hash. session:
-  // its folder's name; empty: of the case. on_news is called from the other thread when it has ended.
+  // its folder's name; empty: of the case. on_news is called from the other thread whenever progress() has
+  // changed.
   ReportRun(const std::filesystem::path& case_folder, const cases::Plan& plan, const std::string& session,
             std::function<void()> on_news, const std::filesystem::path& program = "/proc/self/exe");
   [[nodiscard]] bool has_ended() const { return worker_.has_ended(); }
+  // Nothing is written then.
+  void stop() { worker_.request_stop(); }
+  // What goes on, and how much of the whole is done, 0 to 1.
+  struct Progress {
+    std::string what = "Beginning";
+    double share = 0;
+    std::optional<own_process::CommandOutcome> outcome = {};  // once it has ended
+  };
+  [[nodiscard]] Progress progress() const;
+  [[nodiscard]] bool was_stopped() const;
   // Once it has ended: why there is no report; empty: it is there.
   [[nodiscard]] std::string problem() const;
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
@@ -31,7 +43,7 @@ class ReportRun {
  private:
   std::filesystem::path file_;
   std::string plan_sha256_;
-  worker::Worker<int, own_process::CommandOutcome> worker_;
+  worker::Worker<int, Progress> worker_;
 };
 
 }  // namespace arthronaut::review

@@ -319,16 +319,17 @@ void ReviewView::add_actions(widgets::Actions& actions) {
   actions.add(
       {"review.report", "Report",
        "Writes the report of this session, or of a CT after the operation, or else of the plan, as PDF "
-       "into the plan's own folder within \"export\" of the case; it names nobody",
+       "into the plan's own folder within \"export\" of the case; it names nobody. Again to stop",
        GLFW_KEY_R, 0, false,
        [this] {
          const bool has_what_to_report =
              open_ ? !recording::is_exercise(open_->review.session->header)
                    : postop_.has_any() || (model_ != nullptr && !model_->knee().plan.tunnels.empty());
-         return has_what_to_report && read_only_.empty() && !is_writing_report();
+         return is_writing_report() || (has_what_to_report && read_only_.empty());
        },
        [this] { return is_writing_report(); },
        [this] {
+         if (is_writing_report()) return report_->stop();
          // It tells of what is on the disk: never of another plan than the one that is seen.
          no_report_ = model_ != nullptr ? model_->save_now() : std::string();
          if (!no_report_.empty()) return;

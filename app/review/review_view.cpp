@@ -270,14 +270,20 @@ void ReviewView::draw_report(const widgets::Ui& ui) const {
   }
   const std::string problem = report_ != nullptr && report_->has_ended() ? report_->problem() : "";
   const bool is_of_now = report_ != nullptr && !is_writing_report() && is_report_of_now();
-  ui.log.note_state("report", report_ == nullptr    ? "none"
-                              : is_writing_report() ? "running"
-                              : !problem.empty()    ? "failed"
-                              : is_of_now           ? "written"
-                                                    : "of an earlier plan");
+  ui.log.note_state("report", report_ == nullptr       ? "none"
+                              : is_writing_report()    ? "running"
+                              : report_->was_stopped() ? "stopped"
+                              : !problem.empty()       ? "failed"
+                              : is_of_now              ? "written"
+                                                       : "of an earlier plan");
   if (report_ == nullptr) return;
-  if (is_writing_report())
-    widgets::status_row(ui, widgets::Severity::Quiet, "Report", "is being written");
+  if (is_writing_report()) {
+    const ReportRun::Progress progress = report_->progress();
+    ui.log.note_state("report_part", progress.what);
+    widgets::text_in(ui.theme.body, widgets::kQuietText, "Report: " + progress.what + ". R stops it.");
+    ImGui::ProgressBar(static_cast<float>(progress.share), {-1, 0});
+  } else if (report_->was_stopped())
+    widgets::status_row(ui, widgets::Severity::Quiet, "Report", "stopped; nothing was written");
   else if (problem.empty() && is_of_now)
     widgets::status_row(ui, widgets::Severity::Good, "Report", report_->file().string());
   else if (problem.empty())

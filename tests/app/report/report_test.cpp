@@ -28,6 +28,23 @@ TEST_F(Report, OfAPlanAloneSaysThatNothingWasNavigated) {
   expect_contains(text, "OpenCV");
 }
 
+// Twenty seconds of drawing are not waited for without a word.
+TEST_F(Report, TellsWhatGoesOn) {
+  std::vector<std::string> parts;
+  double share = 0;
+  ReportOptions options;
+  options.on_progress = [&](const std::string& what, double now) {
+    if (parts.empty() || parts.back() != what) parts.push_back(what);
+    EXPECT_GE(now, share);
+    EXPECT_LE(now, 1);
+    share = now;
+  };
+  write(pdf(), options);
+  EXPECT_EQ(parts.front(), "Reading the case and its sessions");
+  EXPECT_TRUE(std::ranges::count(parts, "Drawing the plan"));
+  EXPECT_GT(share, 0.5);
+}
+
 // The sheet has every check of both tunnels, in words, and the percentages of the entries.
 TEST_F(Report, HasThePlanOnOneSheet) {
   write(pdf());

@@ -51,7 +51,7 @@ TEST_F(ReportRunTest, AsksForTheSessionThatIsShown) {
   std::string words;
   std::getline(given, words);
   EXPECT_EQ(words, "report " + folder_.path().string() + " --session 0001 -o " +
-                       (of_plan() / "report_0001.pdf").string());
+                       (of_plan() / "report_0001.pdf").string() + " --progress-fd 3");
   EXPECT_FALSE(fs::exists(of_plan() / "report_0001.pdf.log"));
 }
 
@@ -61,7 +61,8 @@ TEST_F(ReportRunTest, AsksForTheCaseWhereThereIsNoSession) {
   std::ifstream given(folder_ / "given");
   std::string words;
   std::getline(given, words);
-  EXPECT_EQ(words, "report " + folder_.path().string() + " -o " + (of_plan() / "report.pdf").string());
+  EXPECT_EQ(words, "report " + folder_.path().string() + " -o " + (of_plan() / "report.pdf").string() +
+                       " --progress-fd 3");
 }
 
 // Two plans never share a folder, and whoever holds a report knows which plan it tells of. It lay beside
@@ -81,6 +82,23 @@ TEST_F(ReportRunTest, SaysWhyThereIsNone) {
             "plan.json: is broken");
   EXPECT_EQ(problem_of(program("kill -9 $$")), "the report could not be written");
   EXPECT_THAT(problem_of(folder_ / "none"), HasSubstr("cannot be started"));
+}
+
+// It took twenty seconds of which nothing was told, and could not be stopped.
+TEST_F(ReportRunTest, TellsWhatGoesOnAndStops) {
+  ReportRun run(
+      folder_.path(), plan_, "0001", [] {},
+      program("echo '0.250 Reading' >&3; printf '0.500 Drawing the plan\\n0.7' >&3; exec sleep 600"));
+  const auto wait_until = [](const auto& is_so) {
+    for (int i = 0; i < 3000 && !is_so(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return is_so();
+  };
+  EXPECT_TRUE(wait_until([&] { return run.progress().what == "Drawing the plan"; }));
+  EXPECT_EQ(run.progress().share, 0.5);
+  EXPECT_FALSE(run.has_ended());
+  run.stop();
+  EXPECT_TRUE(wait_until([&] { return run.has_ended(); }));
+  EXPECT_TRUE(run.was_stopped());
 }
 
 // Letting go of it ends the process: nobody waits for it.
