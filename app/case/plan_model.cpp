@@ -103,10 +103,10 @@ const std::optional<landmarks::Proposal>& PlanModel::proposal(bones::BoneKind ki
   const BoneModel& bone = bones_.at(kind);
   if (bone.proposal) return bone.proposal;
   // The surface keeps the mesh, whatever becomes of this model.
-  return late_proposals_[kind].ask(
-      [surface = bone.review.surface, kind, side = knee_.side, stop = ending_->stop.get_token()] {
-        return landmarks::propose(surface->mesh(), kind, {.side = side, .stop = stop});
-      });
+  return late_proposals_[kind].ask([surface = bone.review.surface, kind, side = knee_.side,
+                                    stop = ending_->stop.get_token()] {
+    return landmarks::propose(surface->mesh(), kind, {.side = side, .surface = surface.get(), .stop = stop});
+  });
 }
 
 const std::shared_ptr<const geometry::TriangleMesh>& PlanModel::moving_mesh(bones::BoneKind kind) const {

@@ -87,20 +87,23 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
 
 // By norms and landmarks. Where those of the case give no grid, the proposed ones become the case's: whoever
 // reads it, as a report, has the grid that was planned by. Throws InvalidInput where there is no default;
-// `verdict` says how far it may be relied on, `proposal` what the shape gave where it was asked.
+// `verdict` says how far it may be relied on, `by_shape` what the shape gave where it was asked.
 tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee, bones::BoneKind kind,
-                               const geometry::Surface& surface, PlanVerdict& verdict,
-                               landmarks::Proposal& proposal) {
+                               const std::shared_ptr<const geometry::Surface>& surface, PlanVerdict& verdict,
+                               plan_review::ProposedBone& by_shape) {
   const Progress progress("Making the default plan", 0);
   landmarks::Landmarks& marks = knee.landmarks[kind];
   landmarks::LandmarkStates& states = knee.landmark_states[kind];
   const bones::Bone& bone = knee.bones.at(kind);
   if (!landmarks::is_grid_confirmed(kind, marks, states)) {
-    proposal = landmarks::propose(bone.mesh, kind, {.side = knee.side});
-    if (!landmarks::has_grid(bone.mesh, kind, knee.side, marks)) take_proposal(proposal, marks, states);
+    by_shape.surface = surface;
+    by_shape.proposal = landmarks::propose(bone.mesh, kind, {.side = knee.side, .surface = surface.get()});
+    if (!landmarks::has_grid(bone.mesh, kind, knee.side, marks))
+      take_proposal(by_shape.proposal, marks, states);
   }
-  default_plan::BoneInput input{.bone = &bone, .surface = &surface, .landmarks = marks, .states = states};
-  if (proposal.outcome != landmarks::Proposal::Outcome::NotRun) input.proposal = &proposal;
+  default_plan::BoneInput input{
+      .bone = &bone, .surface = surface.get(), .landmarks = marks, .states = states};
+  if (by_shape.surface) input.proposal = &by_shape.proposal;
   const norms::Bundle bundle = norms::bundle_from_text(arguments.type);
   input.beside = default_plan::beside({kind, bundle}, knee.plan.tunnels);
   const auto planned =
@@ -317,8 +320,8 @@ void add_plan_command(CLI::App& app, Context& context) {
     // Before anything is written: a file that cannot be read leaves the plan as it was.
     cases::BoneDoubts doubts = cases::load_bone_doubts(arguments->case_folder);
     PlanVerdict verdict;
-    landmarks::Proposal proposal;    // of the bone that a default plan was made of
-    std::vector<std::string> notes;  // said once it is so on the disk
+    plan_review::ProposedBone proposed;  // of the bone that a default plan was made of
+    std::vector<std::string> notes;      // said once it is so on the disk
     const cases::Plan before = knee.plan;
     if (!arguments->markups.empty()) {
       take_markups(*arguments, knee, notes);
@@ -334,9 +337,9 @@ void add_plan_command(CLI::App& app, Context& context) {
       if (bone_of_case == knee.bones.end()) {
         throw InvalidInput(arguments->case_folder, "case.json", "holds no " + arguments->bone);
       }
-      const geometry::Surface surface(bone_of_case->second.mesh);
-      put(arguments->by_default ? default_tunnel(*arguments, knee, kind, surface, verdict, proposal)
-                                : planned_tunnel(*arguments, knee, surface),
+      const auto surface = std::make_shared<const geometry::Surface>(bone_of_case->second.mesh);
+      put(arguments->by_default ? default_tunnel(*arguments, knee, kind, surface, verdict, proposed)
+                                : planned_tunnel(*arguments, knee, *surface),
           bones::mesh_sha256(bone_of_case->second.mesh), knee, notes);
       arguments->names_type = true;  // what was placed is shown
     }
@@ -352,15 +355,14 @@ void add_plan_command(CLI::App& app, Context& context) {
     // What the case lacks is proposed, as the window and the report have it, and not kept.
     // Seconds each: only of bones that are shown or lack a grid, and not again of the one just proposed.
     cases::Case shown = knee;
-    const bool is_proposed = proposal.outcome != landmarks::Proposal::Outcome::NotRun;
+    const bool is_proposed = proposed.surface != nullptr;
     std::erase_if(shown.plan.tunnels, [&](const auto& one) {
       return !is_asked_for(*arguments, one.first.bone) ||
              (is_proposed && one.first.bone == key_of(*arguments).bone);
     });
     auto by_shape = plan_review::propose_landmarks(shown, plan_review::Proposing::Planned);
     shown.plan = knee.plan;
-    if (is_proposed)
-      by_shape.try_emplace(key_of(*arguments).bone, plan_review::ProposedBone{std::move(proposal), false});
+    if (is_proposed) by_shape.try_emplace(key_of(*arguments).bone, std::move(proposed));
     const plan_review::CaseReview review(shown, by_shape);
     if (arguments->by_default) verdict = judged(shown, review, key_of(*arguments), doubts, verdict);
     show(*arguments, context, shown, review, std::move(doubts), verdict);

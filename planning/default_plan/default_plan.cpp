@@ -320,7 +320,8 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
   Landmarks marks = input.landmarks;
   if (!landmarks::is_grid_confirmed(kind, input.landmarks, input.states)) {
     if (proposal == nullptr) {
-      made = landmarks::propose(input.bone->mesh, kind, {.side = side, .stop = options.stop});
+      made = landmarks::propose(input.bone->mesh, kind,
+                                {.side = side, .surface = input.surface, .stop = options.stop});
       proposal = &made;
     }
     // A grid that is there was proposed as its owner wished (Blumensaat's line has two ways), and is what is

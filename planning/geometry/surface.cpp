@@ -1,8 +1,5 @@
 #include "planning/geometry/surface.h"
 
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <Eigen/Geometry>
@@ -10,7 +7,6 @@
 #include <cmath>
 #include <string>
 #include <tuple>
-#include <utility>
 
 #include "planning/geometry/error.h"
 #include "planning/geometry/smooth_normals.h"
@@ -25,14 +21,14 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Triangle = Kernel::Triangle_3;
-using Primitive = CGAL::AABB_triangle_primitive<Kernel, std::vector<Triangle>::const_iterator>;
-using AabbTree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
 Point to_cgal(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 Eigen::Vector3d to_eigen(const Point& p) { return {p.x(), p.y(), p.z()}; }
 Kernel::Ray_3 ray_of(const Eigen::Vector3d& origin, const Eigen::Vector3d& unit) {
   return {to_cgal(origin), Kernel::Vector_3(unit.x(), unit.y(), unit.z())};
 }
+// Of the boxes; what a ray meets is decided by the exact predicates.
+constexpr double kRounding_mm = 1e-6;
 bool is_before(const RayHit& a, const RayHit& b) {
   return std::tie(a.distance_mm, a.triangle) < std::tie(b.distance_mm, b.triangle);
 }
@@ -40,28 +36,35 @@ bool is_before(const RayHit& a, const RayHit& b) {
 }  // namespace
 
 struct Surface::Tree {
-  std::vector<Triangle> triangles;
   std::vector<std::int32_t> mesh_triangle;  // index in the mesh given
   TriangleMesh merged;  // without degenerate triangles; points of the same place share an index
   std::optional<PseudoNormals> normals;  // of merged
   std::optional<TriangleTree> boxes;     // of merged
   std::vector<std::array<Eigen::Vector3d, 3>> smooth_normals;
   Bounds bounds;  // of merged
-  AabbTree aabb;
 
   void add_triangles(const TriangleMesh& mesh);
-  [[nodiscard]] std::pair<NearestOnTriangle, std::size_t> closest(const Eigen::Vector3d& query) const;
   [[nodiscard]] const Eigen::Vector3d& normal(std::size_t triangle,
                                               TrianglePart part = TrianglePart::Face) const {
     return normals->at(static_cast<std::int32_t>(triangle), part);
   }
-  [[nodiscard]] RayHit hit_at(const Point& where, std::size_t triangle, const Eigen::Vector3d& origin,
-                              const Eigen::Vector3d& unit) const {
-    const Eigen::Vector3d at = to_eigen(where);
-    return {{at, normal(triangle), mesh_triangle[triangle]}, std::max(0.0, (at - origin).dot(unit))};
+  // Where the ray crosses a triangle, by exact predicates. One that runs within the triangle's plane meets it
+  // in a segment: it neither enters nor leaves there.
+  [[nodiscard]] std::optional<RayHit> hit(std::int32_t triangle, const Kernel::Ray_3& ray,
+                                          const Eigen::Vector3d& origin, const Eigen::Vector3d& unit) const {
+    const auto t = static_cast<std::size_t>(triangle);
+    const auto at = [&](std::size_t k) {
+      return to_cgal(merged.vertices_mm[static_cast<std::size_t>(merged.triangles[t][k])]);
+    };
+    const auto met = CGAL::intersection(Triangle(at(0), at(1), at(2)), ray);
+    const Point* const point = met ? boost::get<Point>(&*met) : nullptr;
+    if (!point) return std::nullopt;
+    const Eigen::Vector3d where = to_eigen(*point);
+    return RayHit{{where, normal(t), mesh_triangle[t]}, std::max(0.0, (where - origin).dot(unit))};
   }
-  [[nodiscard]] std::size_t index_of(AabbTree::Primitive_id id) const {
-    return static_cast<std::size_t>(id - triangles.cbegin());
+  // No part of the surface lies further off.
+  [[nodiscard]] double furthest_mm(const Eigen::Vector3d& from) const {
+    return (bounds.center_mm() - from).norm() + bounds.size_mm().norm();
   }
 };
 
@@ -79,7 +82,6 @@ void Surface::Tree::add_triangles(const TriangleMesh& mesh) {
     if (points.empty() || points.back() != mesh.vertices_mm[i]) points.push_back(mesh.vertices_mm[i]);
     index[i] = static_cast<std::int32_t>(points.size()) - 1;
   }
-  triangles.reserve(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     std::array<std::int32_t, 3> c{};
     for (int i = 0; i < 3; ++i) {
@@ -94,58 +96,44 @@ void Surface::Tree::add_triangles(const TriangleMesh& mesh) {
     if (!(normal.norm() > 0)) continue;
     Triangle triangle(to_cgal(points[c[0]]), to_cgal(points[c[1]]), to_cgal(points[c[2]]));
     if (triangle.is_degenerate()) continue;
-    triangles.push_back(triangle);
     mesh_triangle.push_back(static_cast<std::int32_t>(t));
     merged.triangles.push_back(c);
   }
-  if (triangles.empty()) throw InvalidInput("mesh: holds no triangle with an area");
+  if (merged.triangles.empty()) throw InvalidInput("mesh: holds no triangle with an area");
   normals.emplace(merged);
   boxes.emplace(merged);
   smooth_normals = smooth_corner_normals(merged);
   bounds = bounds_of(merged);
 }
 
-std::pair<NearestOnTriangle, std::size_t> Surface::Tree::closest(const Eigen::Vector3d& query) const {
-  const auto found = aabb.closest_point_and_primitive(to_cgal(query));
-  const std::size_t t = index_of(found.second);
-  const auto& corners = merged.triangles[t];
-  const std::vector<Eigen::Vector3d>& points = merged.vertices_mm;
-  return {nearest_on_triangle(query, {points[corners[0]], points[corners[1]], points[corners[2]]}), t};
-}
-
-Surface::Surface(const TriangleMesh& mesh) : tree_(std::make_unique<Tree>()) {
-  tree_->add_triangles(mesh);
-  tree_->aabb.insert(tree_->triangles.cbegin(), tree_->triangles.cend());
-  // Both are lazy otherwise; after this, queries only read.
-  tree_->aabb.build();
-  tree_->aabb.accelerate_distance_queries();
-}
+Surface::Surface(const TriangleMesh& mesh) : tree_(std::make_unique<Tree>()) { tree_->add_triangles(mesh); }
 
 Surface::~Surface() = default;
 Surface::Surface(Surface&&) noexcept = default;
 Surface& Surface::operator=(Surface&&) noexcept = default;
 
 SurfacePoint Surface::closest_point(const Eigen::Vector3d& query_mm) const {
-  const auto [nearest, t] = tree_->closest(query_mm);
+  const auto [nearest, triangle] = tree_->boxes->nearest(query_mm);
+  const auto t = static_cast<std::size_t>(triangle);
   return {nearest.point_mm, tree_->normal(t), tree_->mesh_triangle[t]};
 }
 
 double Surface::signed_distance_mm(const Eigen::Vector3d& query_mm) const {
-  const auto [nearest, t] = tree_->closest(query_mm);
+  const auto [nearest, triangle] = tree_->boxes->nearest(query_mm);
   const Eigen::Vector3d offset = query_mm - nearest.point_mm;
-  return std::copysign(offset.norm(), offset.dot(tree_->normal(t, nearest.part)));
+  return std::copysign(offset.norm(), offset.dot(tree_->normals->at(triangle, nearest.part)));
 }
 
 std::vector<RayHit> Surface::all_hits(const Eigen::Vector3d& origin_mm,
                                       const Eigen::Vector3d& direction) const {
   const Eigen::Vector3d unit = direction.normalized();
-  std::vector<AabbTree::Intersection_and_primitive_id<Kernel::Ray_3>::Type> found;
-  tree_->aabb.all_intersections(ray_of(origin_mm, unit), std::back_inserter(found));
+  const Kernel::Ray_3 ray = ray_of(origin_mm, unit);
+  thread_local std::vector<std::int32_t> near;  // kept for the next one
+  near.clear();
+  tree_->boxes->near_segment(origin_mm, origin_mm + tree_->furthest_mm(origin_mm) * unit, kRounding_mm, near);
   std::vector<RayHit> hits;
-  for (const auto& [where, id] : found) {
-    // A ray that runs within a triangle's plane meets it in a segment: it neither enters nor leaves there.
-    if (const Point* point = boost::get<Point>(&where))
-      hits.push_back(tree_->hit_at(*point, tree_->index_of(id), origin_mm, unit));
+  for (const std::int32_t t : near) {
+    if (const auto hit = tree_->hit(t, ray, origin_mm, unit)) hits.push_back(*hit);
   }
   std::sort(hits.begin(), hits.end(), is_before);
   // A ray through an edge or a vertex meets all the triangles there: it enters, or leaves, once.
@@ -175,11 +163,9 @@ void Surface::triangles_near(const Eigen::Vector3d& from_mm, const Eigen::Vector
 std::optional<RayHit> Surface::first_hit(const Eigen::Vector3d& origin_mm,
                                          const Eigen::Vector3d& direction) const {
   constexpr double kFirstReach_mm = 16;
-  // Of the boxes; what the ray meets is decided by the exact predicates.
-  constexpr double kRounding_mm = 1e-6;
   const Eigen::Vector3d unit = direction.normalized();
   const Kernel::Ray_3 ray = ray_of(origin_mm, unit);
-  const double furthest_mm = (tree_->bounds.center_mm() - origin_mm).norm() + tree_->bounds.size_mm().norm();
+  const double furthest_mm = tree_->furthest_mm(origin_mm);
   // What lies behind the first hit is not asked: the ray is followed in longer and longer stretches until one
   // holds a hit.
   // A drill's exit is looked for in every frame: kept for the next one.
@@ -190,12 +176,8 @@ std::optional<RayHit> Surface::first_hit(const Eigen::Vector3d& origin_mm,
     near.clear();
     tree_->boxes->near_segment(origin_mm + before_mm * unit, origin_mm + reach_mm * unit, kRounding_mm, near);
     for (const std::int32_t t : near) {
-      const auto triangle = static_cast<std::size_t>(t);
-      const auto met = CGAL::intersection(tree_->triangles[triangle], ray);
-      const Point* point = met ? boost::get<Point>(&*met) : nullptr;
-      if (!point) continue;
-      const RayHit hit = tree_->hit_at(*point, triangle, origin_mm, unit);
-      if (!first || is_before(hit, *first)) first = hit;
+      const auto hit = tree_->hit(t, ray, origin_mm, unit);
+      if (hit && (!first || is_before(*hit, *first))) first = hit;
     }
     if (first && first->distance_mm < reach_mm - kRounding_mm) return first;
   }

@@ -1,6 +1,6 @@
 // Exact queries against a triangle mesh: nearest point, rays, inside or outside; and the triangles near a
-// line. Built once (a CGAL AABB tree, and a tree of boxes), then read by any number of threads: whoever asks
-// often keeps it for as long as the bone.
+// line. Built once (triangle_tree.h, normals and their neighbourhoods), then read by any number of threads:
+// whoever asks often keeps it for as long as the bone.
 #pragma once
 
 #include <array>

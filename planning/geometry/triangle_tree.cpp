@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace arthronaut::geometry {
 
@@ -20,22 +21,40 @@ Bounds bounds_of(const TriangleMesh& mesh, std::int32_t triangle) {
   return {at(0).cwiseMin(at(1)).cwiseMin(at(2)), at(0).cwiseMax(at(1)).cwiseMax(at(2))};
 }
 
-// Whether a segment meets a box widened by a radius: slab by slab.
-bool meets(const Vector3d& from, const Vector3d& along, double radius, const Vector3d& min,
-           const Vector3d& max) {
+// A segment, made ready to be held against many boxes.
+struct Segment {
+  Vector3d from, inverse = Vector3d::Zero();  // one through its length along each axis
+  std::array<bool, 3> stands_still{};         // along this axis
+
+  Segment(const Vector3d& from_mm, const Vector3d& to_mm) : from(from_mm) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double along = to_mm[axis] - from_mm[axis];
+      stands_still[static_cast<std::size_t>(axis)] = std::abs(along) < 1e-12;
+      if (std::abs(along) >= 1e-12) inverse[axis] = 1 / along;
+    }
+  }
+};
+
+// Whether it meets a box widened by a radius: slab by slab.
+bool meets(const Segment& segment, double radius, const Vector3d& min, const Vector3d& max) {
   double enters = 0, leaves = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    const double low = min[axis] - radius - from[axis], high = max[axis] + radius - from[axis];
-    if (std::abs(along[axis]) < 1e-12) {
+    const double low = min[axis] - radius - segment.from[axis],
+                 high = max[axis] + radius - segment.from[axis];
+    if (segment.stands_still[static_cast<std::size_t>(axis)]) {
       if (low > 0 || high < 0) return false;
       continue;
     }
-    const double a = low / along[axis], b = high / along[axis];
+    const double a = low * segment.inverse[axis], b = high * segment.inverse[axis];
     enters = std::max(enters, std::min(a, b));
     leaves = std::min(leaves, std::max(a, b));
     if (enters > leaves) return false;
   }
   return true;
+}
+
+double squared_to_box_mm2(const Vector3d& query, const Vector3d& min, const Vector3d& max) {
+  return (min - query).cwiseMax(query - max).cwiseMax(0.0).squaredNorm();
 }
 
 }  // namespace
@@ -52,7 +71,13 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   nodes_.reserve(mesh.triangles.size() / 2);
   build(mesh, middles, 0, count);
   bounds_.reserve(mesh.triangles.size());
-  for (const std::int32_t t : triangles_) bounds_.push_back(bounds_of(mesh, t));
+  corners_.reserve(mesh.triangles.size());
+  for (const std::int32_t t : triangles_) {
+    bounds_.push_back(bounds_of(mesh, t));
+    const auto& c = mesh.triangles[static_cast<std::size_t>(t)];
+    const auto at = [&](std::size_t k) { return mesh.vertices_mm[static_cast<std::size_t>(c[k])]; };
+    corners_.push_back({at(0), at(1), at(2)});
+  }
 }
 
 std::int32_t TriangleTree::build(const TriangleMesh& mesh, const std::vector<Vector3d>& middles,
@@ -78,24 +103,60 @@ std::int32_t TriangleTree::build(const TriangleMesh& mesh, const std::vector<Vec
   return index;
 }
 
+TriangleTree::Nearest TriangleTree::nearest(const Vector3d& query_mm) const {
+  struct Open {
+    std::int32_t node;
+    double squared_mm2;  // to its box
+  };
+  const auto squared_to = [&](std::int32_t index) {
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    return squared_to_box_mm2(query_mm, node.min_mm, node.max_mm);
+  };
+  // Any to begin with: of a point that is not finite it stays that one.
+  Nearest best{nearest_on_triangle(query_mm, corners_.front()), triangles_.front()};
+  std::array<Open, 64> open;  // deeper than any tree that halves 2^31 triangles
+  std::size_t count = 0;
+  open[count++] = {0, squared_to(0)};
+  while (count > 0) {
+    const Open next = open[--count];
+    if (next.squared_mm2 > best.nearest.squared_mm2) continue;
+    const Node& node = nodes_[static_cast<std::size_t>(next.node)];
+    if (node.further > 0) {  // the nearer child first: it leaves less of the other one to be looked at
+      Open near{next.node + 1, squared_to(next.node + 1)}, far{node.further, squared_to(node.further)};
+      if (far.squared_mm2 < near.squared_mm2) std::swap(near, far);
+      if (far.squared_mm2 <= best.nearest.squared_mm2) open[count++] = far;
+      open[count++] = near;
+      continue;
+    }
+    for (auto i = static_cast<std::size_t>(node.begin); i < static_cast<std::size_t>(node.end); ++i) {
+      if (squared_to_box_mm2(query_mm, bounds_[i].min_mm, bounds_[i].max_mm) > best.nearest.squared_mm2)
+        continue;
+      const NearestOnTriangle found = nearest_on_triangle(query_mm, corners_[i]);
+      if (found.squared_mm2 < best.nearest.squared_mm2 ||
+          (found.squared_mm2 == best.nearest.squared_mm2 && triangles_[i] < best.triangle))
+        best = {found, triangles_[i]};
+    }
+  }
+  return best;
+}
+
 void TriangleTree::near_segment(const Vector3d& from_mm, const Vector3d& to_mm, double radius_mm,
                                 std::vector<std::int32_t>& found) const {
   if (nodes_.empty()) return;
-  const Vector3d along = to_mm - from_mm;
+  const Segment segment(from_mm, to_mm);
   std::array<std::int32_t, 64> open{};  // deeper than any tree that halves 2^31 triangles
   std::size_t count = 1;
   while (count > 0) {
     const std::int32_t index = open[--count];
     const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (!meets(from_mm, along, radius_mm, node.min_mm, node.max_mm)) continue;
+    if (!meets(segment, radius_mm, node.min_mm, node.max_mm)) continue;
     if (node.further > 0) {
       open[count++] = node.further;
       open[count++] = index + 1;
       continue;
     }
     for (auto i = static_cast<std::size_t>(node.begin); i < static_cast<std::size_t>(node.end); ++i) {
-      if (meets(from_mm, along, radius_mm, bounds_[i].min_mm, bounds_[i].max_mm))
-        found.push_back(triangles_[i]);
+      if (meets(segment, radius_mm, bounds_[i].min_mm, bounds_[i].max_mm)) found.push_back(triangles_[i]);
     }
   }
 }

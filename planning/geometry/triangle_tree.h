@@ -1,19 +1,28 @@
-// Which triangles of a mesh lie near a line: a tree of boxes, built once, then read by any number of threads.
-// Nearest points and rays with exact predicates are Surface's; this one collects.
+// Which triangle of a mesh is the nearest to a point, and which lie near a line: a tree of boxes, built once,
+// then read by any number of threads. Signs, normals and rays with exact predicates are Surface's.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "planning/geometry/triangle_distance.h"
 #include "planning/geometry/triangle_mesh.h"
 
 namespace arthronaut::geometry {
 
 class TriangleTree {
  public:
-  // The mesh must outlive it. Indices of triangles must be those of vertices; an empty mesh gives an empty
-  // tree.
+  // Indices of triangles must be those of vertices; an empty mesh gives an empty tree. Holds what it needs of
+  // the mesh.
   explicit TriangleTree(const TriangleMesh& mesh);
+
+  struct Nearest {
+    NearestOnTriangle nearest;
+    std::int32_t triangle = -1;
+  };
+  // Of several triangles that are equally near the first one. Precondition: the tree is not empty.
+  [[nodiscard]] Nearest nearest(const Eigen::Vector3d& query_mm) const;
 
   // Appends to `found` every triangle that comes within `radius_mm` of the segment, and some that come a
   // little less near (what is tested is the box of a triangle, widened); each once, in no order.
@@ -31,7 +40,8 @@ class TriangleTree {
 
   std::vector<Node> nodes_;
   std::vector<std::int32_t> triangles_;
-  std::vector<Bounds> bounds_;  // in the order of triangles_
+  std::vector<Bounds> bounds_;                           // in the order of triangles_
+  std::vector<std::array<Eigen::Vector3d, 3>> corners_;  // likewise: a leaf's lie side by side
 };
 
 }  // namespace arthronaut::geometry

@@ -220,11 +220,11 @@ void put_roof(const Shape& shape, const BlumensaatLine& line, double lateral, La
 
 }  // namespace
 
-Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions& options) {
+Proposal propose_femur(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
+                       const ProposalOptions& options) {
   Proposal proposal;
   proposal.outcome = Proposal::Outcome::NotThisBone;
   proposal.reason.clear();
-  const geometry::Surface surface(mesh);
   std::optional<Shape> shape;
   proposal.reason =
       "the surface has no joint's end that comes near to its own mirror image; is it cut off through the "

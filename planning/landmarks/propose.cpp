@@ -41,8 +41,11 @@ Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone, const
     nothing.reason = "the surface is empty";
     return nothing;
   }
-  Proposal proposal =
-      bone == bones::BoneKind::Femur ? propose_femur(mesh, options) : propose_tibia(mesh, options);
+  std::optional<geometry::Surface> own_surface;
+  const geometry::Surface& surface =
+      options.surface != nullptr ? *options.surface : own_surface.emplace(mesh);
+  Proposal proposal = bone == bones::BoneKind::Femur ? propose_femur(mesh, surface, options)
+                                                     : propose_tibia(mesh, surface, options);
   if (options.stop.stop_requested()) {  // what the steps have by then is worth nothing
     proposal = {};
     proposal.outcome = Proposal::Outcome::Stopped;

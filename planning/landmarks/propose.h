@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "planning/bones/bone.h"
+#include "planning/geometry/surface.h"
 #include "planning/geometry/triangle_mesh.h"
 #include "planning/landmarks/anatomical_axes.h"
 #include "planning/landmarks/landmarks.h"
@@ -43,6 +44,8 @@ struct ProposalOptions {
   // followed and a doubt is raised.
   std::optional<bones::Side> side;
   RoofConvention roof = RoofConvention::Ends;
+  // Of the mesh, where there is one already; else it is made: a fourth of the work.
+  const geometry::Surface* surface = nullptr;
   // Asked every few hundredths of a second; then the outcome is Stopped.
   std::stop_token stop = {};
 };

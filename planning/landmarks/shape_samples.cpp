@@ -56,10 +56,16 @@ std::optional<Vector3d> furthest(const std::vector<Vector3d>& points_mm, const V
   std::vector<double> heights;
   heights.reserve(points_mm.size());
   for (const Vector3d& p : points_mm) heights.push_back(p.dot(direction));
-  std::vector<double> top = heights;
-  const auto last = top.begin() + static_cast<std::ptrdiff_t>(furthest_count) - 1;
-  std::nth_element(top.begin(), last, top.end(), std::greater<>());
-  const double reach = std::accumulate(top.begin(), last + 1, 0.0) / static_cast<double>(furthest_count);
+  // A heap with the least of the furthest on top: hardly any other gets past it.
+  std::vector<double> top(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(furthest_count));
+  std::ranges::make_heap(top, std::greater<>());
+  for (std::size_t i = furthest_count; i < heights.size(); ++i) {
+    if (!(heights[i] > top.front())) continue;
+    std::ranges::pop_heap(top, std::greater<>());
+    top.back() = heights[i];
+    std::ranges::push_heap(top, std::greater<>());
+  }
+  const double reach = std::accumulate(top.begin(), top.end(), 0.0) / static_cast<double>(furthest_count);
   Vector3d sum = Vector3d::Zero();
   double weights = 0;
   for (std::size_t i = 0; i < points_mm.size(); ++i) {

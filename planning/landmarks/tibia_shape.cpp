@@ -198,11 +198,11 @@ std::optional<Vector3d> tuberosity_of(const Shape& shape) {
 
 }  // namespace
 
-Proposal propose_tibia(const geometry::TriangleMesh& mesh, const ProposalOptions& options) {
+Proposal propose_tibia(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
+                       const ProposalOptions& options) {
   Proposal proposal;
   proposal.outcome = Proposal::Outcome::NotThisBone;
   proposal.reason.clear();
-  const geometry::Surface surface(mesh);
   std::optional<Shape> shape;
   proposal.reason = "the surface has no joint's end that comes near to its own mirror image";
   for (const RoughFrame& rough : rough_frames(mesh, surface, bones::BoneKind::Tibia, options.stop)) {

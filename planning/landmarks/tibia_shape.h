@@ -5,6 +5,7 @@
 
 namespace arthronaut::landmarks {
 
-[[nodiscard]] Proposal propose_tibia(const geometry::TriangleMesh& mesh, const ProposalOptions& options);
+[[nodiscard]] Proposal propose_tibia(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
+                                     const ProposalOptions& options);
 
 }  // namespace arthronaut::landmarks

@@ -92,13 +92,13 @@ CaseReview::CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, 
     if (bone.mesh.empty()) continue;
     const auto known = knee.landmarks.find(kind);
     const auto marks = known == knee.landmarks.end() ? landmarks::Landmarks{} : known->second;
+    const auto proposed = by_shape.find(kind);
+    auto surface = proposed == by_shape.end() ? nullptr : proposed->second.surface;
+    if (!surface) surface = std::make_shared<const geometry::Surface>(bone.mesh);
     const ReviewedBone& reviewed =
-        bones_
-            .emplace(kind, review_bone(bone.mesh, kind, knee.side, marks,
-                                       std::make_shared<const geometry::Surface>(bone.mesh)))
+        bones_.emplace(kind, review_bone(bone.mesh, kind, knee.side, marks, std::move(surface)))
             .first->second;
     const auto states = knee.landmark_states.find(kind);
-    const auto proposed = by_shape.find(kind);
     landmark_checks_[kind] = check_landmarks(
         kind, marks, states == knee.landmark_states.end() ? landmarks::LandmarkStates{} : states->second,
         proposed == by_shape.end() ? nullptr : &proposed->second.proposal);

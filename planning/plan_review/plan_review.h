@@ -62,7 +62,8 @@ using MeasuredPlan = std::map<tunnels::TunnelKey, MeasuredTunnel>;
 class CaseReview {
  public:
   // Takes the landmarks as the case has them: what they don't give is not checked. Half a second a bone.
-  // by_shape: what propose_landmarks() gave; of a bone that is not in it no landmark is checked.
+  // by_shape: what propose_landmarks() gave of these bones; of a bone that is not in it no landmark is
+  // checked.
   explicit CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, ProposedBone>& by_shape = {});
 
   [[nodiscard]] bool has_bone(bones::BoneKind kind) const { return bones_.contains(kind); }

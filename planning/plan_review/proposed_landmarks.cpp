@@ -21,7 +21,7 @@ std::map<bones::BoneKind, ProposedBone> propose_landmarks(cases::Case& knee, Pro
   const auto done = [&bone_done] {
     if (bone_done) bone_done();
   };
-  std::map<bones::BoneKind, std::future<landmarks::Proposal>> coming;
+  std::map<bones::BoneKind, std::future<ProposedBone>> coming;
   for (const auto& [kind, bone] : knee.bones) {
     knee.landmarks[kind];  // there for every bone, if empty
     knee.landmark_states[kind];
@@ -36,15 +36,18 @@ std::map<bones::BoneKind, ProposedBone> propose_landmarks(cases::Case& knee, Pro
     }
     coming[kind] =
         std::async(std::launch::async, [&mesh = bone.mesh, kind = kind, side = knee.side, stop, done] {
-          landmarks::Proposal proposal = landmarks::propose(mesh, kind, {.side = side, .stop = stop});
+          ProposedBone made;
+          made.surface = std::make_shared<const geometry::Surface>(mesh);
+          made.proposal =
+              landmarks::propose(mesh, kind, {.side = side, .surface = made.surface.get(), .stop = stop});
           done();
-          return proposal;
+          return made;
         });
   }
   std::map<bones::BoneKind, ProposedBone> proposed;
-  for (auto& [kind, proposal] : coming) {
+  for (auto& [kind, made] : coming) {
     ProposedBone& bone = proposed[kind];
-    bone.proposal = proposal.get();
+    bone = made.get();
     if (has_grid(knee, kind)) continue;
     const landmarks::Landmarks before = knee.landmarks[kind];
     landmarks::take_proposal(bone.proposal, knee.landmarks[kind], knee.landmark_states[kind]);

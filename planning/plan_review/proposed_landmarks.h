@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <stop_token>
 
 #include "planning/cases/case.h"
@@ -19,6 +20,7 @@ enum class Proposing {
 };
 struct ProposedBone {
   landmarks::Proposal proposal;
+  std::shared_ptr<const geometry::Surface> surface;  // of the bone's mesh; null where nothing was proposed
   bool was_taken = false;
 };
 

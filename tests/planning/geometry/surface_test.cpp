@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <atomic>
+#include <limits>
 #include <random>
 #include <thread>
 
@@ -119,6 +121,30 @@ TEST(Surface, ClosestPointIsTheNearestOfAllTriangles) {
     EXPECT_NEAR(nearest.normal.dot(nearest.point_mm - a), 0, 1e-9);
     EXPECT_NEAR(nearest.normal.norm(), 1, 1e-12);
   }
+}
+
+// At a vertex and on an edge several triangles are equally near: whichever way the tree is built, the first
+// one is told.
+TEST(Surface, ClosestPointIsOfTheFirstOfSeveralTriangles) {
+  const TriangleMesh mesh = box({30, 20, 10});
+  const Surface surface(mesh);
+  for (std::size_t v = 0; v < mesh.vertices_mm.size(); ++v) {
+    const auto first = std::ranges::find_if(mesh.triangles, [&](const auto& t) {
+      return std::ranges::count(t, static_cast<std::int32_t>(v)) > 0;
+    });
+    const SurfacePoint nearest = surface.closest_point(1.5 * mesh.vertices_mm[v]);
+    EXPECT_EQ(nearest.point_mm, mesh.vertices_mm[v]);
+    EXPECT_EQ(nearest.triangle, first - mesh.triangles.begin());
+  }
+}
+
+// A point that is not finite has no nearest one; whoever asks must get an answer that is not out of bounds.
+TEST(Surface, ClosestPointToNowhereIsOfSomeTriangle) {
+  const Surface surface(box({30, 20, 10}));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const SurfacePoint nearest = surface.closest_point({nan, 0, 0});
+  EXPECT_GE(nearest.triangle, 0);
+  EXPECT_LT(nearest.triangle, 12);
 }
 
 // Entry and exit of a drill: in order of distance, with the normals against and along the ray.
