@@ -49,6 +49,7 @@ void BoneMaking::start(const cases::Case& knee, const std::filesystem::path& cas
   done_fraction_ = 0;
   result_ = {};
   folder_ = case_folder;
+  image_file_ = image.file;
   side_ = knee.side;
   images_ = painting.shared_volume();
   constexpr double kMemory_gib = 4;  // the labels and a CT of 512 x 512 x 800
@@ -102,11 +103,11 @@ void BoneMaking::save() {
   state_ = State::Saving;
   failure_.clear();
   saving_.start(
-      [import = result_, folder = folder_, side = side_]() mutable {
+      [import = result_, folder = folder_, side = side_, image_file = image_file_]() mutable {
         import.side = side;
         import.image.reset();  // the labels stay where they are painted
-        // Bones that are painted in images are of the images' study.
-        for (const auto& [kind, origin] : cases::load_studies(folder)) import.origin = origin;
+        // Bones that are painted in an image are of its study, whatever other images the case has.
+        import.origin = cases::study_of_image(folder, image_file);
         importing::add_to_case(folder, import, "", painting::bones_file(folder));
       },
       wake_);

@@ -64,6 +64,7 @@ class BoneMaking {
   importing::BoneImport result_;
   std::vector<importing::BoneQuality> qualities_;  // the painted volume is known from the start
   std::shared_ptr<const images::Volume> images_;   // that it was painted in
+  std::string image_file_;                         // likewise
   bones::Side side_ = bones::Side::Right;
   std::string failure_;
   worker::Awaited<void> saving_;

@@ -89,7 +89,7 @@ void refuse_planned_bones(const fs::path& folder, const cases::Case& target, con
 // known of its images: another bone's coordinates would go to the hospital in the frame of reference of this
 // one.
 void forget_replaced(const fs::path& folder, cases::Case& target, const BoneImport& import,
-                     cases::Studies& studies) {
+                     cases::Studies& studies, const cases::ImageStudies& of_images) {
   bool is_replaced = false;
   for (const ImportedBone& imported : import.bones) {
     const bones::BoneKind kind = imported.bone.kind;
@@ -101,7 +101,7 @@ void forget_replaced(const fs::path& folder, cases::Case& target, const BoneImpo
     files::remove_file(cases::cartilage_file(folder, kind));
   }
   if (!is_replaced) return;
-  cases::save_studies(folder, studies);
+  cases::save_studies(folder, studies, of_images);
   cases::save_case(folder, target);
 }
 
@@ -129,14 +129,16 @@ void put_bones(cases::Case& target, const BoneImport& import) {
   for (const ImportedBone& imported : import.bones) target.bones[imported.bone.kind] = imported.bone;
 }
 
-// Whether the case has the import's image already.
-bool image_there(const fs::path& folder, const cases::Case& target, const BoneImport& import) {
+// The case's image that is the import's already; null when it has none.
+const cases::CaseImage* image_there(const fs::path& folder, const cases::Case& target,
+                                    const BoneImport& import) {
   const cases::CaseImage& image = import.image->image;
-  return std::ranges::any_of(target.images, [&](const cases::CaseImage& other) {
+  const auto there = std::ranges::find_if(target.images, [&](const cases::CaseImage& other) {
     return other.size == image.size && other.spacing_mm == image.spacing_mm &&
            other.modality == image.modality && other.is_label_map == image.is_label_map &&
            holds_same(folder / other.file, import.image->volume);
   });
+  return there == target.images.end() ? nullptr : &*there;
 }
 
 // Beside the bones, which were made from it. Empty when there is none to store: the same volume once more
@@ -152,8 +154,18 @@ std::optional<cases::CaseImage> store_new_image(const fs::path& folder, const ca
   return image;
 }
 
-// Of the bones that were added, and of no other: one that is now a mesh is no longer of the images.
-void save_studies_of(const fs::path& folder, const BoneImport& import, cases::Studies studies) {
+// Of the bones that were added, and of no other: one that is now a mesh is no longer of the images. stored:
+// the import's image where it is new to the case.
+void save_studies_of(const fs::path& folder, const cases::Case& target, const BoneImport& import,
+                     const std::optional<cases::CaseImage>& stored, cases::Studies studies,
+                     cases::ImageStudies of_images) {
+  std::erase_if(of_images, [&](const auto& one) {
+    return std::ranges::none_of(target.images, [&](const auto& image) { return image.file == one.first; });
+  });
+  if (import.image && !import.origin.is_empty()) {
+    const cases::CaseImage* const image = stored ? &*stored : image_there(folder, target, import);
+    if (image != nullptr) of_images[image->file] = import.origin;
+  }
   for (const ImportedBone& imported : import.bones) {
     studies.erase(imported.bone.kind);
     if (!import.origin.is_empty()) studies[imported.bone.kind] = import.origin;
@@ -162,7 +174,7 @@ void save_studies_of(const fs::path& folder, const BoneImport& import, cases::St
   if (import.bones.empty() && !import.origin.is_empty())
     for (const bones::BoneKind kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
       studies.try_emplace(kind, import.origin);
-  cases::save_studies(folder, studies);
+  cases::save_studies(folder, studies, of_images);
 }
 
 // Whether femur and tibia will be of two frames of reference once the import's bones are in the case.
@@ -195,11 +207,12 @@ void refuse_another_patient(const fs::path& folder, const cases::Identity& of_im
 
 void save_new(const fs::path& folder, cases::Case& contents, const BoneImport& import) {
   files::make_whole_folder(folder, [&](const fs::path& unfinished) {
-    if (const auto image = store_new_image(unfinished, contents, import)) contents.images.push_back(*image);
+    const auto image = store_new_image(unfinished, contents, import);
+    if (image) contents.images.push_back(*image);
     cases::save_case(unfinished, contents);
     save_doubts_of(unfinished, import, contents.side, {});
     if (!import.identity.is_empty()) cases::save_identity(unfinished, import.identity);
-    save_studies_of(unfinished, import, {});
+    save_studies_of(unfinished, contents, import, image, {}, {});
   });
 }
 
@@ -208,10 +221,11 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
   // What cannot be read is found out before anything is forgotten or written.
   cases::BoneDoubts doubts = cases::load_bone_doubts(folder);
   cases::Studies studies = cases::load_studies(folder);
+  cases::ImageStudies of_images = cases::load_image_studies(folder);
   const bool is_other_knee = replaces_images(target, import, studies);
   const auto image = store_new_image(folder, target, import);
   try {
-    forget_replaced(folder, target, import, studies);
+    forget_replaced(folder, target, import, studies, of_images);
     if (is_other_knee && image) target.images.clear();
     // Before its bone: of a doubt too many, after a crash, nobody drills wrongly.
     save_doubts_of(folder, import, target.side, std::move(doubts));
@@ -227,7 +241,7 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
   if (!import.identity.is_empty())
     cases::save_identity(
         folder, import.identity.filled_from(cases::load_identity(folder).value_or(cases::Identity())));
-  save_studies_of(folder, import, std::move(studies));
+  save_studies_of(folder, target, import, image, std::move(studies), std::move(of_images));
 }
 
 // 3D Slicer's segmentations alone name their segments; before all of it is read, by the header.

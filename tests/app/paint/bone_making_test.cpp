@@ -8,6 +8,7 @@
 
 #include "planning/cases/study.h"
 #include "planning/images/volume_writer.h"
+#include "planning/import/case_import.h"
 #include "planning/painting/painting_file.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/phantom/phantom_knee.h"
@@ -82,6 +83,33 @@ TEST_F(BoneMakingTest, JudgesTheSurfaceAndPutsItIntoTheCaseWithItsStudy) {
   for (const Eigen::Vector3d& p : made.bones.at(BoneKind::Femur).mesh.vertices_mm)
     ASSERT_NEAR((p - Eigen::Vector3d(24, 24, 24)).norm(), kRadius_mm, 0.5);
   EXPECT_EQ(cases::load_studies(folder_.path()).at(BoneKind::Femur).series_uid, "1.2.3.4");
+}
+
+// A case of two series, an older and a newer one: a bone goes to the hospital beside the one that it was
+// painted in.
+TEST_F(BoneMakingTest, ABoneIsOfTheStudyOfTheImageThatItWasPaintedIn) {
+  const auto add_series = [&](const std::string& uid, float brightness) {
+    images::Volume volume = *painting_.shared_volume();
+    volume.values.front() = brightness;
+    importing::BoneImport import;
+    import.side = bones::Side::Left;
+    import.image = {knee_.images.front(), images::encoded(volume)};
+    import.origin.study_uid = "1.2.3";
+    import.origin.series_uid = uid;
+    importing::add_to_case(folder_.path(), import, "", "mr");
+  };
+  add_series("1.2.3.1", 1000);
+  add_series("1.2.3.2", 2000);
+  const cases::Case knee = cases::load_case(folder_.path());
+  ASSERT_EQ(knee.images.size(), 3U);
+  for (const std::size_t number : {1U, 2U}) {
+    making_.start(knee, folder_.path(), knee.images[number], painting_);
+    ASSERT_TRUE(reach(State::Judging)) << making_.failure();
+    making_.save();
+    ASSERT_TRUE(reach(State::Done)) << making_.failure();
+    EXPECT_EQ(cases::load_studies(folder_.path()).at(BoneKind::Femur).series_uid,
+              "1.2.3." + std::to_string(number));
+  }
 }
 
 TEST_F(BoneMakingTest, StoppedOrLeftItChangesNothing) {

@@ -40,6 +40,10 @@ TEST(Study, OfEachBoneComesBack) {
   const Studies different{{BoneKind::Femur, example("1.2.3.4")}, {BoneKind::Tibia, example("1.2.3.5")}};
   save_studies(folder.path(), different);
   EXPECT_EQ(load_studies(folder.path()), different);
+  const ImageStudies of_images{{"images/1.nrrd", example("1.2.3.4")}, {"images/2.nrrd", example("1.2.3.5")}};
+  save_studies(folder.path(), different, of_images);
+  EXPECT_EQ(load_studies(folder.path()), different);
+  EXPECT_EQ(load_image_studies(folder.path()), of_images);
   save_studies(folder.path(), {});
   EXPECT_TRUE(folder.names().empty());
 }
