@@ -12,6 +12,7 @@
 #include "planning/import/bone_labels.h"
 #include "planning/import/cut_check.h"
 #include "planning/import/failure_reason.h"
+#include "planning/import/hole_check.h"
 #include "planning/import/import_side.h"
 #include "planning/import/shape_check.h"
 #include "planning/segmentation/anatomy_check.h"
@@ -312,6 +313,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   check_shapes(result, result.side_by_fibula.has_value());
   // After the shapes, which are looked at where nothing speaks against a bone yet.
   check_side_of_images(result);
+  check_holes(result);
   if (is_ct && !options.kind && result.bones.size() == 1)
     result.bones.front().doubts.push_back(
         std::string("the volume shows no ") +
@@ -338,6 +340,7 @@ BoneImport import_bones(const std::filesystem::path& source, const BoneImportOpt
     import_mesh(source, options, result, tell);
     tell({ImportStage::LookingAtBones});
     check_shapes(result, false);
+    check_holes(result);
   } else if (is_volume_source(source)) {
     import_volume(source, options, result, tell);
   } else {
