@@ -59,9 +59,7 @@ void StartView::draw_browser(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
   widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
                         {"start.accept", "start.up", "start.home", "start.import_folder", "start.back"});
-  if (const auto found =
-          browser_.draw(ui, rest, "Open a case, or import images or meshes", "Import this folder"))
-    take(*found);
+  if (const auto found = browser_.draw(ui, rest, state_.browse_title, "Import this folder")) take(*found);
 }
 
 void StartView::draw_import(const widgets::Ui& ui, const widgets::Rect& area) {

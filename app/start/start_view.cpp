@@ -138,7 +138,8 @@ void StartView::move_selection(int by) {
   take_selected_volume();
 }
 
-void StartView::browse() {
+void StartView::browse(std::string title) {
+  state_.browse_title = std::move(title);
   state_.page = Page::Browse;
   browser_.enter();
 }

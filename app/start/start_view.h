@@ -36,8 +36,9 @@ class StartView {
   // A folder or file from outside: a case is opened, 3D Slicer's markups are for the case that is open
   // (take_markups()), anything else is looked into for the import.
   void take(const std::filesystem::path& path);
-  // The folders of this machine, in which one of these is to be chosen.
-  void browse();
+  // The folders of this machine, in which one of these is to be chosen; title: what is asked for, where it is
+  // not any of them.
+  void browse(std::string title = "Open a case, or import images or meshes");
   // Once what was chosen of markups, after which it wants to close.
   [[nodiscard]] std::optional<std::filesystem::path> take_markups() {
     return std::exchange(markups_, std::nullopt);
@@ -96,6 +97,7 @@ class StartView {
     std::size_t selected = 0;
     bool scrolls_to_selected = false;
     std::filesystem::path open_case;
+    std::string browse_title;
     std::vector<std::size_t> ticked;  // of the sources
     std::optional<bones::Side> side;
     bool side_was_said = false;             // by a person

@@ -164,7 +164,7 @@ void WorkstationWindow::add_markups_action() {
          leave_shown();
          shows_start_ = true;
          start_.enter(case_->folder());
-         start_.browse();
+         start_.browse("Take markups: choose the file of 3D Slicer's markups (.mrk.json)");
        }});
 }
 

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "planning/bones/mesh_file.h"
+#include "planning/cases/plan_file.h"
 #include "planning/dicom_out/dicom_object.h"
 #include "planning/dicom_out/object_bytes.h"
 #include "planning/dicom_out/uid.h"
@@ -62,9 +63,10 @@ void add_drilled_bones(const ExportContents& contents, const ObjectSetting& sett
       summary.doubts.push_back("the " + name + " is not there drilled: " + reason);
       continue;
     }
-    const std::string title = files::format(
-        "%s of a %s knee, with its planned tunnel%s of %s mm drilled out", capitalised(name).c_str(),
-        std::string(bones::to_text(setting.side)).c_str(), tunnels.size() == 1 ? "" : "s", widths.c_str());
+    const std::string title =
+        files::format("%s of a %s knee, with its planned tunnel%s of %s mm drilled out, plan %s",
+                      capitalised(name).c_str(), std::string(bones::to_text(setting.side)).c_str(),
+                      tunnels.size() == 1 ? "" : "s", widths.c_str(), setting.plan_hash.c_str());
     objects.push_back(model_object(belongings.at(kind), setting, title,
                                    bones::mesh_as_stl(name + ", drilled", drilled.mesh), true));
     objects.back().file_name = name + "_drilled.dcm";
@@ -159,9 +161,13 @@ ExportSummary export_dicom(const ExportContents& contents, const fs::path& folde
   if (contents.knee.bones.empty()) throw InvalidInput("dicom: the case holds no bone");
   const Belongings belongings = belongings_of(contents);
   const Belonging& of_case = belongings.begin()->second;
-  const ObjectSetting setting{.side = contents.knee.side, .moment_utc = contents.moment_utc};
+  const cases::Plan plan = cases::with_named_meshes(contents.knee);
+  const ObjectSetting setting{.side = contents.knee.side,
+                              .moment_utc = contents.moment_utc,
+                              .plan_hash = plan.tunnels.empty() ? "" : cases::short_plan_hash(plan)};
   ExportSummary summary;
   say_of_which_study(contents, belongings, summary);
+  if (!setting.plan_hash.empty()) summary.notes.push_back("Of the plan " + setting.plan_hash + ".");
   std::vector<Object> objects;
   add_bones(contents, setting, belongings, objects);
   add_drilled_bones(contents, setting, belongings, objects, summary);

@@ -38,6 +38,8 @@ struct Object {
 struct ObjectSetting {
   bones::Side side = bones::Side::Right;
   std::string moment_utc = {};  // of the contents, ISO 8601; empty: not known
+  // cases::short_plan_hash(), by which report, session and tables name the plan; empty: nothing is planned.
+  std::string plan_hash = {};
 
   // As the object says it: by the clock on the wall where it lies beside images, whose times are, too, as
   // DICOM has it where no offset from UTC is said. Empty where it is not told.

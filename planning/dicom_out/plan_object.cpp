@@ -39,7 +39,7 @@ Object plan_object(const Belonging& belonging, const ObjectSetting& setting,
   put(dataset, DCM_ContentDate, moment.date.empty() ? "19000101" : moment.date);
   put(dataset, DCM_ContentTime, moment.date.empty() ? "000000" : moment.time);
   put(dataset, DCM_ContentLabel, "TUNNEL_PLAN");
-  put(dataset, DCM_ContentDescription, "Planned tunnels of an ACL reconstruction");
+  put(dataset, DCM_ContentDescription, "Planned tunnels of an ACL reconstruction, plan " + setting.plan_hash);
   put(dataset, DCM_ContentCreatorName, "");
   long set_number = 0;
   for (const PlannedTunnel& planned : tunnels) {

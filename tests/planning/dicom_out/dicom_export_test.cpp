@@ -10,6 +10,7 @@
 
 #include "planning/bones/mesh_file.h"
 #include "planning/bones/mesh_hash.h"
+#include "planning/cases/plan_file.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "planning/images/volume_file.h"
@@ -220,6 +221,11 @@ TEST_F(DicomExport, ThePlanIsThereAsFiducials) {
   EXPECT_EQ(plan[DCM_SOPClassUID], UID_SpatialFiducialsStorage);
   EXPECT_EQ(plan[DCM_Modality], "FID");
   EXPECT_EQ(plan[DCM_ContentLabel], "TUNNEL_PLAN");
+  // By which report, session and tables name it; a long string has room for 64 characters.
+  const std::string hash = cases::short_plan_hash(cases::with_named_meshes(contents_.knee));
+  EXPECT_THAT(plan[DCM_ContentDescription], HasSubstr("plan " + hash));
+  EXPECT_LE(plan[DCM_ContentDescription].size(), 64U);
+  EXPECT_THAT(read("femur_drilled.dcm")[DCM_DocumentTitle], HasSubstr("plan " + hash));
   EXPECT_EQ(plan[DCM_Laterality], "R");
   for (const auto& [key, tunnel] : contents_.knee.plan.tunnels) {
     const BoneKind kind = key.bone;
