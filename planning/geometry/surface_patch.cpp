@@ -28,6 +28,7 @@ struct SeenOutline {
   std::vector<Vector2d> polygon;  // counter-clockwise
   Eigen::AlignedBox2d box;
   double behind_mm = 0, before_mm = 0;  // how far along the normal the surface is looked at
+  double radius_mm = 0;                 // about the middle
 
   [[nodiscard]] Vector2d seen(const Vector3d& p) const {
     return {(p - middle_mm).dot(right), (p - middle_mm).dot(up)};
@@ -48,6 +49,7 @@ SeenOutline seen_straight_on(const Surface& surface, std::vector<Vector3d> outli
   for (const Vector3d& p : outline_mm) {
     outline.polygon.push_back(outline.seen(p));
     outline.box.extend(outline.polygon.back());
+    outline.radius_mm = std::max(outline.radius_mm, outline.polygon.back().norm());
     const double height_mm = (p - outline.middle_mm).dot(outline.normal);
     outline.behind_mm = std::min(outline.behind_mm, height_mm);
     outline.before_mm = std::max(outline.before_mm, height_mm);
@@ -91,11 +93,16 @@ SurfacePatch patch_within(const Surface& surface, const std::vector<Vector3d>& o
   const SeenOutline outline = seen_straight_on(surface, outline_mm);
   constexpr double kLeastFacing = 0.0872;  // cos 85 deg: what is seen edge on has no certain area
   const TriangleMesh& mesh = surface.mesh();
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Vector3d& normal = surface.normal(static_cast<std::int32_t>(t));
+  std::vector<std::int32_t> near;
+  surface.triangles_near(outline.middle_mm + outline.behind_mm * outline.normal,
+                         outline.middle_mm + outline.before_mm * outline.normal, outline.radius_mm, near);
+  std::ranges::sort(near);  // the same sum however the tree was built
+  for (const std::int32_t of_mesh : near) {
+    const auto t = static_cast<std::size_t>(of_mesh);
+    const Vector3d& normal = surface.normal(of_mesh);
     const double facing = normal.dot(outline.normal);
     if (facing < kLeastFacing) continue;
-    std::array<Vector2d, 3> corners;  // most triangles end here: nothing is allocated for them
+    std::array<Vector2d, 3> corners;
     Eigen::AlignedBox2d box;
     double least_mm = 1e9, greatest_mm = -1e9;
     const Vector3d& first = mesh.vertices_mm[static_cast<std::size_t>(mesh.triangles[t][0])];

@@ -1,8 +1,12 @@
 // What happens on every move of a drag: the tunnel measured anew and every check of it and of the whole knee,
-// on a femur of 200,000 triangles.
+// or a landmark's bone looked at anew, on a femur of 200,000 triangles.
 #include <benchmark/benchmark.h>
 
+#include "planning/geometry/surface_patch.h"
+#include "planning/norms/footprint.h"
+#include "planning/norms/insertion_norms.h"
 #include "planning/phantom/phantom_knee.h"
+#include "planning/plan_review/plan_review.h"
 #include "planning/tunnels/entry_map.h"
 #include "planning/tunnels/knee_checks.h"
 
@@ -66,6 +70,28 @@ void measure_alone(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(tunnels::measure(dragged(step++), *knee().femur).wall_mm);
 }
 BENCHMARK(measure_alone)->Unit(benchmark::kMillisecond);
+
+// What every move of a landmark's drag costs beside the checks: the bone's axes, grid and footprints anew.
+void a_landmark_dragged(benchmark::State& state) {
+  const phantom::PhantomKnee& made = knee().knee;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(plan_review::review_bone(made.femur.mesh, bones::BoneKind::Femur, made.side,
+                                                      made.femur_landmarks, knee().femur)
+                                 .footprints.size());
+}
+BENCHMARK(a_landmark_dragged)->Unit(benchmark::kMillisecond);
+
+// Of that: what the outline of the expected footprint encloses of the surface.
+void patch_within_the_footprint(benchmark::State& state) {
+  const phantom::PhantomKnee& made = knee().knee;
+  const auto footprint = norms::expected_footprint(
+      made.femur.mesh, *knee().femur, bones::BoneKind::Femur, made.side, made.femur_landmarks,
+      norms::default_norm(bones::BoneKind::Femur, norms::Bundle::Whole));
+  double area_mm2 = 0;
+  for (auto _ : state) area_mm2 = geometry::patch_within(*knee().femur, footprint->outline_mm).area_mm2;
+  state.counters["mm2"] = area_mm2;
+}
+BENCHMARK(patch_within_the_footprint)->Unit(benchmark::kMillisecond);
 
 // Once a bone.
 void prepare_a_bone(benchmark::State& state) {
