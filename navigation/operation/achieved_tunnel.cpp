@@ -1,5 +1,6 @@
 #include "navigation/operation/achieved_tunnel.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "planning/files/achieved_shape.h"
@@ -26,7 +27,8 @@ tunnels::Tunnel tunnel_from(const files::JsonObject& node, const tunnels::Tunnel
   tunnel.entry_mm = node.vector3("entry_mm");
   tunnel.direction = node.vector3("direction");
   if (tunnel.direction.norm() < 1e-6) node.fail("direction", "must not be zero");
-  tunnel.direction.normalize();
+  // One that was written normalised comes back to the bit: what is read and written again is the same file.
+  if (std::abs(tunnel.direction.squaredNorm() - 1) > 1e-12) tunnel.direction.normalize();
   tunnel.diameter_mm = node.positive_number("diameter_mm");
   return tunnel;
 }

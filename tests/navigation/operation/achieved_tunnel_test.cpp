@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "navigation/operation/command.h"
 #include "navigation/operation/operation_state.h"
 #include "planning/files/atomic_file.h"
@@ -34,6 +36,20 @@ TEST(AchievedTunnel, ASessionHoldsBothBundles) {
   EXPECT_EQ(read_achieved_file(files[0]).measured.bundle, Bundle::Anteromedial);
   EXPECT_EQ(read_achieved_file(files[0]).depth_mm, 20.0);
   EXPECT_EQ(read_achieved_file(files[1]).planned.bundle, Bundle::Posterolateral);
+}
+
+// A unit vector in doubles has a length of 1 but for the last bit; made unit once more it is another one.
+TEST(AchievedTunnel, DirectionsComeBackToTheBit) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "achieved.json";
+  AchievedTunnel written = drilled(Bundle::Whole, 30);
+  for (int step = 0; step < 200; ++step) {
+    const double along = 0.031 * step, across = 0.017 * step + 0.4;
+    written.measured.direction =
+        Eigen::Vector3d(std::cos(along) * std::cos(across), std::sin(along), std::sin(across)).normalized();
+    write_achieved_file(file, written);
+    EXPECT_EQ(read_achieved_file(file).measured.direction, written.measured.direction) << step;
+  }
 }
 
 // Older files hold nought where nobody knew how deep it was.
