@@ -77,6 +77,8 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
     else if (is_identified(frame, picture, fit.converged ? misfit_of(fit) : 1, observation))
       return true;
   }
+  // What explains the picture is known too badly through such a smear.
+  if (is_beyond_edges_ && observation.state == MarkerState::Doubtful) observation.state = MarkerState::Blur;
   if (is_found) refused_[refused_count_++ % refused_.size()] = Refused{fit, picture.motion, observation};
   return false;
 }

@@ -71,6 +71,19 @@ TEST_F(DirectAlignment, FindsPoseAndMotionUnderBlur) {
   }
 }
 
+// Smeared over two cells, pixels beside the square show what lies beyond its white margin for a part of the
+// exposure: they say nothing, and what is left tells the pose as well as under a short smear.
+TEST_F(DirectAlignment, LeavesOutWhatLiesBeyondTheMarginUnderALongSmear) {
+  truth_ = facing_pose(1, -2, 30, -15, 25, 120);  // a cell of 9 px
+  for (const double direction : {0.0, 0.8, 1.6, 2.4}) {
+    const Vector6d velocity =
+        motion_of(camera_, truth_, {19 * std::cos(direction), 19 * std::sin(direction)});
+    const auto fit = refine(picture(velocity), start(0.5 * off_, 0.9 * velocity));
+    expect_near(fit, 1.0, 0.05);
+    EXPECT_TRUE(fit.explains_picture());
+  }
+}
+
 // A hand that reverses: the mean of the exposure lies off the middle, and the fit tells by the shape of the
 // smear. A model of even motion would be off by a 24th of the change, 0.8 px.
 TEST_F(DirectAlignment, TakesAccountOfMotionThatChanges) {
