@@ -44,10 +44,20 @@ std::string but_not(const tools::NominalParts& nominal) {
 }  // namespace
 
 camera::Calibration camera_of(bool is_simulated, const fs::path& case_folder) {
-  if (is_simulated && !has_simulated_camera(case_folder)) return simulator::standard_camera();
+  return camera_record_of(is_simulated, case_folder).calibration;
+}
+
+camera::CalibrationRecord camera_record_of(bool is_simulated, const fs::path& case_folder) {
+  if (is_simulated && !has_simulated_camera(case_folder)) {
+    camera::CalibrationRecord built_in;
+    built_in.calibration = simulator::standard_camera();
+    built_in.scope_name = kSimulatedScope;
+    built_in.provenance = {provenance::Origin::Simulated, ""};
+    return built_in;
+  }
   const fs::path file = cases::camera_file(case_folder);
   if (!fs::exists(file)) throw InvalidInput("the case has no camera.json: calibrate the camera first (F4)");
-  return camera::read_camera_file(file).calibration;
+  return camera::read_camera_file(file);
 }
 
 tools::ToolSet tools_of(bool is_simulated, const fs::path& case_folder) {

@@ -18,6 +18,9 @@ inline constexpr const char* kSimulatedScope = "Simulated arthroscope";
 // Pictures of a real scope are tracked with the case's camera.json; those of the simulated arthroscope with
 // its own camera, unless the case has adopted a calibration of it. Throws InvalidInput or IoError.
 [[nodiscard]] camera::Calibration camera_of(bool is_simulated, const std::filesystem::path& case_folder);
+// The same, with what else is known of it.
+[[nodiscard]] camera::CalibrationRecord camera_record_of(bool is_simulated,
+                                                         const std::filesystem::path& case_folder);
 // The case's tools.json, or the standard tools where it has none. What the simulated arthroscope shows are
 // the standard tools: a tools.json that stands beside a real scope's camera.json is not of them. Throws
 // InvalidInput or IoError.

@@ -3,6 +3,7 @@
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
 #include "app/command_line/tracking_report.h"
+#include "navigation/camera/calibration_words.h"
 #include "navigation/recording/cut_short.h"
 #include "navigation/recording/recording_lock.h"
 #include "navigation/recording/replay.h"
@@ -66,6 +67,8 @@ void replay(Context& context, const ReplayArguments& arguments) {
   }
   context.say(format("session %s: %ld of %ld frames replayed", session.header().id.c_str(),
                      summary.replayed_frames, summary.recorded_frames));
+  if (const auto& camera = session.pipeline_options().calibrated)
+    context.say("camera: " + camera::in_words(*camera));
   if (const std::string cut = recording::cut_short_in_words(session.was_finished(), session.events(),
                                                             recording::is_being_recorded(session.folder()));
       !cut.empty())

@@ -51,7 +51,9 @@ theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, const 
   theatre::TheatreSource source = source_of(model, bone, sources::SourceKind::Simulation);
   operation::SourceSetup& setup = source.setup;
   setup.title = part == SimulatedPart::Scratch ? "Simulated operation: probe" : "Simulated operation: drill";
-  setup.pipeline.calibration = open_case::camera_of(true, case_folder);
+  setup.pipeline.calibrated = std::make_shared<const camera::CalibrationRecord>(
+      open_case::camera_record_of(true, case_folder));
+  setup.pipeline.calibration = setup.pipeline.calibrated->calibration;
   setup.pipeline.tools = open_case::tools_of(true, case_folder);
   setup.calibration = open_case::calibration_in_words(true, case_folder, files::utc_now());
   setup.pipeline.refractive_index = camera::kSalineIndex;
@@ -92,6 +94,7 @@ theatre::TheatreSource real_setup(const open_case::PlanModel& model, bones::Bone
     throw InvalidInput("no tools are known in this case: make them known in Set up (F4)");
   const camera::CalibrationRecord camera = camera::read_camera_file(cases::camera_file(case_folder));
   setup.pipeline.calibration = camera.calibration;
+  setup.pipeline.calibrated = std::make_shared<const camera::CalibrationRecord>(camera);
   setup.camera_is_simulated = camera.provenance.origin == provenance::Origin::Simulated;
   setup.pipeline.tools = tools::read_tools_file(cases::tools_file(case_folder));
   setup.calibration = open_case::calibration_in_words(false, case_folder, files::utc_now());

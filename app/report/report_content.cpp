@@ -146,8 +146,8 @@ void add_postoperative(Content& content) {
   }
 }
 
-// Calibrating anew changes nothing of what was navigated before: of a session its own camera counts. Its
-// record holds the numbers alone; where the case still has the same ones, what it says of them is known.
+// Calibrating anew changes nothing of what was navigated before: of a session its own camera counts. A record
+// of before holds the numbers alone; where the case still has the same ones, what it says of them is known.
 void add_camera(Content& content) {
   std::optional<camera::CalibrationRecord> of_case;
   std::string problem;
@@ -164,11 +164,14 @@ void add_camera(Content& content) {
     content.camera_problem = std::move(problem);
     return;
   }
-  const camera::Calibration calibration = content.session->pipeline_options().calibration;
+  const pipeline::PipelineOptions options = content.session->pipeline_options();
+  const camera::Calibration& calibration = options.calibration;
   const bool is_same = of_case && registration::camera_identity(of_case->calibration) ==
                                       registration::camera_identity(calibration);
   content.case_has_another_camera = of_case && !is_same;
-  if (is_same)
+  if (const auto& own = options.calibrated; own && (!own->date_utc.empty() || !own->scope_name.empty()))
+    content.camera = *own;
+  else if (is_same)
     content.camera = std::move(of_case);
   else
     content.camera.emplace().calibration = calibration;

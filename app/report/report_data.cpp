@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/report/report_words.h"
 #include "app/report/session_rows.h"
 #include "app/report/versions.h"
 #include "navigation/camera/medium.h"
@@ -75,6 +76,15 @@ ordered_json if_told(const std::string& value) {
   return value.empty() ? ordered_json() : ordered_json(value);
 }
 
+ordered_json json_of(const camera::CalibrationRecord& camera) {
+  return {{"scope", if_told(camera.scope_name)},
+          {"head", if_told(camera.head_name)},
+          {"date_utc", if_told(camera.date_utc == kNotTold ? "" : camera.date_utc)},
+          {"medium", camera::medium_to_text(camera.calibration.refractive_index)},
+          {"rms_px", camera.rms_px >= 0 ? ordered_json(camera.rms_px) : ordered_json()},
+          {"origin", provenance::to_text(camera.provenance.origin)}};
+}
+
 ordered_json session_of(const Content& content) {
   if (!content.session) return nullptr;
   const recording::RecordedSession& session = *content.session;
@@ -96,6 +106,7 @@ ordered_json session_of(const Content& content) {
                        {"last_hash", content.last_hash}};
   if (content.check.outcome != recording::SessionCheck::Outcome::NoChain)
     node["is_as_recorded"] = content.check.is_unbroken();
+  node["camera"] = content.camera ? json_of(*content.camera) : ordered_json();
   node["registration"] = nullptr;
   if (content.registration) node["registration"] = json_of(*content.registration);
   if (!content.registration_problem.empty()) node["registration_problem"] = content.registration_problem;

@@ -2,7 +2,7 @@
 
 #include "app/report/report_words.h"
 #include "app/report/versions.h"
-#include "navigation/camera/camera_file.h"
+#include "navigation/camera/calibration_words.h"
 #include "navigation/camera/medium.h"
 #include "navigation/recording/session.h"
 #include "planning/files/utc_clock.h"
@@ -18,14 +18,6 @@ std::string ids_of(const Body& body) {
   for (const tools::BodyMarker& marker : tools::markers_of(body))
     ids += (ids.empty() ? "" : ", ") + std::to_string(marker.marker_id);
   return ids;
-}
-
-std::string scope_and_head(const camera::CalibrationRecord& record) {
-  if (record.scope_name.empty() || record.head_name.empty()) {
-    const std::string& known = record.scope_name.empty() ? record.head_name : record.scope_name;
-    return known.empty() ? "not recorded" : known;
-  }
-  return record.scope_name + ", " + record.head_name;
 }
 
 void camera_section(FlowingPages& pages, const Content& content) {
@@ -49,7 +41,7 @@ void camera_section(FlowingPages& pages, const Content& content) {
        {"Reprojection error", record.rms_px >= 0 ? number(record.rms_px, " px", 2) : "not recorded",
         "Calibrated in", camera::medium_to_text(c.refractive_index)},
        {"Date", record.date_utc.empty() ? "not recorded" : files::utc_in_words(record.date_utc),
-        "Scope, head", scope_and_head(record)}});
+        "Scope, head", camera::scope_in_words(record)}});
   if (content.case_has_another_camera)
     pages.sentence(
         "The case's camera.json is another one: these are the numbers that the session was "

@@ -7,6 +7,7 @@
 
 #include "app/widgets/list_rows.h"
 #include "app/widgets/source_banner.h"
+#include "navigation/camera/calibration_words.h"
 #include "navigation/worker/freed_memory.h"
 #include "planning/cases/case.h"
 #include "planning/cases/plan_file.h"
@@ -218,6 +219,7 @@ void ReviewView::draw_side(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_buttons(ui);
   if (open_) draw_end(ui);
   if (open_) draw_check(ui);
+  if (open_) draw_camera(ui);
   if (open_ && !has_frames())
     for (const std::string& problem : open_->review.problems)
       widgets::status_row(ui, widgets::Severity::Caution, "Not whole", problem);
@@ -254,6 +256,14 @@ void ReviewView::draw_check(const widgets::Ui& ui) const {
                                             : widgets::Severity::Quiet,
                       is_broken ? "Not as recorded" : "Hashes",
                       sessions_.within(recording::check_words(check)));
+}
+
+void ReviewView::draw_camera(const widgets::Ui& ui) const {
+  const auto& camera = open_->review.session->options.calibrated;
+  if (camera == nullptr) return;  // why stands among what is not whole
+  const std::string words = camera::in_words(*camera);
+  ui.log.note_state("camera", words);
+  widgets::status_row(ui, widgets::Severity::Quiet, "Camera", words);
 }
 
 bool ReviewView::is_report_of_now() const {

@@ -106,6 +106,7 @@ class ReviewView : public mode::Mode {
   void draw_buttons(const widgets::Ui& ui);
   void draw_report(const widgets::Ui& ui) const;
   void draw_check(const widgets::Ui& ui) const;
+  void draw_camera(const widgets::Ui& ui) const;
   void draw_note_field(const widgets::Ui& ui);
   void draw_origin(const widgets::Ui& ui, const widgets::Rect& area) const;
   void draw_picture(const widgets::Ui& ui, const widgets::Rect& area);

@@ -24,7 +24,9 @@ RecordedSession::RecordedSession(const std::filesystem::path& folder) : state_(s
   s.folder = folder;
   if (!std::filesystem::is_directory(folder)) throw IoError(folder, "no such session");
   s.header = read_session_header(folder, s.options);
-  s.options.calibration = camera::read_camera_file(folder / "camera.json").calibration;
+  s.options.calibrated =
+      std::make_shared<const camera::CalibrationRecord>(camera::read_camera_file(folder / "camera.json"));
+  s.options.calibration = s.options.calibrated->calibration;
   s.options.tools = tools::read_tools_file(folder / "tools.json");
 
   SessionDatabase database = SessionDatabase::open(database_file(folder));

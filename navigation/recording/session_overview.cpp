@@ -80,7 +80,9 @@ SessionOverview read_overview(const std::filesystem::path& session_folder) {
   overview.is_being_recorded = is_being_recorded(session_folder);
   overview.header = read_session_header(session_folder, overview.options);
   as_far_as_whole(overview, [&] {
-    overview.options.calibration = camera::read_camera_file(session_folder / "camera.json").calibration;
+    overview.options.calibrated = std::make_shared<const camera::CalibrationRecord>(
+        camera::read_camera_file(session_folder / "camera.json"));
+    overview.options.calibration = overview.options.calibrated->calibration;
   });
   as_far_as_whole(overview,
                   [&] { overview.options.tools = tools::read_tools_file(session_folder / "tools.json"); });

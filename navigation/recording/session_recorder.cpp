@@ -211,6 +211,7 @@ SessionRecorder::SessionRecorder(const std::filesystem::path& folder, const Sess
   SessionHashes& hashes = state_->hashes;
   hashes.write_file("session.json", [&] { write_session_header(folder, header, options); });
   camera::CalibrationRecord camera;
+  if (options.calibrated != nullptr) camera = *options.calibrated;
   camera.calibration = options.calibration;
   camera::write_camera_file(folder / "camera.json", camera);
   tools::write_tools_file(folder / "tools.json", options.tools);

@@ -104,6 +104,10 @@ theatre::TheatreSource exercise_source(const ExerciseSetup& setup, const simulat
   of.pipeline.guide_name = tools::standard_guide_name(setup.exercise.bone);
   of.pipeline.tools = tools::standard_tools();
   of.pipeline.calibration = simulator::with_fewer_pixels(simulator::standard_camera(), kPictureShare);
+  camera::CalibrationRecord built_in;
+  built_in.scope_name = camera::kSimulatedScope;
+  built_in.provenance = {provenance::Origin::Simulated, ""};
+  of.pipeline.calibrated = std::make_shared<const camera::CalibrationRecord>(std::move(built_in));
   of.pipeline.refractive_index = camera::kSalineIndex;
   const auto& landmarks =
       setup.exercise.bone == BoneKind::Femur ? setup.knee.femur_landmarks : setup.knee.tibia_landmarks;

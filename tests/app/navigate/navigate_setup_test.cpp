@@ -26,6 +26,7 @@ TEST(NavigateSetup, TheSimulationIsTrackedWithWhatSetUpAdopted) {
   const camera::Calibration built_in = simulator::standard_camera();
   EXPECT_EQ(setup().pipeline.calibration.focal_px, built_in.focal_px);
   EXPECT_EQ(setup().calibration, "camera built in; tools nominal");
+  EXPECT_EQ(setup().pipeline.calibrated->scope_name, open_case::kSimulatedScope);
 
   camera::CalibrationRecord record;
   record.calibration = built_in;
@@ -39,6 +40,7 @@ TEST(NavigateSetup, TheSimulationIsTrackedWithWhatSetUpAdopted) {
   tools::write_tools_file(cases::tools_file(folder), tools);
   const operation::SourceSetup adopted = setup();
   EXPECT_EQ(adopted.pipeline.calibration.focal_px, built_in.focal_px + 1);
+  EXPECT_EQ(adopted.pipeline.calibrated->date_utc, "2026-11-21T10:00:00Z");
   EXPECT_NEAR(adopted.pipeline.tools.find_tool("probe")->tip_mm->x(),
               tools::standard_tools().find_tool("probe")->tip_mm->x() + 0.1, 1e-9);
   EXPECT_TRUE(adopted.calibration.starts_with("camera simulated")) << adopted.calibration;
@@ -64,6 +66,7 @@ TEST(NavigateSetup, ATrackerThatWasTypedSeesTheToolsOfALiveSource) {
                         sources::DeviceTurns(), 1.33, tracker);
   };
   EXPECT_EQ(setup("").setup.pipeline.tools.tracker->address, "igtl://tower");
+  EXPECT_EQ(setup("").setup.pipeline.calibrated->scope_name, "Scope 30");
   const theatre::TheatreSource typed = setup("igtl://cart:18945");
   EXPECT_EQ(typed.setup.pipeline.tools.tracker->address, "igtl://cart:18945");
   EXPECT_EQ(typed.setup.pipeline.tools.tracker->sigma_mm, 0.2);

@@ -44,6 +44,27 @@ TEST_F(ReportedCamera, OfASessionIsTheOneThatItWasNavigatedWith) {
   EXPECT_THAT(told(), AllOf(HasSubstr("600.00 px"), Not(HasSubstr("NOT READABLE"))));
 }
 
+// The case was calibrated anew: of the session's own calibration nobody knew any more when and of which scope.
+TEST_F(ReportedCamera, OfASessionIsToldWithItsDateAndScope) {
+  (void)text_of_session("live", {});
+  const auto session = cases::session_folders(knee_folder()).back();
+  camera::CalibrationRecord own = camera::read_camera_file(session / "camera.json");
+  own.date_utc = "2026-01-07T08:00:00Z";
+  own.scope_name = "Scope 12";
+  own.rms_px = 0.33;
+  camera::write_camera_file(session / "camera.json", own);
+  calibrate(777);
+  EXPECT_THAT(told(), AllOf(HasSubstr("600.00 px"), HasSubstr("0.33 px"), HasSubstr("2026-01-07"),
+                            HasSubstr("Scope 12"), HasSubstr("The case's camera.json is another one")));
+  const auto camera_in = [&](const ReportOptions& options) {
+    write(pdf().replace_extension(".json"), options);
+    return nlohmann::json::parse(files::read_text(pdf().replace_extension(".json"))).at("session").at("camera");
+  };
+  EXPECT_EQ(camera_in({}), nlohmann::json::parse(R"({"scope": "Scope 12", "head": null,
+      "date_utc": "2026-01-07T08:00:00Z", "medium": "air", "rms_px": 0.33, "origin": "measured"})"));
+  EXPECT_EQ(camera_in({.is_deidentified = true}).at("date_utc"), nullptr);
+}
+
 TEST_F(ReportedCamera, WithoutASessionIsTheCasesOfNow) {
   calibrate(777);
   EXPECT_THAT(told(), AllOf(HasSubstr("The case's camera now"), HasSubstr("777.00 px")));

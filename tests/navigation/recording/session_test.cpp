@@ -293,6 +293,26 @@ TEST_F(Session, Hazard12AVideoThatCannotBeWrittenEndsAlone) {
   EXPECT_TRUE(check.is_unbroken()) << recording::check_words(check);
 }
 
+// It kept the numbers alone: which scope it was, and when it was calibrated, nobody knew afterwards.
+TEST_F(Session, KeepsWhichCalibrationItRanWith) {
+  camera::CalibrationRecord record;
+  record.rms_px = 0.3;
+  record.date_utc = "2026-02-03T10:00:00Z";
+  record.scope_name = "Scope 3";
+  record.provenance.origin = provenance::Origin::Simulated;
+  options_.calibrated = std::make_shared<const camera::CalibrationRecord>(record);
+  recording::SessionRecorder(folder_, test::session_header(), options_).finish();
+  for (const pipeline::PipelineOptions& read :
+       {recording::RecordedSession(folder_).pipeline_options(), recording::read_overview(folder_).options}) {
+    ASSERT_NE(read.calibrated, nullptr);
+    EXPECT_EQ(read.calibrated->rms_px, 0.3);
+    EXPECT_EQ(read.calibrated->date_utc, "2026-02-03T10:00:00Z");
+    EXPECT_EQ(read.calibrated->scope_name, "Scope 3");
+    EXPECT_EQ(read.calibrated->provenance.origin, provenance::Origin::Simulated);
+    EXPECT_EQ(read.calibration.focal_px, options_.calibration.focal_px) << "as it was navigated with";
+  }
+}
+
 // A session that goes on is not one that was cut off, for whoever looks at it.
 TEST_F(Session, SaysThatItIsBeingRecorded) {
   const auto overview = [&] { return recording::read_overview(folder_); };
