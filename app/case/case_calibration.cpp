@@ -51,7 +51,7 @@ camera::CalibrationRecord camera_record_of(bool is_simulated, const fs::path& ca
   if (is_simulated && !has_simulated_camera(case_folder)) {
     camera::CalibrationRecord built_in;
     built_in.calibration = simulator::standard_camera();
-    built_in.scope_name = kSimulatedScope;
+    built_in.scope_name = camera::kSimulatedScope;
     built_in.provenance = {provenance::Origin::Simulated, ""};
     return built_in;
   }

@@ -6,14 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "navigation/camera/camera_model.h"
+#include "navigation/camera/camera_file.h"
 #include "navigation/provenance/provenance.h"
 #include "navigation/tools/tool_set.h"
 
 namespace arthronaut::open_case {
-
-// The name that camera.json carries for the simulated arthroscope.
-inline constexpr const char* kSimulatedScope = "Simulated arthroscope";
 
 // Pictures of a real scope are tracked with the case's camera.json; those of the simulated arthroscope with
 // its own camera, unless the case has adopted a calibration of it. Throws InvalidInput or IoError.

@@ -135,7 +135,7 @@ class Demo {
     }
     calibration::CalibrationOptions options;
     options.square_mm = simulation_.square_mm;
-    options.scope_name = open_case::kSimulatedScope;
+    options.scope_name = camera::kSimulatedScope;
     calibration::CalibrationSummary summary = calibration::calibrate(pictures, options);
     if (!summary.is_usable()) {
       context_.say_unreliable("the calibration", summary.reasons);
@@ -145,7 +145,8 @@ class Demo {
     summary.record.provenance = {provenance::Origin::Simulated, summary.record.date_utc};
     camera::write_camera_file(cases::camera_file(options_.case_folder), summary.record);
     navigation_.source.pipeline.calibration = summary.record.calibration;
-    navigation_.source.pipeline.calibrated = std::make_shared<const camera::CalibrationRecord>(summary.record);
+    navigation_.source.pipeline.calibrated =
+        std::make_shared<const camera::CalibrationRecord>(summary.record);
     const camera::Calibration& found = summary.record.calibration;
     context_.say(format(
         "          %zu stills, rms %.2f px; focal length %+.2f %%, principal point %.1f px from the truth",

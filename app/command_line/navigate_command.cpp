@@ -75,8 +75,8 @@ fs::path camera_file_of(const NavigateArguments& arguments) {
 pipeline::PipelineOptions pipeline_options(const NavigateArguments& arguments, const cases::Case& knee) {
   pipeline::PipelineOptions options;
   const fs::path folder = arguments.case_folder;
-  options.calibrated = std::make_shared<const camera::CalibrationRecord>(
-      camera::read_camera_file(camera_file_of(arguments)));
+  options.calibrated =
+      std::make_shared<const camera::CalibrationRecord>(camera::read_camera_file(camera_file_of(arguments)));
   options.calibration = options.calibrated->calibration;
   const fs::path tools_file = file_to_use(arguments.tools, cases::tools_file(folder), "--tools");
   options.tools = tools::read_tools_file(tools_file);

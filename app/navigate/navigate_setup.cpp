@@ -51,8 +51,8 @@ theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, const 
   theatre::TheatreSource source = source_of(model, bone, sources::SourceKind::Simulation);
   operation::SourceSetup& setup = source.setup;
   setup.title = part == SimulatedPart::Scratch ? "Simulated operation: probe" : "Simulated operation: drill";
-  setup.pipeline.calibrated = std::make_shared<const camera::CalibrationRecord>(
-      open_case::camera_record_of(true, case_folder));
+  setup.pipeline.calibrated =
+      std::make_shared<const camera::CalibrationRecord>(open_case::camera_record_of(true, case_folder));
   setup.pipeline.calibration = setup.pipeline.calibrated->calibration;
   setup.pipeline.tools = open_case::tools_of(true, case_folder);
   setup.calibration = open_case::calibration_in_words(true, case_folder, files::utc_now());

@@ -49,8 +49,8 @@ void CalibrateStation::read_adopted() {
 void CalibrateStation::start(const FeedSource& source) {
   stop();
   if (source.is_simulated)
-    form_.scope_name = open_case::kSimulatedScope;
-  else if (form_.scope_name == open_case::kSimulatedScope)
+    form_.scope_name = camera::kSimulatedScope;
+  else if (form_.scope_name == camera::kSimulatedScope)
     form_.scope_name.clear();
   kept_because_ = open_case::camera_is_kept(source.is_simulated, case_folder_);
   const bool by_itself = takes_by_itself_;

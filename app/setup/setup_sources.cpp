@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/case/case_calibration.h"
+#include "navigation/camera/camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "navigation/simulator/simulated_ruler.h"
 #include "navigation/sources/camera_modes.h"
@@ -65,7 +66,7 @@ std::unique_ptr<sources::FrameSource> open_simulation(Purpose purpose) {
 
 FeedSource simulated(Purpose purpose) {
   FeedSource source;
-  source.name = open_case::kSimulatedScope;
+  source.name = camera::kSimulatedScope;
   source.open = [purpose] { return open_simulation(purpose); };
   source.is_simulated = true;
   source.path = kSimulatorWord;

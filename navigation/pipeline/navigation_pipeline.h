@@ -35,8 +35,8 @@ struct PipelineOptions {
   std::string guide_name = "femoral guide";
   // In which offsets are said; empty: the scanner's. landmarks::anatomical_axes() makes them.
   std::optional<landmarks::AnatomicalAxes> axes = std::nullopt;
-  // What else is known of `calibration`, for the record: who was calibrated when, and how well. Its own numbers
-  // are not looked at. Null: nothing.
+  // What else is known of `calibration`, for the record: who was calibrated when, and how well. Its own
+  // numbers are not looked at. Null: nothing.
   std::shared_ptr<const camera::CalibrationRecord> calibrated = nullptr;
 };
 

@@ -1,6 +1,7 @@
 #include "navigation/recording/resumable.h"
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 #include <thread>
 #include <utility>
@@ -209,16 +210,20 @@ std::string why_over(const RecordedSession& newest, const std::string& mesh_sha2
 }
 
 // A program that was killed holds its locks until its memory is gone, a second on: that long it is waited
-// for.
-bool is_still_being_recorded(const std::filesystem::path& folder) {
-  constexpr int kTimes = 20;
-  constexpr auto kBetween = std::chrono::milliseconds(100);
-  for (int i = 0; i < kTimes; ++i) {
-    if (!is_being_recorded(folder)) return false;
-    std::this_thread::sleep_for(kBetween);
+// for, once for all sessions of a search.
+class Patience {
+ public:
+  bool is_still_being_recorded(const std::filesystem::path& folder) const {
+    while (is_being_recorded(folder)) {
+      if (std::chrono::steady_clock::now() >= until_) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
   }
-  return true;
-}
+
+ private:
+  std::chrono::steady_clock::time_point until_ = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+};
 
 }  // namespace
 
@@ -227,11 +232,13 @@ ResumeSearch find_resumable(const std::filesystem::path& case_folder, bones::Bon
   std::vector<std::filesystem::path> folders = cases::session_folders(case_folder);
   std::reverse(folders.begin(), folders.end());
   ResumeSearch search;
+  const Patience patience;
   for (const std::filesystem::path& folder : folders) {
     try {  // one broken session must not hide the others for good; that it was passed over is told
       pipeline::PipelineOptions options;
       if (read_session_header(folder, options).bone != bone) continue;
-      const bool goes_on = is_still_being_recorded(folder);  // before it is read: it may end meanwhile
+      const bool goes_on =
+          patience.is_still_being_recorded(folder);  // before it is read: it may end meanwhile
       const RecordedSession session(folder);
       if (is_exercise(session.header())) continue;
       if (session.frames().empty() && session.header().continues.empty()) continue;

@@ -55,7 +55,7 @@ TEST_F(CaseCalibration, StartsWithWhatIsBuiltIn) {
 
 // What was adopted of the simulated arthroscope is what its pictures are tracked with, and the words say so.
 TEST_F(CaseCalibration, TheSimulationUsesWhatItsSetUpAdopted) {
-  adopt_camera(kSimulatedScope, 601);
+  adopt_camera(std::string(camera::kSimulatedScope), 601);
   adopt_tools(77);
   EXPECT_EQ(camera_of(kSimulated, folder_).focal_px, 601);
   EXPECT_EQ(tools_of(kSimulated, folder_).find_tool("probe")->tip_mm->z(), 77);
@@ -112,7 +112,7 @@ TEST_F(CaseCalibration, Hazard26ASimulatedTipIsNotAdoptedIntoARealCase) {
 TEST_F(CaseCalibration, Hazard26LivePicturesAreNotMeasuredWithWhatIsSimulated) {
   EXPECT_TRUE(camera_is_not_for_live(folder_).empty());
   EXPECT_TRUE(tools_are_not_for_live(folder_).empty());
-  adopt_camera(kSimulatedScope, 601);
+  adopt_camera(std::string(camera::kSimulatedScope), 601);
   EXPECT_NE(camera_is_not_for_live(folder_).find("simulated"), std::string::npos);
   adopt_camera("Scope 30", 601);
   EXPECT_TRUE(camera_is_not_for_live(folder_).empty());

@@ -26,12 +26,12 @@ TEST(NavigateSetup, TheSimulationIsTrackedWithWhatSetUpAdopted) {
   const camera::Calibration built_in = simulator::standard_camera();
   EXPECT_EQ(setup().pipeline.calibration.focal_px, built_in.focal_px);
   EXPECT_EQ(setup().calibration, "camera built in; tools nominal");
-  EXPECT_EQ(setup().pipeline.calibrated->scope_name, open_case::kSimulatedScope);
+  EXPECT_EQ(setup().pipeline.calibrated->scope_name, camera::kSimulatedScope);
 
   camera::CalibrationRecord record;
   record.calibration = built_in;
   record.calibration.focal_px += 1;
-  record.scope_name = open_case::kSimulatedScope;
+  record.scope_name = camera::kSimulatedScope;
   record.date_utc = "2026-11-21T10:00:00Z";
   camera::write_camera_file(cases::camera_file(folder), record);
   tools::ToolSet tools = tools::standard_tools();

@@ -44,7 +44,8 @@ TEST_F(ReportedCamera, OfASessionIsTheOneThatItWasNavigatedWith) {
   EXPECT_THAT(told(), AllOf(HasSubstr("600.00 px"), Not(HasSubstr("NOT READABLE"))));
 }
 
-// The case was calibrated anew: of the session's own calibration nobody knew any more when and of which scope.
+// The case was calibrated anew: of the session's own calibration nobody knew any more when and of which
+// scope.
 TEST_F(ReportedCamera, OfASessionIsToldWithItsDateAndScope) {
   (void)text_of_session("live", {});
   const auto session = cases::session_folders(knee_folder()).back();
@@ -58,7 +59,9 @@ TEST_F(ReportedCamera, OfASessionIsToldWithItsDateAndScope) {
                             HasSubstr("Scope 12"), HasSubstr("The case's camera.json is another one")));
   const auto camera_in = [&](const ReportOptions& options) {
     write(pdf().replace_extension(".json"), options);
-    return nlohmann::json::parse(files::read_text(pdf().replace_extension(".json"))).at("session").at("camera");
+    return nlohmann::json::parse(files::read_text(pdf().replace_extension(".json")))
+        .at("session")
+        .at("camera");
   };
   EXPECT_EQ(camera_in({}), nlohmann::json::parse(R"({"scope": "Scope 12", "head": null,
       "date_utc": "2026-01-07T08:00:00Z", "medium": "air", "rms_px": 0.33, "origin": "measured"})"));

@@ -20,46 +20,11 @@
 #include "navigation/openigtlink/igtl_messages.h"
 #include "navigation/openigtlink/igtl_reader.h"
 #include "navigation/openigtlink/named_transforms.h"
-#include "navigation/openigtlink/ras_from_lps.h"
 #include "planning/geometry/error.h"
+#include "tests/navigation/openigtlink/served_state.h"
 
 namespace arthronaut::openigtlink {
 namespace {
-
-geometry::RigidTransform made_pose(double seed) {
-  const Eigen::Vector3d axis = Eigen::Vector3d(1, seed, -0.5).normalized();
-  return {Eigen::Quaterniond(Eigen::AngleAxisd(0.3 + 0.1 * seed, axis)), {10 * seed, -20, 35 + seed}};
-}
-
-// Probe and guide are seen, the drill is not; a registration stands.
-operation::OperationState made_state() {
-  operation::OperationState state;
-  auto source = std::make_shared<operation::SourceSetup>();
-  tools::Tool probe, guide, drill;
-  probe.name = "probe";
-  probe.marker_id = 2;
-  guide.name = "femoral guide";
-  guide.marker_id = 3;
-  drill.name = "drill";
-  drill.marker_id = 9;
-  probe.tip_mm = Eigen::Vector3d(0, -38, -6);
-  drill.kind = tools::ToolKind::Drill;
-  source->pipeline.tools.tools = {probe, guide, drill};
-  state.source = source;
-  state.has_source = true;
-  state.frame_count = 1;
-  state.frame.camera_from_world = {made_pose(1), 0, true};
-  state.frame.tools = {
-      {2, {made_pose(2), 0, true}}, {3, {made_pose(3), 0, true}}, {9, {made_pose(4), 0, false}}};
-  auto registered = std::make_shared<operation::RegistrationState>();
-  auto found = std::make_shared<registration::RegistrationSummary>();
-  found->marker_from_bone = made_pose(5);
-  registered->in_force.registration = found;
-  registered->in_force.standing = operation::Standing::Stands;
-  state.registration = registered;
-  state.frame.guidance.state = guidance::GuidanceState::GuideLost;
-  return state;
-}
 
 // STT_IMAGE, which the library does not have.
 class StartImages : public igtl::HeaderOnlyMessageBase {
@@ -157,86 +122,6 @@ void wait_for_clients(const IgtlServer& server, std::size_t count) {
   ASSERT_EQ(server.client_count(), count);
 }
 
-// A point of the bone goes the same way by Slicer's coordinates as by ours.
-TEST(RasFromLps, IsTheSameMotionInTheOtherAxes) {
-  const Eigen::Vector3d flip(-1, -1, 1), point(3, -7, 11);
-  const geometry::RigidTransform lps = made_pose(2), ras = ras_from_lps(lps);
-  const Eigen::Vector3d in_ras = ras * point.cwiseProduct(flip);
-  EXPECT_LT((in_ras - (lps * point).cwiseProduct(flip)).norm(), 1e-12);
-}
-
-TEST(NamedTransforms, HoldWhatIsValidAndNothingElse) {
-  operation::OperationState state = made_state();
-  std::map<std::string, geometry::RigidTransform> named;
-  for (const NamedTransform& t : named_transforms(state)) named[t.name] = t.target_from_source;
-  ASSERT_EQ(named.size(), 4U);
-  EXPECT_TRUE(named.contains("WorldFemur") && named.contains("Guide_World") && named.contains("Bone_World"));
-  const Eigen::Vector3d tip_in_world = made_pose(2) * Eigen::Vector3d(0, -38, -6);
-  EXPECT_LT(
-      (named.at("ProbeTip_World").translation_mm - tip_in_world.cwiseProduct(Eigen::Vector3d(-1, -1, 1)))
-          .norm(),
-      1e-12);
-  auto doubted = std::make_shared<operation::RegistrationState>(*state.registration);
-  doubted->in_force.standing = operation::Standing::Void;
-  state.registration = doubted;
-  state.frame.camera_from_world.is_valid = false;
-  for (const NamedTransform& t : named_transforms(state)) {
-    EXPECT_NE(t.name, "Bone_World");
-    EXPECT_NE(t.name, "WorldFemur");
-  }
-  // Guidance by the guide alone is OK, and says nothing of the probe: that one is not sent.
-  state = made_state();
-  state.frame.guidance.state = guidance::GuidanceState::Valid;
-  state.frame.tools[0].world_from_tool.is_valid = false;
-  EXPECT_TRUE(status_of(state).is_ok);
-  for (const NamedTransform& t : named_transforms(state)) EXPECT_NE(t.name, "ProbeTip_World");
-  state.has_source = false;
-  EXPECT_TRUE(named_transforms(state).empty());
-}
-
-// The femur's drill and the tibia's: who reads one of them never gets the other one's pose.
-TEST(NamedTransforms, TwoDrillsHaveANameEach) {
-  operation::OperationState state = made_state();
-  EXPECT_FALSE(has_second_drill(state));
-  auto source = std::make_shared<operation::SourceSetup>(*state.source);
-  source->pipeline.tools.tools.push_back(source->pipeline.tools.tools.back());
-  source->pipeline.tools.tools.back().name = "tibial drill";
-  source->pipeline.tools.tools.back().marker_id = 10;
-  state.source = source;
-  EXPECT_TRUE(has_second_drill(state));
-  state.frame.tools.push_back({10, {made_pose(6), 0, true}});
-  const auto drills = [&] {
-    std::map<std::string, double> x_mm;
-    for (const NamedTransform& t : named_transforms(state))
-      if (t.name.starts_with("Drill")) x_mm[t.name] = -t.target_from_source.translation_mm.x();
-    return x_mm;
-  };
-  using Drills = std::map<std::string, double>;
-  EXPECT_EQ(drills(), (Drills{{"Drill2_World", 60}})) << "the first one is not seen";
-  state.frame.tools[2].world_from_tool.is_valid = true;
-  EXPECT_EQ(drills(), (Drills{{"Drill_World", 40}, {"Drill2_World", 60}}));
-}
-
-// Which of two drills the depth is told of stands behind the reason; of one alone nothing is added.
-TEST(Status, Hazard7SaysWhichOfTwoDrillsTheDepthIsOf) {
-  operation::OperationState state = made_state();
-  state.frame.guidance.drill.emplace().marker_id = 9;
-  EXPECT_EQ(status_of(state).reason, "drill guide not seen");
-  auto source = std::make_shared<operation::SourceSetup>(*state.source);
-  source->pipeline.tools.tools.push_back(source->pipeline.tools.tools.back());
-  source->pipeline.tools.tools.back().name = "tibial drill";
-  source->pipeline.tools.tools.back().marker_id = 10;
-  state.source = source;
-  EXPECT_EQ(status_of(state).reason, "drill guide not seen, depth of drill (Drill_World)");
-  state.frame.guidance.drill->marker_id = 10;
-  EXPECT_EQ(status_of(state).reason, "drill guide not seen, depth of tibial drill (Drill2_World)");
-  state.frame.guidance.state = guidance::GuidanceState::Valid;
-  EXPECT_TRUE(status_of(state).is_ok);
-  EXPECT_EQ(status_of(state).reason, "OK, simulation, depth of tibial drill (Drill2_World)");
-  state.frame.guidance.drill.reset();
-  EXPECT_EQ(status_of(state).reason, "OK, simulation");
-}
-
 // Everything until "Arthronaut": "name" of a transform, "name: why" of a status.
 std::vector<std::string> next_state(Client& client) {
   std::vector<std::string> heard;
@@ -253,7 +138,7 @@ TEST(IgtlServer, SendsPosesAndStatusToEveryClient) {
   IgtlServer server(0);
   Client one(server.port()), two(server.port());
   wait_for_clients(server, 2);
-  const auto state = std::make_shared<const operation::OperationState>(made_state());
+  const auto state = std::make_shared<const operation::OperationState>(test::made_state());
   server.publish(state, 1'700'000'000.25);
   const auto named = named_transforms(*state);
   for (Client* client : {&one, &two}) {
@@ -282,7 +167,7 @@ TEST(IgtlServer, AClientThatStallsDelaysNobody) {
   IgtlServer server(0);
   Client lazy(server.port()), eager(server.port());
   wait_for_clients(server, 2);
-  const auto state = std::make_shared<const operation::OperationState>(made_state());
+  const auto state = std::make_shared<const operation::OperationState>(test::made_state());
   const std::size_t messages_each = named_transforms(*state).size() + 1;
   server.publish(state, 0);
   next_state(eager);               // with what there is none of
@@ -308,7 +193,7 @@ TEST(IgtlServer, SendsThePlanWhenItIsNew) {
   IgtlServer server(0);
   Client client(server.port());
   wait_for_clients(server, 1);
-  operation::OperationState state = made_state();
+  operation::OperationState state = test::made_state();
   state.plan.emplace();
   state.plan->tunnel.entry_mm = {10, 20, 30};
   state.plan->tunnel.direction = {0, 0, 2};
@@ -341,7 +226,7 @@ TEST(IgtlServer, SendsPicturesToWhoAsks) {
   IgtlServer server(0);
   Client asks(server.port()), does_not(server.port());
   wait_for_clients(server, 2);
-  const auto state = std::make_shared<const operation::OperationState>(made_state());
+  const auto state = std::make_shared<const operation::OperationState>(test::made_state());
   const auto frame = std::make_shared<camera::Frame>();
   frame->width = 4;
   frame->height = 2;
@@ -402,7 +287,7 @@ TEST(IgtlServer, Hazard49TakesBackWhatIsNotValidAnyMore) {
   IgtlServer server(0);
   Client client(server.port());
   wait_for_clients(server, 1);
-  operation::OperationState state = made_state();
+  operation::OperationState state = test::made_state();
   using Words = std::vector<std::string>;
   const auto shared = [&] { return std::make_shared<const operation::OperationState>(state); };
   const auto publish = [&] {
@@ -453,7 +338,7 @@ TEST(IgtlServer, Hazard49SaysInThePosesMessageThatItIsNone) {
   const std::string_view type = "GET_STATUS";
   std::copy(type.begin(), type.end(), ask.begin() + 2);
   ASSERT_EQ(client.socket->Send(ask.data(), ask.size()), 1);
-  operation::OperationState state = made_state();
+  operation::OperationState state = test::made_state();
   IgtlReader reader(told);
   const auto heard = [&](const std::string& what) {
     return std::find(told.words.begin(), told.words.end(), what) != told.words.end();
@@ -504,7 +389,7 @@ TEST(IgtlServer, AClientMayGoAtAnyTime) {
     Client client(server.port());
     wait_for_clients(server, 1);
   }
-  const auto state = std::make_shared<const operation::OperationState>(made_state());
+  const auto state = std::make_shared<const operation::OperationState>(test::made_state());
   for (int i = 0; i < 100; ++i) {
     server.publish(state, i);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
