@@ -43,9 +43,10 @@ void list_exercises(const Context& context) {
     for (const Level level : kLevels) {
       const Score* best = training::best_of(kept, exercise.id, level);
       context.say(format("    %-6s ", std::string(to_text(level)).c_str()) +
-                  (best != nullptr
-                       ? format("best %3.0f of 100, %s; ", best->points, best->when_utc.substr(0, 10).c_str())
-                       : std::string("not done yet; ")) +
+                  (best != nullptr ? format("best %3.0f of 100, %s%s; ", best->points,
+                                            best->when_utc.substr(0, 10).c_str(),
+                                            is_by_earlier_rule(*best) ? ", by an earlier rule" : "")
+                                   : std::string("not done yet; ")) +
                   training::words_of_faults(exercise, level));
     }
   }
@@ -58,9 +59,9 @@ void list_scores(const Context& context, const Arguments& arguments) {
     if (!arguments.exercise.empty() && score.exercise != arguments.exercise) continue;
     ++shown;
     const std::string points = score.is_done ? format("%3.0f", score.points) : "not done";
-    context.say(format("%s  %-12s %-6s %s  %s, %s", score.when_utc.c_str(), score.exercise.c_str(),
+    context.say(format("%s  %-12s %-6s %s  %s, %s%s", score.when_utc.c_str(), score.exercise.c_str(),
                        std::string(to_text(score.level)).c_str(), points.c_str(), score.trainee.c_str(),
-                       score.knee.c_str()));
+                       score.knee.c_str(), is_by_earlier_rule(score) ? ", by an earlier rule" : ""));
   }
   if (shown == 0) context.say("No score is kept. The window keeps those of your own hand; here --keep does.");
 }

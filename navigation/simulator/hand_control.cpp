@@ -111,7 +111,9 @@ void HandControl::move_tool(double dt_s) {
       state_.guide_direction =
           (turn_of_push(-state_.guide_direction, way_rad) * state_.guide_direction).normalized();
   }
-  state_.touches_bone = bone_.signed_distance_mm(point) <= kTouch_mm;
+  const double off_mm = bone_.signed_distance_mm(point);
+  state_.touches_bone = off_mm <= kTouch_mm;
+  state_.off_bone_mm = std::max(off_mm, 0.0);
 }
 
 void HandControl::drill(double share, double dt_s) {

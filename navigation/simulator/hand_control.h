@@ -82,6 +82,7 @@ struct HandState {
   Eigen::Vector3d guide_point_mm = Eigen::Vector3d::Zero(), guide_direction = Eigen::Vector3d::Zero();
   geometry::RigidTransform camera_from_board;  // where the calibration board is what is held (hand_board.h)
   bool touches_bone = false;                   // the tip, or the point, of what is held
+  double off_bone_mm = 0;                      // how far it is from the bone's surface; 0 before a step
   double drilled_depth_mm = 0;                 // beyond the guide's point
   double time_s = 0;                           // of all steps
 };

@@ -13,14 +13,22 @@ using simulator::Fault;
 using simulator::FaultKind;
 using Trigger = simulator::Fault::Trigger;
 
+// Who ignores an alarm, or drills while nothing guides, has failed at what the exercise teaches.
+constexpr double kMostAfterDanger = 40;
+
 // The limits follow what the operation itself asks: a touch is off from 1.5 mm on, a registration stands at
 // 2 mm and below, a tunnel is taken for well placed within 2 mm and 3 degrees (docs/thresholds.md).
 std::vector<Mark> drill_marks() {
-  return {{Measure::EntryOffset, 1.0, 4.0, 20},    {Measure::Angle, 1.5, 6.0, 15},
-          {Measure::DepthError, 1.0, 5.0, 10},     {Measure::TunnelError, 1.0, 3.0, 10},
-          {Measure::Verification, 0, 3, 10},       {Measure::WastedTouches, 0, 4, 5},
-          {Measure::DrawnInAir, 5, 40, 5},         {Measure::AlarmsIgnored, 0, 1, 5},
-          {Measure::ActedOnBadData, 0.2, 5.0, 10}, {Measure::Time, 180, 600, 10}};
+  return {{Measure::EntryOffset, 1.0, 4.0, 20},
+          {Measure::Angle, 1.5, 6.0, 15},
+          {Measure::DepthError, 1.0, 5.0, 10},
+          {Measure::TunnelError, 1.0, 3.0, 10},
+          {Measure::Verification, 0, 3, 10},
+          {Measure::WastedTouches, 0, 4, 5},
+          {Measure::DrawnInAir, 5, 40, 5},
+          {Measure::AlarmsIgnored, 0, 1, 5, kMostAfterDanger},
+          {Measure::ActedOnBadData, 0.2, 2.0, 10, kMostAfterDanger},
+          {Measure::Time, 180, 600, 10}};
 }
 
 std::vector<Exercise> make_exercises() {
@@ -71,14 +79,17 @@ std::vector<Exercise> make_exercises() {
                  .goal = Goal::Aim,
                  .bone = BoneKind::Femur,
                  .what = "The guide stands on the bone, on the planned entry and along the plan.",
-                 .steps = {"Bring the guide's point to the bone by the bullseye",
-                           "Tilt it until its axis lies on the plan's",
+                 .steps = {"Set the guide's point on the bone, where the bullseye has its middle",
+                           "Tilt the handle until the tail of the bullseye's dot is gone",
                            "Hold still on the plan, and say that you are done"},
-                 .marks = {{Measure::EntryOffset, 0.8, 4.0, 35},
-                           {Measure::Angle, 1.5, 8.0, 30},
-                           {Measure::ActedOnBadData, 0.2, 2.0, 10},
+                 // The drill bites within half a millimetre of the bone; 2 mm off it the point slides.
+                 .marks = {{Measure::EntryOffset, 0.8, 4.0, 30},
+                           {Measure::Angle, 1.5, 8.0, 25},
+                           {Measure::OffBone, 0.5, 2.0, 15},
+                           {Measure::ActedOnBadData, 0.2, 2.0, 10, kMostAfterDanger},
                            {Measure::OutOfView, 10, 50, 5},
-                           {Measure::Time, 30, 120, 20}}});
+                           {Measure::Time, 30, 120, 15}},
+                 .rule = 2});
   for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia})
     all.push_back(
         {.id = bone == BoneKind::Femur ? "drill-femur" : "drill-tibia",
@@ -91,7 +102,8 @@ std::vector<Exercise> make_exercises() {
                    "Take the guide, bring it onto the plan",
                    "Drill to the planned depth, and never while the numbers are gone",
                    "Say that the tunnel is drilled"},
-         .marks = drill_marks()});
+         .marks = drill_marks(),
+         .rule = 2});
   return all;
 }
 
@@ -139,6 +151,8 @@ std::string_view to_text(Measure measure) {
       return "alarms ignored";
     case Measure::ActedOnBadData:
       return "acted on bad data";
+    case Measure::OffBone:
+      return "guide off the bone";
   }
   return "";
 }
@@ -154,6 +168,7 @@ std::string_view unit_of(Measure measure) {
     case Measure::TunnelError:
     case Measure::TipError:
     case Measure::ActedOnBadData:
+    case Measure::OffBone:
       return "mm";
     case Measure::CameraError:
       return "px";

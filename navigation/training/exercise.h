@@ -42,6 +42,7 @@ enum class Measure {
   OutOfView,       // % of the time in which the marker of bone or tool was not seen
   AlarmsIgnored,   // alarms that were dismissed, or drilled through
   ActedOnBadData,  // mm drilled while the screen's numbers were gone or wrong
+  OffBone,         // mm, true: from the guide's point to the bone, at the end
 };
 [[nodiscard]] std::string_view to_text(Measure measure);  // "entry offset"
 [[nodiscard]] std::string_view unit_of(Measure measure);  // "mm"; empty for a count
@@ -51,6 +52,9 @@ struct Mark {
   Measure measure;
   double good, limit;
   double points;
+  // From `limit` on the whole score is no more than this, however good the rest was: what no surgeon may do
+  // is not made up for by a straight tunnel. Empty: it costs its own points alone.
+  std::optional<double> caps_at = std::nullopt;
 };
 
 struct Exercise {
@@ -61,6 +65,9 @@ struct Exercise {
   std::string_view what;  // one sentence: what is reached
   std::vector<std::string_view> steps;
   std::vector<Mark> marks;  // their points add up to 100
+  // Of its marks: goes up by one when they change. Scores by another rule are kept, and compared with none of
+  // this one.
+  int rule = 1;
 };
 
 // In the order of learning.

@@ -146,6 +146,7 @@ void Examiner::follow_guide(const operation::OperationState& state, const simula
       (guidance::crossing_of(hand.guide_point_mm, hand.guide_direction, plan_) - plan_.entry_mm).norm();
   facts_.angle_deg =
       geometry::deg_from_rad(geometry::angle_between_rad(hand.guide_direction, plan_.direction));
+  if (exercise_.goal == Goal::Aim) facts_.off_bone_mm = hand.off_bone_mm;
   if (exercise_.goal == Goal::Drill) facts_.depth_error_mm = hand.drilled_depth_mm - plan_length_mm_;
 }
 

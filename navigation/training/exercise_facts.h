@@ -19,6 +19,7 @@ struct ExerciseFacts {
   long frames = 0;
   std::optional<double> entry_offset_mm, angle_deg;  // true
   std::optional<double> depth_error_mm;              // signed: above 0 too deep
+  std::optional<double> off_bone_mm;                 // true, of the guide's point; not of a tunnel
   std::optional<double> tunnel_error_mm;             // of the registration that stood at the end
   std::optional<double> tip_error_mm;
   std::string tip_trouble;  // why the pivot found no tip

@@ -41,6 +41,7 @@ bool tells_how(Measure measure) {
     case Measure::OutOfView:
     case Measure::AlarmsIgnored:
     case Measure::ActedOnBadData:
+    case Measure::OffBone:
       return true;
     default:
       return false;
@@ -84,6 +85,8 @@ std::optional<double> value_of(Measure measure, const ExerciseFacts& facts) {
       return facts.alarms_ignored;
     case Measure::ActedOnBadData:
       return facts.bad_data_mm;
+    case Measure::OffBone:
+      return facts.off_bone_mm;
   }
   return std::nullopt;
 }
@@ -129,23 +132,31 @@ std::string what_was_found(Measure measure, double value, const ExerciseFacts& f
     case Measure::OutOfView:
       return "The tool's pose was unknown for " + said + " of the time";
     case Measure::AlarmsIgnored:
-      return format("Alarms: %d, ignored: %d", facts.alarms, facts.alarms_ignored);
+      if (facts.alarms == 0) return "No alarm came";
+      if (facts.alarms_ignored == 0) return format("Alarms: %d, and none was ignored", facts.alarms);
+      return format("Alarms: %d, of which you dismissed or drilled through: %d", facts.alarms,
+                    facts.alarms_ignored);
     case Measure::ActedOnBadData:
-      if (value <= 0) return "Nothing was done while the numbers were gone or wrong";
-      return said + " were done while the numbers were gone or wrong" +
+      if (value <= 0) return "The drill stood still whenever the numbers on the screen were gone or wrong";
+      return "You drilled " + said + " while the numbers on the screen were gone or wrong" +
              (facts.worst_bad_error_mm > 0 ? format(" (by up to %.1f mm)", facts.worst_bad_error_mm) : "");
+    case Measure::OffBone:
+      return value <= 0 ? "The guide's point stands on the bone"
+                        : "The guide's point ended " + said + " off the bone";
   }
   return "";
 }
 
-std::string never_came_to_that(Measure measure, const ExerciseFacts& facts) {
+std::string never_came_to_that(Measure measure, Goal goal, const ExerciseFacts& facts) {
   switch (measure) {
     case Measure::EntryOffset:
     case Measure::Angle:
     case Measure::DepthError:
-      return "No tunnel was drilled and no guide was held";
+      return goal == Goal::Aim ? "No guide was held" : "No tunnel was drilled";
+    case Measure::OffBone:
+      return "No guide was held";
     case Measure::TunnelError:
-      return "No registration stood at the end";
+      return "At the end there was no registration that the program would guide by";
     case Measure::TipError:
       return "No tip was found: " + facts.tip_trouble;
     case Measure::CameraError:
@@ -161,15 +172,21 @@ std::string never_came_to_that(Measure measure, const ExerciseFacts& facts) {
   }
 }
 
-std::string advice_for(Measure measure, const ExerciseFacts& facts) {
+std::string advice_for(Measure measure, Goal goal, const ExerciseFacts& facts) {
+  const bool drills = goal == Goal::Drill;
   switch (measure) {
     case Measure::Time:
       return "Work more fluently: the same steps, with fewer stops between them.";
     case Measure::EntryOffset:
+      if (drills && !facts.entry_offset_mm)
+        return "Drill the tunnel: set the guide's point on the bone, where the drill bites, and hold F.";
       return "Bring the bullseye's dot into its middle before you let the guide stand.";
     case Measure::Angle:
-      return "Tilt the handle until the ring closes, once the point stands on the bone.";
+      if (drills && !facts.angle_deg) return "";  // said once
+      return "Once the point stands on the bone, tilt the handle until the tail of the bullseye's dot is "
+             "gone.";
     case Measure::DepthError:
+      if (drills && !facts.depth_error_mm) return "";
       return facts.depth_error_mm.value_or(0) > 0
                  ? "Stop earlier: read the depth that is planned before you drill."
                  : "Drill on to the planned depth before you say that you are done.";
@@ -191,7 +208,8 @@ std::string advice_for(Measure measure, const ExerciseFacts& facts) {
     case Measure::WastedTouches:
       return "Touch after the registration stands, at a new place each time, the tip at rest.";
     case Measure::DrawnInAir:
-      return "Stop drawing before you lift the tip, or keep it on the bone between strokes.";
+      return "Keep the tip on the bone while you draw, as the line below the picture says, and stop drawing "
+             "before you lift it: strokes in the air find no bone.";
     case Measure::OutOfView:
       return "Hold the tool so that its marker faces the lens, or move the scope along.";
     case Measure::AlarmsIgnored:
@@ -200,6 +218,8 @@ std::string advice_for(Measure measure, const ExerciseFacts& facts) {
       return facts.worst_bad_error_mm > 0
                  ? "The numbers were there and wrong: touch the control point before you drill."
                  : "Let go of the drill whenever the numbers are gone: nothing guides then.";
+    case Measure::OffBone:
+      return "Push the guide forward until the line below the picture says that it stands on the bone.";
   }
   return "";
 }
@@ -211,7 +231,7 @@ void tell_of_aiming_blindly(ScorePart& part) {
       "Say that you are done while the numbers stand: without them nothing tells where the guide is.";
 }
 
-ScorePart part_of(const Mark& mark, const ExerciseFacts& facts) {
+ScorePart part_of(const Mark& mark, Goal goal, const ExerciseFacts& facts) {
   ScorePart part;
   part.measure = mark.measure;
   part.good = mark.good;
@@ -220,17 +240,21 @@ ScorePart part_of(const Mark& mark, const ExerciseFacts& facts) {
   part.value = value_of(mark.measure, facts);
   if (part.value && !std::isfinite(*part.value)) part.value.reset();
   if (!part.value) {
-    part.reason = never_came_to_that(mark.measure, facts) + ".";
+    part.reason = never_came_to_that(mark.measure, goal, facts) + ".";
   } else {
     const double share = std::clamp((mark.limit - *part.value) / (mark.limit - mark.good), 0.0, 1.0);
     part.points = mark.points * share;
-    part.reason = what_was_found(mark.measure, *part.value, facts) + "; up to " +
-                  number(mark.good, mark.measure) + " gives all points, from " +
-                  number(mark.limit, mark.measure) + " on none.";
+    part.reason = what_was_found(mark.measure, *part.value, facts);
+    if (share >= 1)
+      part.reason += ": all points.";
+    else
+      part.reason += "; up to " + number(mark.good, mark.measure) + " gives all points, from " +
+                     number(mark.limit, mark.measure) + " on none.";
+    if (share <= 0) part.caps_at = mark.caps_at;
   }
   // What never began is not to be done better, but to be done.
   if (part.points < part.most_points && (part.value || !tells_how(mark.measure)))
-    part.advice = advice_for(mark.measure, facts);
+    part.advice = advice_for(mark.measure, goal, facts);
   return part;
 }
 
@@ -249,7 +273,24 @@ void count_how_only_where_reached(Goal goal, const ExerciseFacts& facts, std::ve
   }
 }
 
+// What was drawn in the air is worth few points itself; where most of it was, it is why there is no bone
+// found, and is told before that.
+double cost_of(const ScorePart& part, const std::vector<ScorePart>& parts) {
+  double cost = part.most_points - part.points;
+  if (part.caps_at) cost += 100 - *part.caps_at;
+  if (part.measure != Measure::DrawnInAir || part.value.value_or(0) < part.limit) return cost;
+  for (const ScorePart& other : parts)
+    if (other.measure == Measure::TunnelError || other.measure == Measure::Verification)
+      cost += other.most_points - other.points;
+  return cost;
+}
+
 }  // namespace
+
+bool is_by_earlier_rule(const Score& score) {
+  const Exercise* const exercise = find_exercise(score.exercise);
+  return exercise != nullptr && score.rule != exercise->rule;
+}
 
 Score score_of(const Exercise& exercise, Level level, const ExerciseFacts& facts) {
   constexpr std::size_t kMostAdvice = 3;
@@ -257,20 +298,26 @@ Score score_of(const Exercise& exercise, Level level, const ExerciseFacts& facts
   score.exercise = exercise.id;
   score.level = level;
   score.is_done = facts.is_done;
-  for (const Mark& mark : exercise.marks) score.parts.push_back(part_of(mark, facts));
+  score.rule = exercise.rule;
+  for (const Mark& mark : exercise.marks) score.parts.push_back(part_of(mark, exercise.goal, facts));
   count_how_only_where_reached(exercise.goal, facts, score.parts);
   for (ScorePart& part : score.parts)
     if (exercise.goal == Goal::Aim && part.measure == Measure::ActedOnBadData && facts.bad_data_mm > 0)
       tell_of_aiming_blindly(part);
-  double sum = 0;
-  for (const ScorePart& part : score.parts) sum += part.points;
+  double sum = 0, most = 100;
+  for (ScorePart& part : score.parts) {
+    sum += part.points;
+    if (!part.caps_at) continue;
+    most = std::min(most, *part.caps_at);
+    part.reason += format(" This alone holds the whole score at %.0f of 100 or less.", *part.caps_at);
+  }
   // Whoever stops half-way has made no mistakes either.
-  score.points = facts.is_done ? std::round(sum) : 0;
+  score.points = facts.is_done ? std::round(std::min(sum, most)) : 0;
   std::vector<const ScorePart*> costly;
   for (const ScorePart& part : score.parts)
     if (!part.advice.empty()) costly.push_back(&part);
-  std::stable_sort(costly.begin(), costly.end(), [](const ScorePart* a, const ScorePart* b) {
-    return a->most_points - a->points > b->most_points - b->points;
+  std::stable_sort(costly.begin(), costly.end(), [&](const ScorePart* a, const ScorePart* b) {
+    return cost_of(*a, score.parts) > cost_of(*b, score.parts);
   });
   if (!facts.is_done)
     score.better.emplace_back("Go on to the end and say that you are done: half an exercise counts nothing.");

@@ -17,6 +17,7 @@ struct ScorePart {
   std::optional<double> value;  // in unit_of(measure); empty: it never came to that, which is worth nothing
   double good = 0, limit = 0;   // see Mark
   double points = 0, most_points = 0;
+  std::optional<double> caps_at;  // it holds the whole score at no more than this; see Mark
   std::string
       reason;  // "The entry is 1.3 mm off the plan; up to 1.0 mm gives all points, from 4.0 mm on none."
   std::string advice;  // what to do better; empty where all points were earned
@@ -29,11 +30,14 @@ struct Score {
   bool is_done = false;
   std::vector<ScorePart> parts;     // in the exercise's order
   std::vector<std::string> better;  // what to do better, what costs most first; three at most
+  int rule = 1;                     // see Exercise; of a score that names none it was the first
   // Where it comes from; filled in by whoever ran it.
   std::uint64_t seed = 0;
   std::string knee, when_utc, session, trainee;
 };
 
+// It was scored by other marks than those of now: it says nothing of how well the exercise is done by these.
+[[nodiscard]] bool is_by_earlier_rule(const Score& score);
 [[nodiscard]] Score score_of(const Exercise& exercise, Level level, const ExerciseFacts& facts);
 
 }  // namespace arthronaut::training

@@ -28,6 +28,7 @@ ordered_json json_of(const Score& score) {
   node["session"] = score.session;
   node["is_done"] = score.is_done;
   node["points"] = score.points;
+  node["rule"] = score.rule;
   node["parts"] = ordered_json::array();
   for (const ScorePart& part : score.parts) {
     ordered_json one;
@@ -38,6 +39,7 @@ ordered_json json_of(const Score& score) {
     one["limit"] = part.limit;
     one["points"] = part.points;
     one["most_points"] = part.most_points;
+    one["caps_at"] = part.caps_at ? ordered_json(*part.caps_at) : ordered_json(nullptr);
     one["reason"] = part.reason;
     one["advice"] = part.advice;
     node["parts"].push_back(std::move(one));
@@ -48,7 +50,7 @@ ordered_json json_of(const Score& score) {
 
 Measure measure_of(const files::JsonObject& node) {
   const std::string text = node.text("measure");
-  for (int i = 0; i <= static_cast<int>(Measure::ActedOnBadData); ++i)
+  for (int i = 0; i <= static_cast<int>(Measure::OffBone); ++i)
     if (to_text(static_cast<Measure>(i)) == text) return static_cast<Measure>(i);
   node.fail("measure", "\"" + text + "\" is nothing that a score measures");
 }
@@ -74,6 +76,7 @@ Score score_from(const files::JsonObject& node) {
   score.is_done = node.boolean("is_done");
   score.points = node.number("points");
   if (score.points < 0 || score.points > 100) node.fail("points", "must lie in 0 to 100");
+  if (node.has("rule")) score.rule = static_cast<int>(node.integer("rule"));
   for (const files::JsonObject& one : node.objects("parts")) {
     ScorePart part;
     part.measure = measure_of(one);
@@ -82,6 +85,7 @@ Score score_from(const files::JsonObject& node) {
     part.limit = one.number("limit");
     part.points = one.number("points");
     part.most_points = one.number("most_points");
+    if (one.has("caps_at")) part.caps_at = one.number("caps_at");
     part.reason = one.text("reason");
     part.advice = one.text("advice");
     score.parts.push_back(std::move(part));
@@ -141,8 +145,12 @@ const Score* best_of(const std::vector<Score>& scores, std::string_view exercise
   for (const Score& score : scores) {
     if (score.exercise != exercise || score.level != level || !score.is_done || score.trainee != kByHand)
       continue;
-    const bool is_better = best == nullptr || score.points > best->points ||
-                           (score.points == best->points && time_of(score) < time_of(*best));
+    const bool is_earlier = is_by_earlier_rule(score);
+    const bool same_rule = best == nullptr || is_by_earlier_rule(*best) == is_earlier;
+    const bool is_better =
+        best == nullptr || (!same_rule ? !is_earlier
+                                       : score.points > best->points || (score.points == best->points &&
+                                                                         time_of(score) < time_of(*best)));
     if (is_better) best = &score;
   }
   return best;

@@ -28,8 +28,8 @@ void add_to_training_file(const std::filesystem::path& file, const Score& score)
 // again.
 inline constexpr const char* kByHand = "by hand";
 
-// The most points of an exercise at a level that was done by hand; of equals the one that took less time.
-// Null: none.
+// The most points of an exercise at a level that was done by hand; of equals the one that took less time. By
+// the exercise's rule of now; where none is, by an earlier one, which is_by_earlier_rule() tells. Null: none.
 [[nodiscard]] const Score* best_of(const std::vector<Score>& scores, std::string_view exercise, Level level);
 
 }  // namespace arthronaut::training

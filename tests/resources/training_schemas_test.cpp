@@ -40,7 +40,8 @@ TEST_F(TrainingSchemas, DescribeScores) {
   training::write_score_file(folder_ / "score.json", score());
   const json written = read(folder_ / "score.json");
   EXPECT_EQ(test::undescribed(written, "score"), "");
-  for (const char* key : {"/points", "/parts/0/points", "/level", "/better", "/parts/0/value"}) {
+  for (const char* key :
+       {"/points", "/parts/0/points", "/level", "/better", "/parts/0/value", "/parts/0/caps_at", "/rule"}) {
     json broken = written;
     broken[json::json_pointer(key)] = "wild";
     EXPECT_NE(test::undescribed(broken, "score"), "") << key;

@@ -30,6 +30,8 @@ TEST(ExerciseRun, MeasuresWhatTheHandDid) {
   EXPECT_NEAR(*facts.entry_offset_mm, 0.4, 0.25);
   EXPECT_NEAR(*facts.angle_deg, 0.8, 0.45);
   EXPECT_EQ(facts.bad_data_mm, 0);
+  ASSERT_TRUE(facts.off_bone_mm);
+  EXPECT_LT(*facts.off_bone_mm, 0.5);
   EXPECT_LT(facts.unseen_s, 0.1 * facts.time_s);
   EXPECT_FALSE(facts.depth_error_mm.has_value());
 }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "planning/files/atomic_file.h"
@@ -23,6 +24,7 @@ Score made(const char* exercise, Level level, double offset_mm, double time_s = 
   facts.frames = 3000;
   facts.entry_offset_mm = offset_mm;
   facts.angle_deg = 1;
+  facts.alarms = facts.alarms_ignored = 1;
   Score score = score_of(*find_exercise(exercise), level, facts);
   score.seed = 7;
   score.when_utc = "2026-01-31T12:00:00Z";
@@ -51,8 +53,34 @@ TEST(TrainingFile, KeepsEveryPart) {
     EXPECT_EQ(read[1].parts[i].measure, drill.parts[i].measure);
     EXPECT_EQ(read[1].parts[i].value, drill.parts[i].value);
     EXPECT_EQ(read[1].parts[i].points, drill.parts[i].points);
+    EXPECT_EQ(read[1].parts[i].caps_at, drill.parts[i].caps_at);
     EXPECT_EQ(read[1].parts[i].reason, drill.parts[i].reason);
   }
+}
+
+// A list of before the rule was named is read: by the first rule, which the best of now is not compared with.
+TEST(TrainingFile, OldScoresAreReadAndToldApart) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.path() / "training.json";
+  add_to_training_file(file, made("drill-femur", Level::Easy, 0.5));
+  auto document = nlohmann::json::parse(files::read_text(file));
+  auto& old = document.at("scores").at(0);
+  old.erase("rule");
+  for (auto& part : old.at("parts")) part.erase("caps_at");
+  old["points"] = 100;
+  files::write_atomically(file, document.dump());
+  std::vector<Score> scores = read_training_file(file);
+  ASSERT_EQ(scores.size(), 1u);
+  EXPECT_TRUE(is_by_earlier_rule(scores[0]));
+  EXPECT_EQ(best_of(scores, "drill-femur", Level::Easy), scores.data()) << "there is no other";
+  add_to_training_file(file, made("drill-femur", Level::Easy, 3));
+  scores = read_training_file(file);
+  ASSERT_EQ(scores.size(), 2u);
+  EXPECT_EQ(scores[0].points, 100);
+  EXPECT_FALSE(is_by_earlier_rule(scores[1]));
+  EXPECT_EQ(best_of(scores, "drill-femur", Level::Easy), &scores[1]);
+  std::swap(scores[0], scores[1]);
+  EXPECT_EQ(best_of(scores, "drill-femur", Level::Easy), scores.data());
 }
 
 // A broken file is refused with its name and place, and adding to it leaves it as it is.

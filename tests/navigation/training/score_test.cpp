@@ -19,6 +19,7 @@ ExerciseFacts flawless() {
   facts.entry_offset_mm = 0.4;
   facts.angle_deg = 0.9;
   facts.depth_error_mm = -0.3;
+  facts.off_bone_mm = 0;
   facts.tunnel_error_mm = 0.5;
   facts.tip_error_mm = 0.05;
   facts.camera_error_px = 0.1;
@@ -110,6 +111,75 @@ TEST(Score, WhatNeverHappenedIsWorthNothing) {
   }
   facts.entry_offset_mm = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(part_of(score_of(drilling(), Level::Easy, facts), Measure::EntryOffset).points, 0);
+}
+
+// An alarm that was dismissed, and a tunnel that was drilled while nothing guides, are not made up for by the
+// rest: the whole score is held, and the part that holds it says so and is named first.
+TEST(Score, WhatNoSurgeonMayDoHoldsTheWholeScore) {
+  using Change = void (*)(ExerciseFacts&);
+  const std::vector<std::pair<Measure, Change>> dangers{
+      {Measure::AlarmsIgnored, [](ExerciseFacts& f) { f.alarms = f.alarms_ignored = 1; }},
+      {Measure::ActedOnBadData, [](ExerciseFacts& f) { f.bad_data_mm = 35; }}};
+  for (const auto& [measure, change] : dangers) {
+    ExerciseFacts facts = flawless();
+    facts.depth_error_mm = 9;  // 10 points, more than the danger's own
+    change(facts);
+    const Score score = score_of(drilling(), Level::Hard, facts);
+    EXPECT_EQ(score.points, 40) << to_text(measure);
+    const ScorePart& part = part_of(score, measure);
+    EXPECT_EQ(part.caps_at, 40);
+    EXPECT_NE(part.reason.find("holds the whole score at 40"), std::string::npos) << part.reason;
+    ASSERT_FALSE(score.better.empty());
+    EXPECT_EQ(score.better.front(), part.advice);
+  }
+  ExerciseFacts reaction = flawless();
+  reaction.bad_data_mm = 0.5;  // a hand needs a moment to let go
+  EXPECT_GT(score_of(drilling(), Level::Hard, reaction).points, 95);
+}
+
+// The first step of aiming is to stand on the bone: who holds the guide in the air before the right place has
+// not done it.
+TEST(Score, AimingStandsOnTheBone) {
+  ExerciseFacts facts = flawless();
+  facts.time_s = 20;
+  facts.unseen_s = 0.5;
+  facts.off_bone_mm = 6;
+  const Score score = score_of(*find_exercise("aim"), Level::Easy, facts);
+  EXPECT_EQ(score.points, 85);
+  EXPECT_EQ(part_of(score, Measure::OffBone).points, 0);
+  EXPECT_NE(part_of(score, Measure::OffBone).reason.find("6.0 mm off the bone"), std::string::npos);
+  ASSERT_EQ(score.better.size(), 1u);
+  EXPECT_NE(score.better.front().find("on the bone"), std::string::npos);
+}
+
+// Strokes in the air are why no bone is found: they are named before what is lost by it.
+TEST(Score, StrokesInTheAirAreNamedFirstWhereNoBoneIsFound) {
+  ExerciseFacts facts = flawless();
+  facts.drawn_in_air_mm = 0.81 * facts.drawn_mm;
+  facts.tunnel_error_mm.reset();
+  facts.verifying_touches_missing = 3;
+  facts.time_s = 400;
+  const Score score = score_of(*find_exercise("register"), Level::Easy, facts);
+  ASSERT_FALSE(score.better.empty());
+  EXPECT_EQ(score.better.front(), part_of(score, Measure::DrawnInAir).advice);
+  EXPECT_NE(score.better.front().find("in the air"), std::string::npos);
+}
+
+// No sentence leaves open who did what, nor names a limit where there is nothing to do better.
+TEST(Score, SaysWhatWasDoneInPlainWords) {
+  for (const Exercise& exercise : exercises())
+    for (const ScorePart& part : score_of(exercise, Level::Easy, flawless()).parts) {
+      if (part.points == part.most_points) {
+        EXPECT_EQ(part.reason.find("gives all points"), std::string::npos) << part.reason;
+      }
+      EXPECT_EQ(part.reason.find("were done"), std::string::npos) << part.reason;
+      EXPECT_EQ(part.advice.find("the ring"), std::string::npos) << part.advice;
+    }
+  ExerciseFacts none;
+  none.is_done = true;
+  const Score nothing = score_of(drilling(), Level::Easy, none);
+  EXPECT_EQ(part_of(nothing, Measure::EntryOffset).reason, "No tunnel was drilled.");
+  EXPECT_NE(part_of(nothing, Measure::EntryOffset).advice.find("Drill the tunnel"), std::string::npos);
 }
 
 // Half an exercise makes few mistakes: it counts nothing, and that is the first thing to do better.
