@@ -17,10 +17,11 @@ std::string caption_of(const NavigateScreen& screen, bool asks) {
   std::string bone = tunnels::name_of(screen.plan ? screen.plan->key() : screen.bone);
   bone[0] = screen.bone == bones::BoneKind::Femur ? 'F' : 'T';
   if (screen.display.guidance_is_valid) return bone + ": drill guide and plan";
-  if (asks) return bone + ". Green: touched. Orange: draw here";
+  if (asks) return bone + ". White: drawn. Orange: draw here";
   if (screen.layout == NavigateLayout::Guide) return bone + ": plan; the guide is not known now";
   const bool has_strokes = screen.live != nullptr && !screen.live->operation->registration->drawn->empty();
-  return bone + (has_strokes ? ": plan, and what was touched" : ": plan; what is touched will show here");
+  return bone + (has_strokes ? ": plan, and what was drawn. Green: on the bone"
+                             : ": plan; what is drawn will show here");
 }
 
 ShownScene shown_of(const NavigateScreen& screen) {

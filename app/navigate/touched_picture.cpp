@@ -17,11 +17,11 @@ struct Pen {
   bool operator==(const Pen&) const = default;
 };
 
-Pen pen_of(double residual_mm, bool is_excluded) {
+Pen pen_of(double residual_mm, bool is_excluded, bool is_sure) {
   if (is_excluded) return {kExcludedColor, kThin_mm};
   switch (severity_of_residual(residual_mm)) {
     case widgets::Severity::Good:
-      return {scene::kCurveColor, kThin_mm};
+      return {is_sure ? scene::kCurveColor : kDrawnColor, kThin_mm};
     case widgets::Severity::Caution:
       return {kDoubtColor, kThick_mm};
     default:
@@ -34,11 +34,15 @@ Pen pen_of(double residual_mm, bool is_excluded) {
 void TouchedPicture::add_strokes(scene::SceneContent& content, const operation::RegistrationState& state,
                                  const geometry::Surface& surface, int selected_curve) {
   const registration::RegistrationSummary* pose = nullptr;
+  bool is_sure = false;
   const operation::RegistrationPtr& in_force = state.in_force.registration;
-  if (in_force != nullptr && in_force->has_pose && state.in_force.standing != operation::Standing::Void)
+  if (in_force != nullptr && in_force->has_pose && state.in_force.standing != operation::Standing::Void) {
     pose = in_force.get();
-  else if (state.online != nullptr && state.online->registration.has_pose)
+    is_sure = state.in_force.standing == operation::Standing::Stands;
+  } else if (state.online != nullptr && state.online->registration.has_pose) {
     pose = &state.online->registration;
+    is_sure = state.online->state == registration::OnlineState::Confirmed;
+  }
   if (pose == nullptr) return;
   const geometry::RigidTransform& marker_from_bone = pose->marker_from_bone;
   if (drawn_ != state.drawn || marker_from_bone.translation_mm != marker_from_bone_.translation_mm ||
@@ -59,7 +63,7 @@ void TouchedPicture::add_strokes(scene::SceneContent& content, const operation::
   for (std::size_t i = 1; i < points_.size(); ++i) {
     const Point &from = points_[i - 1], &to = points_[i];
     if (from.curve != to.curve) continue;
-    Pen pen = pen_of(to.residual_mm, state.excluded.contains(to.curve));
+    Pen pen = pen_of(to.residual_mm, state.excluded.contains(to.curve), is_sure);
     if (to.curve == selected_curve) pen.diameter_mm += kSelectedBy_mm;
     const bool goes_on = i > 1 && points_[i - 2].curve == to.curve && !content.lines.empty() &&
                          content.lines.back().points_mm.back() == from.in_bone_mm &&
@@ -76,7 +80,7 @@ void add_patches(scene::SceneContent& content, const registration::Coach& coach)
   constexpr double kLift_mm = -0.3, kThickness_mm = 1.0, kHelps = 0.02;
   for (const registration::BonePatch& patch : coach.patches) {
     const bool helps = !patch.is_touched && patch.gain > kHelps;
-    const scene::Color color = patch.is_touched ? scene::kCurveColor
+    const scene::Color color = patch.is_touched ? kDrawnColor
                                : helps          ? scene::kAchievedColor
                                                 : kExcludedColor;
     const double diameter_mm = patch.is_touched ? 2.0 : helps ? 1.5 + 12 * std::min(patch.gain, 0.2) : 1.0;

@@ -76,12 +76,19 @@ bool take_session(const std::filesystem::path& folder, Registration least, Conte
   return has_tunnel && content.session != nullptr && content.session->folder() == folder;
 }
 
-// The one that is asked for, which must be there; what came after it is not told.
+// By the name of its folder, or by the number that stands before its date in Review; which must be there.
+// What came after it is not told.
 void take_named(const std::string& name, std::vector<std::filesystem::path>& sessions, Content& content) {
-  const auto named = std::find_if(sessions.begin(), sessions.end(),
-                                  [&](const auto& folder) { return folder.filename() == name; });
-  if (named == sessions.end())
-    throw InvalidInput(content.folder, "", "holds no operation's session \"" + name + "\"");
+  const auto named = std::find_if(sessions.begin(), sessions.end(), [&](const auto& folder) {
+    const std::int64_t number = cases::session_number(folder);
+    return folder.filename() == name || (number > 0 && std::to_string(number) == name);
+  });
+  if (named == sessions.end()) {
+    std::string words = "holds no operation's session \"" + name + "\"";
+    for (const auto& folder : sessions)
+      words += (folder == sessions.front() ? "; it holds " : ", ") + folder.filename().string();
+    throw InvalidInput(content.folder, "", words);
+  }
   sessions.erase(named + 1, sessions.end());
   put(read_session(sessions.back()), content);
 }

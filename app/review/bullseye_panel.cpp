@@ -36,16 +36,22 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Revie
     draw.AddCircle(center, static_cast<float>(ring) * per_mm,
                    ring == 1 ? widgets::kGood : IM_COL32(90, 104, 118, 255), 96, ui.theme.px(2));
   const landmarks::PlaneAxes across = landmarks::axes_across(axes, plan->direction.normalized());
-  const std::string up(landmarks::to_text(across.up_is, true));
-  draw.AddText(font, font->FontSize,
-               {center.x - font->CalcTextSizeA(font->FontSize, 1e9F, 0, up.c_str()).x / 2,
-                center.y - radius - font->FontSize * 1.15F},
-               widgets::kQuietText, up.c_str());
   guidance::BullseyePoint at =
       guidance::bullseye_point(numbers.guide_point_mm, numbers.guide_direction, across, *plan);
-  const std::string right(landmarks::to_text(at.side_is, at.side_is_right));
-  draw.AddText(font, font->FontSize, {center.x + radius + ui.theme.px(6), center.y - font->FontSize / 2},
-               widgets::kQuietText, right.c_str());
+  const auto put = [&](float x, float y, float align, std::string_view words) {
+    const std::string text(words);
+    const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
+    draw.AddText(font, font->FontSize, {x - width * align, y}, widgets::kQuietText, text.c_str());
+  };
+  const float line = font->FontSize, middle = center.y - line / 2, gap = ui.theme.px(6);
+  put(center.x, center.y - radius - line * 1.1F, 0.5F, landmarks::to_text(at.up_is, true));
+  put(center.x, center.y + radius + line * 0.1F, 0.5F, landmarks::to_text(at.up_is, false));
+  put(center.x + radius + gap, middle, 0, landmarks::to_text(at.side_is, at.side_is_right));
+  put(center.x - radius - gap, middle, 1, landmarks::to_text(at.side_is, !at.side_is_right));
+  // Where the ring crosses the line downwards; the innermost has no room.
+  for (const double ring : {2.0, 5.0})
+    put(center.x + gap / 2, center.y + static_cast<float>(ring) * per_mm - line * 1.05F, 0,
+        widgets::fixed(ring, 0) + (ring == kRings_mm.back() ? " mm" : ""));
 
   const double far = std::hypot(at.right_mm, at.up_mm);
   const widgets::Severity severity = guidance_severity::severity_of_offset(numbers);

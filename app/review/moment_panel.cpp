@@ -7,6 +7,33 @@ namespace arthronaut::review {
 
 namespace {
 
+void draw_score(const widgets::Ui& ui, const training::Score& score) {
+  ImGui::Separator();
+  widgets::text_in(ui.theme.title, widgets::kText,
+                   score.is_done ? "Score: " + widgets::fixed(score.points, 0) + " of 100"
+                                 : std::string("Stopped before it was done"));
+  if (is_by_earlier_rule(score)) widgets::text_in(ui.theme.body, widgets::kQuietText, "By an earlier rule");
+  for (const training::ScorePart& part : score.parts)
+    widgets::status_row(ui,
+                        part.points >= part.most_points ? widgets::Severity::Good
+                        : part.points > 0               ? widgets::Severity::Caution
+                                                        : widgets::Severity::Bad,
+                        widgets::fixed(part.points, 0) + " of " + widgets::fixed(part.most_points, 0),
+                        part.reason);
+}
+
+// The whole of what the list and the time line have room for in part: what happened here, or last before.
+void draw_last_moment(const widgets::Ui& ui, const ReviewScreen& screen) {
+  const auto& moments = screen.review.moments;
+  const auto after = std::ranges::upper_bound(moments, screen.playback.frame, {}, &Moment::frame);
+  std::string words = after == moments.begin() ? std::string() : std::prev(after)->words;
+  for (const recording::SessionMark& mark : screen.marks)
+    if (screen.timeline().at_index(mark.frame) == screen.playback.frame && !mark.note.empty())
+      words += (words.empty() ? "Mark: " : "\nMark: ") + mark.note;
+  ui.log.note_state("review_last_moment", words);
+  if (!words.empty()) widgets::text_in(ui.theme.body, widgets::kText, words);
+}
+
 void draw_difference(const widgets::Ui& ui, const char* name, const operation::TunnelDifference& d) {
   widgets::text_in(ui.theme.strong, widgets::kText, name);
   widgets::text_in(ui.theme.body, widgets::kText,
@@ -113,7 +140,9 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewS
   else
     widgets::status_row(ui, widgets::Severity::Bad, "Registration",
                         registration->reasons.empty() ? "not reliable" : registration->reasons.front());
+  draw_last_moment(ui, screen);
   if (screen.today != nullptr) draw_today(ui, screen);
+  if (screen.score != nullptr) draw_score(ui, *screen.score);
   ImGui::Separator();
   draw_achieved(ui, review);
   for (const std::string& problem : review.problems)

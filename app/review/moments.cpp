@@ -25,12 +25,13 @@ std::string command_words(const SessionEvent& event) {
   try {
     const operation::Command command = operation::command_from_text(event.text, "the record");
     std::string words(operation::name_of(command));
-    if (const auto* draw = std::get_if<operation::Draw>(&command)) words += draw->on ? ", on" : ", off";
+    if (const auto* draw = std::get_if<operation::Draw>(&command))
+      words = draw->on ? "probe draws" : "probe stops drawing";
     if (const auto* stop = std::get_if<operation::ReadDepthStop>(&command))
       words += ", " + std::to_string(std::lround(stop->depth_mm)) + " mm";
     if (const auto* exclude = std::get_if<operation::ExcludeStroke>(&command))
       words += " " + std::to_string(exclude->curve) + (exclude->is_excluded ? "" : ", taken in again");
-    return "Command: " + words;
+    return "Asked for: " + words;
   } catch (const InvalidInput&) {
     return "Command that this version does not know";
   }

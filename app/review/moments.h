@@ -22,7 +22,7 @@ enum class MomentKind {
 struct Moment {
   std::size_t frame = 0;  // of SessionTimeline::frames()
   MomentKind kind = MomentKind::Note;
-  std::string words;  // "Command: take touch", "Alarm: the marker has moved"
+  std::string words;  // "Asked for: take touch", "Alarm: the marker has moved"
 };
 
 // In the order of the record. What the record holds for running it again alone (outcomes, second looks) is

@@ -67,6 +67,16 @@ void ReviewView::draw_note_field(const widgets::Ui& ui) {
   if (is_escape && ImGui::IsItemDeactivated()) note_ = {};
 }
 
+std::string ReviewView::no_report_reason() {
+  if (!read_only_.empty()) return "the case cannot be written: " + read_only_;
+  if (open_ && recording::is_exercise(open_->review.session->header))
+    return "an exercise is no operation on anybody; its score stands on the right";
+  const bool has_plan = model_ != nullptr && !model_->knee().plan.tunnels.empty();
+  return open_ || has_plan || postop_.has_any()
+             ? ""
+             : "there is nothing to tell of: no session, no CT after an operation and no planned tunnel";
+}
+
 void ReviewView::toggle_today() {
   if (runs_today())
     open_->today->stop();
@@ -320,16 +330,11 @@ void ReviewView::add_actions(widgets::Actions& actions) {
       {"review.report", "Report",
        "Writes the report of this session, or of a CT after the operation, or else of the plan, as PDF "
        "into the plan's own folder within \"export\" of the case; it names nobody. Again to stop",
-       GLFW_KEY_R, 0, false,
-       [this] {
-         const bool has_what_to_report =
-             open_ ? !recording::is_exercise(open_->review.session->header)
-                   : postop_.has_any() || (model_ != nullptr && !model_->knee().plan.tunnels.empty());
-         return is_writing_report() || (has_what_to_report && read_only_.empty());
-       },
-       [this] { return is_writing_report(); },
+       GLFW_KEY_R, 0, false, [] { return true; }, [this] { return is_writing_report(); },
        [this] {
          if (is_writing_report()) return report_->stop();
+         no_report_ = no_report_reason();
+         if (!no_report_.empty()) return;
          // It tells of what is on the disk: never of another plan than the one that is seen.
          no_report_ = model_ != nullptr ? model_->save_now() : std::string();
          if (!no_report_.empty()) return;

@@ -9,6 +9,7 @@
 #include "app/review/session_review.h"
 #include "app/review/today_run.h"
 #include "app/widgets/controls.h"
+#include "navigation/training/score.h"
 
 namespace arthronaut::review {
 
@@ -17,7 +18,8 @@ struct ReviewScreen {
   const SessionReview& review;
   const recording::SessionMarks& marks;
   const Playback& playback;
-  const TodayResult* today = nullptr;  // null: today's program was not run on it
+  const TodayResult* today = nullptr;      // null: today's program was not run on it
+  const training::Score* score = nullptr;  // of an exercise; null: it is none, or none was kept
 
   [[nodiscard]] const recording::SessionTimeline& timeline() const { return *review.timeline; }
   [[nodiscard]] const recording::RecordedFrame& frame() const {
@@ -42,6 +44,10 @@ struct TimeLineZoom {
 // Nearer or farther about a place of the time line (0 left, 1 right): factor < 1 shows less. At least
 // `least` of the session, all of it at most.
 [[nodiscard]] TimeLineZoom zoomed(const TimeLineZoom& zoom, double about, double factor, double least);
+
+// Where the guide was further off than the offset's strip shows: there the strip tells no number.
+[[nodiscard]] std::vector<Stretch> beyond_strip(const std::vector<recording::FrameGlance>& frames,
+                                                double shown_mm);
 
 // From left to right, pixels.
 struct Span {

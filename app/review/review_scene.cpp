@@ -3,8 +3,15 @@
 
 #include "app/review/review_view.h"
 #include "app/widgets/controls.h"
+#include "navigation/operation/touches.h"
 
 namespace arthronaut::review {
+
+namespace {
+
+constexpr scene::Color kDrawnColor{0.85F, 0.88F, 0.92F}, kOffColor{1.0F, 0.44F, 0.36F};
+
+}  // namespace
 
 void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
   const SessionReview& review = open_->review;
@@ -15,6 +22,10 @@ void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
   }
   pane_.draw(ui, "review.view", area);
   const bool is_femur = review.session->header.bone == bones::BoneKind::Femur;
+  ui.log.note_state("review_strokes", shows_strokes_alone() ? "alone" : "on the bone");
+  if (shows_strokes_alone())
+    return widgets::caption(ui, area, widgets::kCaution,
+                            "Strokes as they were drawn, without the bone: no registration found it");
   const auto& plan = open_->standing().plan.plan;
   if (is_of_another_surface()) {
     ui.log.note_state("review_bone", "another surface");
@@ -29,9 +40,32 @@ void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
                               : plan->bundle == norms::Bundle::Whole
                                   ? ". Blue: planned"
                                   : ". Blue: planned " + tunnels::name_of(plan->key());
-  widgets::caption(
-      ui, area, widgets::kText,
-      std::string(is_femur ? "Femur" : "Tibia") + planned + (shows_drilled ? ". Banded: achieved" : ""));
+  widgets::caption(ui, area, widgets::kText,
+                   std::string(is_femur ? "Femur" : "Tibia") + planned +
+                       (shows_drilled ? ". Banded: achieved" : "") +
+                       (laid_ && !laid_->off_bone.empty() ? ". Red strokes: off the bone" : ""));
+}
+
+bool ReviewView::shows_strokes_alone() const {
+  return !is_of_another_surface() && !open_->review.has_pose() && !open_->review.session->curves.empty();
+}
+
+// Where the strokes lie by this registration; over two hours the same one stands for thousands of frames.
+const ReviewView::LaidStrokes& ReviewView::laid_by(
+    const std::shared_ptr<const registration::RegistrationSummary>& registration) {
+  if (laid_ && laid_->by == registration) return *laid_;
+  LaidStrokes& laid = laid_.emplace();
+  laid.by = registration;
+  const recording::SessionOverview& session = *open_->review.session;
+  const auto surface = model_->shared_surface(session.header.bone);
+  const geometry::RigidTransform bone_from_marker = registration->marker_from_bone.inverse();
+  const double off_mm = operation::TouchLimits{}.max_touch_error_mm;
+  for (const strokes::CurvePoint& point : session.curves) {
+    const Eigen::Vector3d in_bone_mm = bone_from_marker * point.position_mm;
+    const bool is_off = surface != nullptr && std::abs(surface->signed_distance_mm(in_bone_mm)) > off_mm;
+    (is_off ? laid.off_bone : laid.on_bone).push_back(in_bone_mm);
+  }
+  return laid;
 }
 
 bool ReviewView::is_of_another_surface() const {
@@ -45,6 +79,14 @@ void ReviewView::show_scene() {
   const recording::RecordedFrame& frame = open_->timeline().frame(open_->playback.frame);
   const bones::BoneKind bone = session.header.bone;
   scene::SceneContent content;
+  if (shows_strokes_alone()) {
+    std::vector<Eigen::Vector3d> drawn;
+    for (const strokes::CurvePoint& point : session.curves) drawn.push_back(point.position_mm);
+    scene::add_curve_points(content, drawn);
+    for (auto& line : content.lines) line.color = kDrawnColor;
+    if (frame.tip_is_valid) content.balls.push_back({frame.tip_in_world_mm, 2.5, scene::kGuideColor, false});
+    return pane_.show(content);
+  }
   content.bones.push_back({model_->drawn_mesh(bone), scene::kBoneColor, 1.0});
   if (is_of_another_surface()) return pane_.show(content);
   const Standing& standing = open_->standing();
@@ -54,10 +96,11 @@ void ReviewView::show_scene() {
     scene::add_achieved_tunnel(content, drilled->achieved.measured, drilled->length_mm);
   if (standing.registration != nullptr && standing.registration->has_pose) {
     const geometry::RigidTransform bone_from_marker = standing.registration->marker_from_bone.inverse();
-    std::vector<Eigen::Vector3d> touched;
-    for (const strokes::CurvePoint& point : session.curves)
-      touched.push_back(bone_from_marker * point.position_mm);
-    scene::add_curve_points(content, touched);
+    const LaidStrokes& laid = laid_by(standing.registration);
+    scene::add_curve_points(content, laid.on_bone);
+    const std::size_t on_bone = content.lines.size();
+    scene::add_curve_points(content, laid.off_bone);
+    for (std::size_t i = on_bone; i < content.lines.size(); ++i) content.lines[i].color = kOffColor;
     if (frame.tip_is_valid)
       content.balls.push_back({bone_from_marker * frame.tip_in_world_mm, 2.5, scene::kGuideColor, false});
   }

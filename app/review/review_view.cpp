@@ -8,6 +8,7 @@
 #include "app/widgets/list_rows.h"
 #include "app/widgets/source_banner.h"
 #include "navigation/camera/calibration_words.h"
+#include "navigation/recording/case_sessions.h"
 #include "navigation/worker/freed_memory.h"
 #include "planning/cases/case.h"
 #include "planning/cases/plan_file.h"
@@ -56,6 +57,7 @@ void ReviewView::case_opened(const mode::OpenCase& opened) {
   sessions_.open(case_folder_);
   chosen_.reset();
   open_.reset();
+  todays_.clear();
   report_.reset();
   no_report_.clear();
   opens_for_another_case_ = opening_.is_busy();
@@ -84,6 +86,10 @@ void ReviewView::choose(std::size_t session) {
   if (session >= sessions_.folders().size() || opening_.is_busy()) return;
   chosen_ = session;
   comes_back_to_.reset();
+  no_report_.clear();
+  // What was computed is there when one comes back; of a record that grew meanwhile it is not all.
+  if (open_ && open_->today && open_->today->has_ended() && !open_->review.session->goes_on())
+    todays_[open_->review.folder] = std::move(open_->today);
   open_.reset();
   note_ = {};
   notice_.clear();
@@ -110,9 +116,12 @@ void ReviewView::take_opened() {
   }
   worker::give_freed_memory_back();
   OpenSession& open = *open_;
+  laid_.reset();
   open.marks = MarkBook(open.review.folder, read_only_);
   open.check = std::make_unique<CheckRun>(open.review.folder, wake_);
   open.can_be_resumed = can_be_resumed();
+  if (auto kept = todays_.extract(open.review.folder); !kept.empty()) open.today = std::move(kept.mapped());
+  find_score();
   if (!has_frames()) return;
   // Where the user most wants to look first: the last moment with guidance.
   const auto& frames = open.timeline().frames();
@@ -131,6 +140,16 @@ void ReviewView::take_opened() {
 void ReviewView::look_at_tunnel() {
   const bones::BoneKind bone = open_->review.session->header.bone;
   if (!model_->has_bone(bone)) return;
+  if (shows_strokes_alone()) {
+    const auto& curves = open_->review.session->curves;
+    geometry::Bounds drawn{curves.front().position_mm, curves.front().position_mm};
+    for (const strokes::CurvePoint& point : curves) {
+      drawn.min_mm = drawn.min_mm.cwiseMin(point.position_mm);
+      drawn.max_mm = drawn.max_mm.cwiseMax(point.position_mm);
+    }
+    return pane_.look(scene::look_along(Eigen::Vector3d(0.4, 0.5, -0.77).normalized(), drawn.center_mm(),
+                                        std::max(3 * drawn.size_mm().norm(), 60.0), {0, 1, 0}));
+  }
   // Of another surface's plan nobody knows where it lies in this one.
   const std::optional<tunnels::Tunnel> tunnel =
       is_of_another_surface() ? std::nullopt : open_->standing().plan.plan;
@@ -152,7 +171,8 @@ bool ReviewView::is_busy() const {
 
 ReviewScreen ReviewView::screen() const {
   return {open_->review, open_->marks.marks(), open_->playback,
-          open_->today ? open_->today->progress().result.get() : nullptr};
+          open_->today ? open_->today->progress().result.get() : nullptr,
+          open_->score ? &*open_->score : nullptr};
 }
 
 void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -240,11 +260,11 @@ void ReviewView::draw_check(const widgets::Ui& ui) const {
   const CheckProgress progress = open_->check->progress();
   if (!error.empty()) {
     ui.log.note_state("record", "failed");
-    return widgets::status_row(ui, widgets::Severity::Bad, "Hashes", error);
+    return widgets::status_row(ui, widgets::Severity::Bad, "Record", error);
   }
   if (!progress.result) {
     ui.log.note_state("record", "checking");
-    return widgets::status_row(ui, widgets::Severity::Quiet, "Hashes",
+    return widgets::status_row(ui, widgets::Severity::Quiet, "Record",
                                "checked to " + std::to_string(progress.percent) + " %");
   }
   const recording::SessionCheck& check = *progress.result;
@@ -254,7 +274,7 @@ void ReviewView::draw_check(const widgets::Ui& ui) const {
                       is_broken             ? widgets::Severity::Bad
                       : check.is_unbroken() ? widgets::Severity::Good
                                             : widgets::Severity::Quiet,
-                      is_broken ? "Not as recorded" : "Hashes",
+                      is_broken ? "Not as recorded" : "Record",
                       sessions_.within(recording::check_words(check)));
 }
 
@@ -353,7 +373,11 @@ void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) 
   ui.log.note("review.picture", area.min(), area.max());
   if (open_->pictures == nullptr)
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText,
-                                  "No video was kept with this session");
+                                  recording::is_exercise(open_->review.session->header)
+                                      ? "The pictures of this exercise were not kept; poses, strokes and "
+                                        "what happened were"
+                                      : "No video was kept with this session; Record (Ctrl+R) in Navigate "
+                                        "keeps it");
   if (const std::string error = open_->pictures->error(); !error.empty())
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kBad, sessions_.within(error));
   const recording::FrameGlance& glance = open_->glance();

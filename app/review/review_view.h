@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +33,7 @@ struct OpenSession {
   Playback playback;
   TimeLineZoom zoom;
   std::unique_ptr<TodayRun> today;         // null: was not asked for
+  std::optional<training::Score> score;    // of an exercise whose score was kept
   std::unique_ptr<CheckRun> check;         // whether it is as it was recorded; never null once it is open
   std::optional<std::size_t> shown_frame;  // of the 3D view
   bool can_be_resumed = false;             // it was declined, and no newer session of its bone decides
@@ -63,6 +65,10 @@ class ReviewView : public mode::Mode {
   // Whatever a session was made of, what is shown of it is a recording; draw_origin() says what of.
   [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
   [[nodiscard]] std::string notice() const override { return notice_; }
+  [[nodiscard]] std::vector<mode::HeldKeys> held_keys() const override {
+    return {{"Left button", "Dragged over the 3D view: turns it"},
+            {"Right button", "Dragged over it: shifts it; the wheel goes nearer and farther"}};
+  }
 
  private:
   // The field in which the note of a mark is written.
@@ -112,7 +118,16 @@ class ReviewView : public mode::Mode {
   void draw_picture(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_scene(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_numbers(const widgets::Ui& ui, widgets::Rect area);
+  [[nodiscard]] std::string no_report_reason();  // empty: one may be written
+  void find_score();
   void show_scene();
+  [[nodiscard]] bool shows_strokes_alone() const;  // without a bone, which no registration has found
+  // Strokes by where they lie: what is known not to lie on the bone is not drawn as if it did.
+  struct LaidStrokes {
+    std::shared_ptr<const registration::RegistrationSummary> by;
+    std::vector<Eigen::Vector3d> on_bone, off_bone;
+  };
+  const LaidStrokes& laid_by(const std::shared_ptr<const registration::RegistrationSummary>& registration);
   [[nodiscard]] bool is_of_another_surface() const;  // than the case has of its bone by now
 
   const open_case::PlanModel* model_ = nullptr;
@@ -126,7 +141,9 @@ class ReviewView : public mode::Mode {
   worker::Awaited<SessionReview> opening_;
   bool opens_for_another_case_ = false;  // what opening_ reads is of the case that was open before
   std::optional<OpenSession> open_;
-  std::unique_ptr<ReportRun> report_;          // null: none was asked for
+  std::optional<LaidStrokes> laid_;                                    // of the session that is open
+  std::map<std::filesystem::path, std::unique_ptr<TodayRun>> todays_;  // of sessions looked at before; ended
+  std::unique_ptr<ReportRun> report_;                                  // null: none was asked for
   std::string no_report_;                      // why the one that was asked for last was not begun
   double looked_at_end_s_ = -1;                // whether what is being recorded has ended
   std::optional<std::int64_t> comes_back_to_;  // the frame that was looked at before it was read again

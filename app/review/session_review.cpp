@@ -96,6 +96,12 @@ DrilledTunnel drilled_tunnel(const SessionReview& review, operation::AchievedTun
 
 }  // namespace
 
+bool SessionReview::has_pose() const {
+  return std::ranges::any_of(standings, [](const Standing& standing) {
+    return standing.registration != nullptr && standing.registration->has_pose;
+  });
+}
+
 const Standing& SessionReview::standing_at(std::int64_t frame_index) const {
   const auto after =
       std::upper_bound(standings.begin() + 1, standings.end(), frame_index,

@@ -59,6 +59,9 @@ struct SessionReview {
   // What is missing or broken of the session: the rest is shown. Empty where nothing is.
   std::vector<std::string> problems;
 
+  // Some registration of it lays the strokes on the bone. Without one they are known in the world marker's
+  // frame alone.
+  [[nodiscard]] bool has_pose() const;
   // At the frame of that index.
   [[nodiscard]] const Standing& standing_at(std::int64_t frame_index) const;
   // Those that are to be drawn there: drilled by then, and of a length that is known.

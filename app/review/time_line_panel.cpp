@@ -136,6 +136,8 @@ void draw_offsets(const widgets::Ui& ui, ImDrawList& draw, const Scale& scale, c
     guided = i;
   }
   draw_column(columns.last());
+  draw_stretches(draw, scale, {row.top() - ui.theme.px(4), ui.theme.px(10)},
+                 beyond_strip(frames, kShownOffset_mm), widgets::kBad);
   if (screen.today != nullptr) draw_today(draw, scale, row, screen);
 }
 
@@ -236,6 +238,18 @@ std::string clock_text(double seconds) {
          std::to_string(tenths % 10);
 }
 
+std::vector<Stretch> beyond_strip(const std::vector<recording::FrameGlance>& frames, double shown_mm) {
+  std::vector<Stretch> stretches;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!frames[i].is_guided() || static_cast<double>(frames[i].offset_mm) <= shown_mm) continue;
+    if (!stretches.empty() && stretches.back().last + 1 == i)
+      stretches.back().last = i;
+    else
+      stretches.push_back({i, i});
+  }
+  return stretches;
+}
+
 std::optional<Span> within(const Span& span, const Span& shown) {
   const Span seen{std::max(span.from, shown.from), std::min(span.to, shown.to)};
   return seen.from < seen.to ? std::optional(seen) : std::nullopt;
@@ -288,7 +302,9 @@ std::optional<std::size_t> draw_time_line(const widgets::Ui& ui, const widgets::
     next(1);
   }
   Row graph{row.y, 1.5F * row.height};
-  draw_name(ui, draw, inner.x, graph, "Offset to 6 mm");
+  const float line_px = ui.theme.body->FontSize;
+  draw_name(ui, draw, inner.x, {graph.y - line_px / 2, graph.height}, "Offset to 6 mm");
+  draw_name(ui, draw, inner.x, {graph.y + line_px / 2, graph.height}, "red: more than that");
   draw_offsets(ui, draw, scale, graph, screen);
   next(1.5F);
   draw_name(ui, draw, inner.x, row, "What happened");

@@ -2,7 +2,7 @@
 // simulator::HandControl. The mapping is pure; the devices are read by the calls below alone.
 //
 //   keyboard  A D, W S, Q E: the tool left and right, up and down, nearer and away; J L, I K, U O: its handle
-//             likewise; Shift: the scope instead; Z X: the lens; F: the drill
+//             likewise; Shift: the scope instead; Alt: finely; Z X: the lens; F: the drill
 //   mouse     left button: the tool; right button: its handle; middle button: the scope; the wheel: nearer
 //             and away, with the right button held: the lens
 //   gamepad   left stick, triggers: the tool; right stick, D-pad up and down: its handle; D-pad left and
@@ -25,6 +25,7 @@ struct DeviceState {
   Eigen::Vector3d keys_move = Eigen::Vector3d::Zero(), keys_tilt = Eigen::Vector3d::Zero();
   double keys_lens = 0;
   bool keys_scope = false, keys_drill = false;
+  bool is_fine = false;                                // everything moves and tilts at a quarter of the speed
   Eigen::Vector2d mouse_px = Eigen::Vector2d::Zero();  // since the last reading; at a window 1080 pixels high
   double wheel = 0;                                    // notches, up is above 0
   bool mouse_moves = false, mouse_tilts = false, mouse_scope = false;

@@ -51,11 +51,41 @@ void draw_points(const widgets::Ui& ui, const widgets::Rect& plot, const std::ve
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const float radius = ui.theme.px(7);
-    draw.AddCircleFilled(at(i), radius, widgets::kAccent);
+    // By an earlier rule its points say nothing beside those of now: a ring.
+    if (is_by_earlier_rule(*runs[i]))
+      draw.AddCircle(at(i), radius, widgets::kQuietText, 0, ui.theme.px(2));
+    else
+      draw.AddCircleFilled(at(i), radius, widgets::kAccent);
     if (std::abs(at(i).x - mouse.x) + std::abs(at(i).y - mouse.y) < 3 * radius)
-      ImGui::SetTooltip("%s: %.0f points",
-                        files::local_time_in_words(runs[i]->when_utc).substr(0, 16).c_str(), runs[i]->points);
+      ImGui::SetTooltip("%s: %.0f points%s",
+                        files::local_time_in_words(runs[i]->when_utc).substr(0, 16).c_str(), runs[i]->points,
+                        is_by_earlier_rule(*runs[i]) ? ", by an earlier rule" : "");
   }
+}
+
+// What a hand feels and keys do not: whether the tip, or the guide's point, is on the bone. This is what the
+// simulator knows and no theatre does, which is why it stands here, and not in the theatre's own picture.
+// Returns where the next word begins.
+float draw_contact(const widgets::Ui& ui, float x, float y, const simulator::HandState& hand, bool draws) {
+  const bool is_air_drawn = hand.held == simulator::Held::Probe && draws && !hand.touches_bone;
+  const std::string words =
+      hand.touches_bone
+          ? "On the bone"
+          : format(is_air_drawn ? "DRAWING IN THE AIR, %.0f mm off the bone" : "%.0f mm off the bone",
+                   std::max(1.0, std::round(hand.off_bone_mm)));
+  const widgets::Severity severity = hand.touches_bone ? widgets::Severity::Good
+                                     : is_air_drawn    ? widgets::Severity::Bad
+                                                       : widgets::Severity::Quiet;
+  ImFont* const font = ui.theme.strong;
+  const float sign = font->FontSize * 0.4F;
+  widgets::draw_sign(*ImGui::GetWindowDrawList(), {x + sign, y + font->FontSize / 2}, sign, severity);
+  put(font, x + ui.theme.px(30), y, widgets::color_of(severity), words);
+  ui.log.note_state("train_contact", hand.touches_bone ? "bone"
+                                     : is_air_drawn    ? "drawing in the air"
+                                                       : "air");
+  // As wide as the longest of the words, so that what stands beside it does not jump.
+  const std::string longest = "DRAWING IN THE AIR, 00 mm off the bone";
+  return x + ui.theme.px(60) + font->CalcTextSizeA(font->FontSize, 1e9F, 0, longest.c_str()).x;
 }
 
 }  // namespace
@@ -85,7 +115,9 @@ void TrainingView::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {
       const Score* best = training::best_of(scores_, exercise.id, level);
       const std::string words =
           std::string(to_text(level)) +
-          (best != nullptr ? format("  best %.0f", best->points) : std::string("  not done"));
+          (best != nullptr
+               ? format(is_by_earlier_rule(*best) ? "  earlier rule %.0f" : "  best %.0f", best->points)
+               : std::string("  not done"));
       const bool is_chosen = i == chosen_ && level == level_;
       put(is_chosen ? ui.theme.strong : ui.theme.body, x, at.y + ui.theme.px(54),
           is_chosen ? widgets::kAccent : widgets::kQuietText, (is_chosen ? "> " : "  ") + words);
@@ -109,13 +141,14 @@ void TrainingView::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {
   const bool is_board = chosen().goal == training::Goal::Calibrate;
   widgets::text_in(
       ui.theme.body, widgets::kQuietText,
-      is_board ? "Keys: A D W S Q E move the board, J L I K tilt it, U O roll it, Shift the scope "
-                 "instead, Z X turn the lens, Space takes the picture, Enter says done. Mouse: left "
-                 "button the board, right its tilt and with the wheel the lens, wheel nearer and away."
-               : "Keys: A D W S Q E move the tool, J L I K U O its handle, Shift the scope instead, Z X "
-                 "the lens, F the drill, G takes the other tool, Space is the pedal, Enter says done. "
-                 "Mouse: left button the tool, right its handle, middle the scope, wheel nearer and "
-                 "away.");
+      is_board
+          ? "Keys: A D W S Q E move the board, J L I K tilt it, U O roll it, Shift the scope "
+            "instead, Z X turn the lens, Space takes the picture, Enter says done. Mouse: left "
+            "button the board, right its tilt and with the wheel the lens, wheel nearer and away."
+          : "Keys: A D W S Q E move the tool, J L I K U O its handle, Shift the scope instead, Alt "
+            "finely, Z X the lens, F the drill, G takes the other tool, Space is the pedal, Enter says done. "
+            "Mouse: left button the tool, right its handle, middle the scope, wheel nearer and "
+            "away.");
   const std::string pad = HandDevices::pad_name();
   widgets::text_in(ui.theme.body, widgets::kQuietText,
                    pad.empty() ? "No gamepad is connected." : "Also by " + pad + ": sticks and triggers.");
@@ -188,14 +221,17 @@ void TrainingView::draw_strip(const widgets::Ui& ui, const widgets::Rect& area) 
     if (truth->hand.held == simulator::Held::Guide && run_->setup.exercise.goal == training::Goal::Drill)
       words += format("depth stop %.0f mm, planned %.0f mm   ", truth->hand.drilled_depth_mm,
                       run_->setup.plan_length_mm);
-    if (truth->hand.touches_bone) words += "on the bone   ";
-    words += format("%.0f pictures a second", live->frames_per_second);
+    words += training::ways_of_keys(truth->hand, opened_->model->axes(run_->setup.exercise.bone));
   }
-  put(ui.theme.strong, area.x + ui.theme.px(14), area.y + ui.theme.px(10), widgets::kText, words);
+  const float first_y = area.y + ui.theme.px(10);
+  const float end_x =
+      truth ? draw_contact(ui, area.x + ui.theme.px(14), first_y, truth->hand, live->operation->draws)
+            : area.x + ui.theme.px(14);
+  put(ui.theme.strong, end_x, first_y, widgets::kText, words);
   put(ui.theme.body, area.x + ui.theme.px(14), area.y + ui.theme.px(46), widgets::kQuietText,
-      "A D W S Q E tool   J L I K U O handle   Shift scope   Z X lens   F drill   G other tool   Space pedal "
-      "  "
-      "Enter done   hold Esc stop");
+      "Tool: A D W S, Q nearer, E away   Handle: J L I K, U nearer, O away   Held: Alt finely, Shift the "
+      "scope "
+      "instead   Z X lens   F drill   G other tool   Space pedal   Enter done   hold Esc stop");
   ui.log.note("train.strip", area.min(), area.max());
   ui.log.note_state("train_hand",
                     truth ? (truth->hand.held == simulator::Held::Probe ? "probe" : "guide") : "");

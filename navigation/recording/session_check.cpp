@@ -253,9 +253,9 @@ std::string check_words(const SessionCheck& check) {
     case Outcome::NoChain:
       return "holds no hashes";
     case Outcome::Unbroken:
-      return files::format("as recorded: %lld hashes, %.1f MB of files%s",
-                           static_cast<long long>(check.record_count),
+      return files::format("as recorded: nothing was changed or lost in %.1f MB of files, by %lld hashes%s",
                            static_cast<double>(check.covered_bytes) / 1e6,
+                           static_cast<long long>(check.record_count),
                            check.was_finished        ? ""
                            : check.is_being_recorded ? "; being recorded, whole up to its last hash"
                                                      : "; cut off, whole up to its last hash");

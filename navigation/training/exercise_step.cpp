@@ -64,4 +64,19 @@ std::string way_back_into_view(const simulator::HandState& hand, const camera::C
   return aside.y() > 0 ? "below the picture, W brings it back" : "above the picture, S brings it back";
 }
 
+std::string ways_of_keys(const simulator::HandState& hand, const landmarks::AnatomicalAxes& axes) {
+  using landmarks::AnatomicalDirection;
+  const auto name_of = [&](const Eigen::Vector3d& in_picture) {
+    const Eigen::Vector3d way = hand.bone_from_camera.rotate(in_picture);
+    const Eigen::Vector3d along(way.dot(axes.anterior), way.dot(axes.proximal), way.dot(axes.lateral));
+    Eigen::Index most = 0;
+    along.cwiseAbs().maxCoeff(&most);
+    constexpr AnatomicalDirection kDirections[] = {
+        AnatomicalDirection::Anterior, AnatomicalDirection::Proximal, AnatomicalDirection::Lateral};
+    return std::string(landmarks::to_text(kDirections[most], along[most] > 0));
+  };
+  return "D " + name_of(Eigen::Vector3d::UnitX()) + ", W " + name_of(-Eigen::Vector3d::UnitY()) + ", E " +
+         name_of(Eigen::Vector3d::UnitZ());
+}
+
 }  // namespace arthronaut::training

@@ -9,6 +9,7 @@
 #include "navigation/simulator/hand_control.h"
 #include "navigation/training/exercise.h"
 #include "planning/geometry/surface.h"
+#include "planning/landmarks/anatomical_axes.h"
 
 namespace arthronaut::training {
 
@@ -21,5 +22,11 @@ namespace arthronaut::training {
 // lens: at the hand's mark angle. bone: in whose frame the hand's places are. Not of a board. Pure.
 [[nodiscard]] std::string way_back_into_view(const simulator::HandState& hand,
                                              const camera::CameraModel& lens, const geometry::Surface& bone);
+
+// Which way three of the keys push the tool, in the words of the bullseye, which has other directions up than
+// the picture: "D lateral, W anterior, E proximal". Each by the bone's axis that it lies nearest to; of two
+// keys that lie nearest to the same one both bear its name. Pure.
+[[nodiscard]] std::string ways_of_keys(const simulator::HandState& hand,
+                                       const landmarks::AnatomicalAxes& axes);
 
 }  // namespace arthronaut::training

@@ -186,7 +186,17 @@ TEST_F(Report, TellsTheSessionThatIsAskedFor) {
     write(json, {.session = session});
     expect_contains(files::read_text(json), "\"id\": \"" + session + "\"");
   }
-  EXPECT_THROW(write(json, {.session = "0099"}), InvalidInput);
+  // By the number that Review shows, too; which there are is said where there is no such one.
+  const std::string number = std::to_string(cases::session_number(folders.front()));
+  write(json, {.session = number});
+  expect_contains(files::read_text(json), "\"id\": \"" + first + "\"");
+  try {
+    write(json, {.session = "0099"});
+    FAIL() << "there is none of that name";
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("0099"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("it holds " + first + ", " + newest));
+  }
 }
 
 // A session that a disk has spoilt takes no report away: it is named with its reason, and the one before it

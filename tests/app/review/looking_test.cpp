@@ -105,6 +105,33 @@ TEST_F(Looking, TellsWhatHappenedAndJumpsToIt) {
   EXPECT_FALSE(moment_after(frames, 90) || moment_before(frames, 30));
 }
 
+// What was asked for is told in words, and not as a program has it.
+TEST_F(Looking, TellsDrawingInWords) {
+  const auto moments = moments_of({{0, "command", operation::to_text(operation::Draw{true}), 10},
+                                   {0, "command", operation::to_text(operation::Draw{false}), 20}},
+                                  *timeline_, {});
+  ASSERT_EQ(moments.size(), 2U);
+  EXPECT_EQ(moments[0].words, "Asked for: probe draws");
+  EXPECT_EQ(moments[1].words, "Asked for: probe stops drawing");
+}
+
+// A guide that is further off than the strip shows is a flat line there: where it is so is told.
+TEST_F(Looking, MarksWhatTheOffsetsStripCannotShow) {
+  std::vector<recording::FrameGlance> frames(6);
+  for (auto& frame : frames) {
+    frame.guidance = guidance::GuidanceState::Valid;
+    frame.offset_mm = 18;
+  }
+  frames[0].offset_mm = 6;
+  frames[3].guidance = guidance::GuidanceState::NoPlan;
+  const auto beyond = beyond_strip(frames, 6);
+  ASSERT_EQ(beyond.size(), 2U);
+  EXPECT_EQ(beyond[0].first, 1U);
+  EXPECT_EQ(beyond[0].last, 2U);
+  EXPECT_EQ(beyond[1].first, 4U);
+  EXPECT_EQ(beyond[1].last, 5U);
+}
+
 // An operation says its plan when it is made and again when its source starts: it came into force once.
 TEST_F(Looking, TellsAPlanOnceUntilItChanges) {
   const auto plan = [](std::int64_t after, const char* text) {

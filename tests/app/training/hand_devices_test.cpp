@@ -46,6 +46,19 @@ TEST(HandDevices, ButtonsChooseWhatMoves) {
   EXPECT_GT(hand_input(state, Held::Probe, kFrame_s).move.x(), 0);
 }
 
+// For the last millimetre: a quarter of the speed, by whatever device, and never more than that.
+TEST(HandDevices, AltMovesFinely) {
+  DeviceState keys;
+  keys.keys_move = {1, 0, 0};
+  keys.keys_tilt = {0, -1, 0};
+  keys.mouse_px = {400, 0};  // far beyond the full speed
+  keys.mouse_moves = true;
+  keys.is_fine = true;
+  const HandInput input = hand_input(keys, Held::Guide, kFrame_s);
+  EXPECT_DOUBLE_EQ(input.move.x(), 0.25);
+  EXPECT_DOUBLE_EQ(input.tilt.y(), -0.25);
+}
+
 // The lens of the scope can be turned by every device: the wheel does with the right button, and is then no
 // way nearer or away.
 TEST(HandDevices, EveryDeviceTurnsTheLens) {

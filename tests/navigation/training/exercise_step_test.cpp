@@ -81,5 +81,15 @@ TEST(ExerciseStep, SaysWhichWayAToolWentThatIsNotSeen) {
   }
 }
 
+// The picture's up is not the bullseye's: which way a key pushes is said in the words of the bone.
+TEST(WaysOfKeys, AreNamedByTheBonesAxes) {
+  simulator::HandState hand;
+  landmarks::AnatomicalAxes axes;  // of a right knee in the scanner: anterior -y, proximal z, lateral -x
+  EXPECT_EQ(ways_of_keys(hand, axes), "D medial, W anterior, E proximal");
+  // The scope rolled by a quarter: what is right in the picture is down in the one before.
+  hand.bone_from_camera.rotation = Eigen::AngleAxisd(geometry::kPi / 2, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(ways_of_keys(hand, axes), "D posterior, W medial, E proximal");
+}
+
 }  // namespace
 }  // namespace arthronaut::training

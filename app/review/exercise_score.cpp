@@ -1,0 +1,21 @@
+// The score of an exercise whose session is looked at.
+#include "app/review/review_view.h"
+#include "navigation/recording/case_sessions.h"
+#include "navigation/training/score_file.h"
+
+namespace arthronaut::review {
+
+// Of an exercise, from the user's list: by the name of its session, and of the knee that it was done on.
+void ReviewView::find_score() {
+  OpenSession& open = *open_;
+  if (!recording::is_exercise(open.review.session->header)) return;
+  try {
+    for (training::Score& score : training::read_training_file(training::training_file()))
+      if (score.session == open.review.folder.filename() && score.knee == model_->knee().name)
+        open.score = std::move(score);
+  } catch (const std::runtime_error& error) {  // the session is shown without it
+    notice_ = error.what();
+  }
+}
+
+}  // namespace arthronaut::review
