@@ -140,7 +140,10 @@ bool is_asked_for(const PlanArguments& arguments, bones::BoneKind bone) {
   return arguments.bone.empty() || arguments.bone == bones::to_text(bone);
 }
 
-void take_markups(const PlanArguments& arguments, cases::Case& knee, std::vector<std::string>& notes) {
+// Returns what the file itself says against this case.
+std::string take_markups(const PlanArguments& arguments, cases::Case& knee, std::vector<std::string>& notes) {
+  const std::string doubt =
+      plan_export::origin_doubt(arguments.markups, knee, cases::load_plan_versions(arguments.case_folder));
   std::map<bones::BoneKind, geometry::Surface> surfaces;
   const auto surface_of = [&](bones::BoneKind kind) -> const geometry::Surface* {
     const auto bone = knee.bones.find(kind);
@@ -151,15 +154,24 @@ void take_markups(const PlanArguments& arguments, cases::Case& knee, std::vector
   for (const auto& [key, tunnel] : taken.tunnels)
     if (is_asked_for(arguments, key.bone))
       put(tunnel, bones::mesh_sha256(knee.bones.at(key.bone).mesh), knee, notes);
+  return doubt;
+}
+
+// The tunnels of what was asked for.
+std::vector<tunnels::TunnelKey> asked_for(const PlanArguments& arguments, const cases::Plan& plan) {
+  std::vector<tunnels::TunnelKey> keys;
+  for (const auto& [key, tunnel] : plan.tunnels)
+    if (is_asked_for(arguments, key.bone) &&
+        (!arguments.names_type || arguments.type == norms::to_text(key.bundle)))
+      keys.push_back(key);
+  return keys;
 }
 
 void show(const PlanArguments& arguments, const Context& context, const cases::Case& knee,
           const plan_review::CaseReview& review, cases::BoneDoubts doubts, const PlanVerdict& verdict) {
   auto tunnels_json = nlohmann::ordered_json::array();
   bool has_any = false;
-  for (const auto& [key, tunnel] : knee.plan.tunnels) {
-    if (!is_asked_for(arguments, key.bone)) continue;
-    if (arguments.names_type && arguments.type != norms::to_text(key.bundle)) continue;
+  for (const tunnels::TunnelKey& key : asked_for(arguments, knee.plan)) {
     if (!review.has_bone(key.bone))
       throw InvalidInput(arguments.case_folder, "plan.json", "plans a bone that the case lacks");
     has_any = true;
@@ -218,10 +230,15 @@ plan_export::ExportSummary exported(const PlanArguments& arguments, const cases:
   return plan_export::export_plan(knee, arguments.export_folder);
 }
 
-void export_to(const PlanArguments& arguments, Context& context, const cases::Case& knee) {
+// wrong: what the checks say of the plan, which is written as it is: told, and no doubt about what was
+// written.
+void export_to(const PlanArguments& arguments, Context& context, const cases::Case& knee,
+               const std::vector<std::string>& wrong) {
   const auto summary = exported(arguments, knee);
   if (!arguments.as_json)
     for (const auto& file : summary.files) context.say("Wrote " + file.string());
+  if (!arguments.as_json)
+    for (const std::string& one : wrong) context.say("Wrong, and exported all the same: " + one);
   if (!summary.doubts.empty()) context.say_unreliable("The exported plan", summary.doubts);
 }
 
@@ -321,10 +338,11 @@ void add_plan_command(CLI::App& app, Context& context) {
     cases::BoneDoubts doubts = cases::load_bone_doubts(arguments->case_folder);
     PlanVerdict verdict;
     plan_review::ProposedBone proposed;  // of the bone that a default plan was made of
-    std::vector<std::string> notes;      // said once it is so on the disk
+    std::string doubt_of_markups;
+    std::vector<std::string> notes;  // said once it is so on the disk
     const cases::Plan before = knee.plan;
     if (!arguments->markups.empty()) {
-      take_markups(*arguments, knee, notes);
+      doubt_of_markups = take_markups(*arguments, knee, notes);
     } else if (arguments->version > 0) {
       std::vector<bones::BoneKind> asked_for{bones::BoneKind::Femur, bones::BoneKind::Tibia};
       std::erase_if(asked_for, [&](bones::BoneKind kind) { return !is_asked_for(*arguments, kind); });
@@ -365,13 +383,15 @@ void add_plan_command(CLI::App& app, Context& context) {
     if (is_proposed) by_shape.try_emplace(key_of(*arguments).bone, std::move(proposed));
     const plan_review::CaseReview review(shown, by_shape);
     if (arguments->by_default) verdict = judged(shown, review, key_of(*arguments), doubts, verdict);
-    show(*arguments, context, shown, review, std::move(doubts), verdict);
+    show(*arguments, context, shown, review, doubts, verdict);
     if (arguments->keeps) {
       const auto kept = cases::keep_plan_version(arguments->case_folder, knee.plan);
       if (!arguments->as_json) context.say("Kept as version " + std::to_string(kept.number) + ".");
     }
-    if (!arguments->export_folder.empty()) export_to(*arguments, context, knee);
+    if (!arguments->export_folder.empty()) export_to(*arguments, context, knee, wrong_in_plan(review));
     if (!verdict.is_reliable) context.say_unreliable("The default plan", verdict.reasons);
+    // What is placed by hand is the plan that was asked for, whatever the checks say of it above.
+    if (!doubt_of_markups.empty()) context.say_unreliable("The plan", {doubt_of_markups});
   });
 }
 

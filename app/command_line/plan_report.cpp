@@ -1,7 +1,6 @@
 #include "app/command_line/plan_report.h"
 
 #include <nlohmann/json.hpp>
-#include <string_view>
 #include <utility>
 
 #include "planning/files/fixed_number.h"
@@ -9,6 +8,7 @@
 #include "planning/files/json_document.h"
 #include "planning/plan_review/landmark_check.h"
 #include "planning/plan_review/proposed_landmarks.h"
+#include "planning/plan_review/tunnel_verdict.h"
 #include "planning/tunnels/breach.h"
 #include "planning/tunnels/check_numbers.h"
 
@@ -40,13 +40,24 @@ const char* sign_of(PlanCheck::Verdict verdict) {
   return "    ";
 }
 
-// Of the landmarks that say where on its bone a tunnel begins: "missing", "proposed" or "confirmed".
+bool has_grid(const plan_review::CaseReview& review, bones::BoneKind bone) {
+  const tunnels::PlanSurroundings& surroundings = review.bone(bone).surroundings;
+  return surroundings.quadrant || surroundings.plateau;
+}
+
+// What speaks against the landmarks that say where on its bone a tunnel begins; without a grid the checks
+// that need it say so themselves.
+std::string doubt_of_grid(const cases::Case& knee, const plan_review::CaseReview& review,
+                          bones::BoneKind bone) {
+  return has_grid(review, bone) ? plan_review::grid_doubt(knee, bone) : "";
+}
+
+// Of the same landmarks: "missing", "proposed", "incomplete" (its view's are missing) or "confirmed".
 const char* state_of_grid(const cases::Case& knee, const plan_review::CaseReview& review,
                           bones::BoneKind bone) {
-  const tunnels::PlanSurroundings& surroundings = review.bone(bone).surroundings;
-  if (!surroundings.quadrant && !surroundings.plateau) return "missing";
-  return plan_review::state_of_grid(knee, bone) == landmarks::LandmarkState::Confirmed ? "confirmed"
-                                                                                       : "proposed";
+  if (!has_grid(review, bone)) return "missing";
+  const std::string doubt = plan_review::grid_doubt(knee, bone);
+  return doubt.empty() ? "confirmed" : doubt.starts_with("landmarks missing") ? "incomplete" : "proposed";
 }
 
 }  // namespace
@@ -61,10 +72,19 @@ PlanVerdict judged(const cases::Case& knee, const plan_review::CaseReview& revie
     for (const std::string& doubt : of_bone->second)
       reasons.push_back("the " + std::string(bones::to_text(key.bone)) + ": " + doubt);
   if (const auto fit = cases::plan_fit(knee, key); !fit.is_valid()) reasons.push_back(fit.reason);
-  if (verdict.source.empty() && state_of_grid(knee, review, key.bone) == std::string_view("proposed"))
-    reasons.push_back("landmarks: proposed from the bone's shape, confirmed by nobody");
+  if (const std::string doubt = doubt_of_grid(knee, review, key.bone);
+      verdict.source.empty() && !doubt.empty())
+    reasons.push_back("the grid: " + doubt);
   verdict.is_reliable = reasons.empty();
   return verdict;
+}
+
+std::vector<std::string> wrong_in_plan(const plan_review::CaseReview& review) {
+  std::vector<std::string> wrong;
+  for (const auto& [key, measured] : review.tunnels())
+    for (const std::string& words : tunnels::wrong_in_words(review.checks(key)))
+      wrong.push_back(tunnels::name_of(key) + ": " + words);
+  return wrong;
 }
 
 void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,
@@ -81,8 +101,9 @@ void describe_tunnel(const Context& context, const cases::Case& knee, const plan
   }
   if (const auto fit = cases::plan_fit(knee, key); !fit.is_valid())
     context.say("  ! not valid: " + fit.reason);
-  if (verdict.source.empty() && state_of_grid(knee, review, key.bone) == std::string_view("proposed"))
-    context.say("  ! Landmarks: proposed from the bone's shape, confirmed by nobody");
+  if (const std::string doubt = doubt_of_grid(knee, review, key.bone);
+      verdict.source.empty() && !doubt.empty())
+    context.say("  ! Grid: " + doubt);
   for (const auto& check : review.checks(key)) {
     const bool is_amiss =
         check.verdict == PlanCheck::Verdict::Look || check.verdict == PlanCheck::Verdict::Wrong;

@@ -302,8 +302,8 @@ double Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm, d
   };
   if (const auto doubts = content_.bone_doubts.find(kind); doubts != content_.bone_doubts.end())
     for (const std::string& doubt : doubts->second) row("look", true, "Bone: " + doubt);
-  if (has_proposed_grid(content_, kind))
-    row("look", true, "Landmarks: proposed by the program from the bone's shape, confirmed by nobody");
+  if (const std::string doubt = grid_doubt(content_, kind); !doubt.empty())
+    row("look", true, "Grid: " + doubt);
   if (of_graft == nullptr) {
     if (is_drawn)
       pdf_.text(x_mm, y_mm, review_.has_bone(kind) ? "No tunnel is planned." : "The case has no such bone.",

@@ -20,6 +20,7 @@
 #include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/plan_review/proposed_landmarks.h"
+#include "planning/plan_review/tunnel_verdict.h"
 #include "planning/postop/achieved_file.h"
 #include "planning/tunnels/tunnel.h"
 
@@ -227,11 +228,10 @@ std::vector<std::string> shortcomings_of(const Content& content) {
   return sentences;
 }
 
-bool has_proposed_grid(const Content& content, bones::BoneKind bone) {
-  if (!content.review->has_bone(bone)) return false;
+std::string grid_doubt(const Content& content, bones::BoneKind bone) {
+  if (!content.review->has_bone(bone)) return "";
   const tunnels::PlanSurroundings& surroundings = content.review->bone(bone).surroundings;
-  return (surroundings.quadrant || surroundings.plateau) &&
-         plan_review::state_of_grid(content.knee, bone) == landmarks::LandmarkState::Proposed;
+  return surroundings.quadrant || surroundings.plateau ? plan_review::grid_doubt(content.knee, bone) : "";
 }
 
 std::optional<postop::AchievedPlace> place_of(const Content& content,

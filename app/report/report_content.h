@@ -85,8 +85,9 @@ inline constexpr double kGatheredShare = 0.3;
 
 // What the report tells less of than was recorded, or tells of what was not: a sentence each.
 [[nodiscard]] std::vector<std::string> shortcomings_of(const Content& content);
-// Whether percentages and axes of this bone follow from landmarks of which nobody has looked at all.
-[[nodiscard]] bool has_proposed_grid(const Content& content, bones::BoneKind bone);
+// What speaks against the landmarks that percentages and axes of this bone follow from, in words that follow
+// "Grid: "; empty where somebody has looked at them all, and where they give none.
+[[nodiscard]] std::string grid_doubt(const Content& content, bones::BoneKind bone);
 // Where navigation says that it was drilled; nullopt where the case lacks the bone, or has another surface.
 [[nodiscard]] std::optional<postop::AchievedPlace> place_of(const Content& content,
                                                             const operation::AchievedTunnel& achieved);

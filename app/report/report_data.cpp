@@ -200,7 +200,8 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
     json["bone_doubts"][std::string(bones::to_text(kind))] = doubts;
   json["proposed_landmarks"] = ordered_json::array();  // bones whose grid and axes follow from such
   for (const auto& [kind, bone] : content.knee.bones)
-    if (has_proposed_grid(content, kind)) json["proposed_landmarks"].push_back(bones::to_text(kind));
+    if (grid_doubt(content, kind).starts_with("landmarks proposed"))
+      json["proposed_landmarks"].push_back(bones::to_text(kind));
   json["plan_sha256"] = cases::plan_sha256(cases::with_named_meshes(content.knee));
   json["tunnels"] = tunnels_of(content);
   json["session"] = session_of(content);

@@ -24,4 +24,25 @@ bool is_grid_confirmed(bones::BoneKind bone, const Landmarks& known, const Landm
   });
 }
 
+std::string grid_doubt(bones::BoneKind bone, const Landmarks& known, const LandmarkStates& states) {
+  std::string proposed, missing;
+  bool has_confirmed = false;
+  for (const std::string& name : grid_landmarks(bone, known)) {
+    if (known.contains(name) && state_of(states, name) == LandmarkState::Confirmed) {
+      has_confirmed = true;
+      continue;
+    }
+    std::string& names = known.contains(name) ? proposed : missing;
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  std::string doubt;
+  if (!proposed.empty())
+    doubt = has_confirmed ? "landmarks proposed from the bone's shape and not confirmed: " + proposed
+                          : "landmarks proposed from the bone's shape, confirmed by nobody";
+  if (!missing.empty())
+    doubt += (doubt.empty() ? "" : "; ") + ("landmarks missing: " + missing) +
+             (bone == bones::BoneKind::Femur ? ", so that it is seen along the scanner's axis" : "");
+  return doubt;
+}
+
 }  // namespace arthronaut::landmarks

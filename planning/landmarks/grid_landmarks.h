@@ -17,4 +17,10 @@ namespace arthronaut::landmarks {
 [[nodiscard]] bool is_grid_confirmed(bones::BoneKind bone, const Landmarks& known,
                                      const LandmarkStates& states);
 
+// What speaks against the grid, in words that follow "Grid: "; empty where is_grid_confirmed(). Which of its
+// landmarks nobody confirmed, and which are missing: without the pair of condyles the view of a femur's grid
+// is the scanner's, whoever placed the rest.
+[[nodiscard]] std::string grid_doubt(bones::BoneKind bone, const Landmarks& known,
+                                     const LandmarkStates& states);
+
 }  // namespace arthronaut::landmarks

@@ -3,8 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "planning/geometry/rigid_transform.h"
 #include "planning/landmarks/anatomical_axes.h"
@@ -16,6 +19,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kLeastSpan_mm = 5.0;
+// A choice: a cap of a condyle's radius has lost 0.02 mm of its height where it is so large.
+constexpr double kLeastReach_mm2 = 3.0;
 constexpr double kRounding_mm = 1e-6;  // a vertex on the edge counts alike however the bone lies
 
 std::optional<Vector3d> find(const Landmarks& landmarks, const char* name) {
@@ -36,6 +41,42 @@ std::optional<Vector3d> condylar_line(const Landmarks& landmarks) {
   return std::nullopt;
 }
 
+// How far along the unit `direction` from `origin` the vertices that count reach: as far as the furthest of
+// them that stand for kLeastReach_mm2 of the surface between them, as it is seen along it, and the less the
+// steeper it is. A needle stands for next to nothing and moves nothing, however long it is; a corner of a
+// coarse mesh stands for enough by itself.
+// -infinity where none counts.
+template <typename Counts>
+double reach_of(const geometry::TriangleMesh& mesh, const Counts& counts, const Vector3d& origin,
+                const Vector3d& direction) {
+  std::vector<double> seen_mm2(mesh.vertices_mm.size(), 0);
+  for (const auto& t : mesh.triangles) {
+    const auto corner = [&](std::size_t k) -> const Vector3d& {
+      return mesh.vertices_mm[static_cast<std::size_t>(t[k])];
+    };
+    const Vector3d area = 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    const double across = area.dot(direction);
+    if (!(across > 0)) continue;
+    const double facing = across / area.norm();  // the flank of a needle is steep
+    for (const std::int32_t k : t) seen_mm2[static_cast<std::size_t>(k)] += facing * facing * across / 3;
+  }
+  std::vector<std::pair<double, double>> heights;  // and what is seen of each
+  for (std::size_t i = 0; i < mesh.vertices_mm.size(); ++i)
+    if (counts(mesh.vertices_mm[i]))
+      heights.emplace_back((mesh.vertices_mm[i] - origin).dot(direction), seen_mm2[i]);
+  std::ranges::sort(heights, std::greater<>());
+  double sum_mm2 = 0, before_mm = -std::numeric_limits<double>::infinity();
+  for (const auto& [height_mm, each_mm2] : heights) {
+    if (sum_mm2 + each_mm2 >= kLeastReach_mm2)
+      // Evenly from one to the next, so that a landmark that is dragged moves the edge without a jump.
+      return sum_mm2 > 0 ? before_mm + (height_mm - before_mm) * (kLeastReach_mm2 - sum_mm2) / each_mm2
+                         : height_mm;
+    sum_mm2 += each_mm2;
+    before_mm = height_mm;
+  }
+  return before_mm;
+}
+
 struct Extents {
   double deep = std::numeric_limits<double>::infinity(), shallow = -deep, low = 0;
 };
@@ -52,14 +93,14 @@ Extents extents_of(const geometry::TriangleMesh& femur, const Landmarks& landmar
     return {(*deep - front).dot(quadrant.shallow), (*shallow - front).dot(quadrant.shallow),
             (*low - front).dot(quadrant.low)};
   }
-  for (const Vector3d& vertex : femur.vertices_mm) {
+  const auto is_condyle = [&](const Vector3d& vertex) {
     const Vector3d from_roof = vertex - front;
-    if (from_roof.dot(quadrant.lateral) < kRounding_mm || from_roof.dot(quadrant.low) < -kRounding_mm)
-      continue;
-    extents.deep = std::min(extents.deep, from_roof.dot(quadrant.shallow));
-    extents.shallow = std::max(extents.shallow, from_roof.dot(quadrant.shallow));
-    extents.low = std::max(extents.low, from_roof.dot(quadrant.low));
-  }
+    return from_roof.dot(quadrant.lateral) >= kRounding_mm && from_roof.dot(quadrant.low) >= -kRounding_mm;
+  };
+  const auto reach = [&](const Vector3d& direction) { return reach_of(femur, is_condyle, front, direction); };
+  extents.deep = -reach(-quadrant.shallow);
+  extents.shallow = reach(quadrant.shallow);
+  extents.low = reach(quadrant.low);
   return extents;
 }
 

@@ -1,5 +1,6 @@
 #include "planning/plan_export/markups_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -138,6 +139,23 @@ void read_markup(const json& node, const Place& place, MarkupsPlan& plan) {
   }
 }
 
+// "3dd6dcd6" of "diameter_mm=9.000, right knee, plan 3dd6dcd6".
+std::string word_after(const std::string& text, std::string_view key) {
+  const auto at = text.find(key);
+  if (at == std::string::npos) return "";
+  const auto from = at + key.size();
+  return text.substr(from, text.find_first_of(" ,;", from) - from);
+}
+
+json parsed(const std::filesystem::path& file) {
+  json root = json::parse(files::read_text(file), nullptr, false);
+  if (root.is_discarded() || !root.is_object()) throw InvalidInput(file, "", "is no JSON object");
+  const auto markups = root.find("markups");
+  if (markups == root.end() || !markups->is_array())
+    throw InvalidInput(file, "markups", "is missing: no markups of 3D Slicer");
+  return root;
+}
+
 }  // namespace
 
 std::string markups_of(const cases::Case& knee) {
@@ -170,15 +188,11 @@ std::string markups_of(const cases::Case& knee) {
 }
 
 MarkupsPlan read_markups(const std::filesystem::path& file) {
-  const std::string text = files::read_text(file);
-  const json root = json::parse(text, nullptr, false);
-  if (root.is_discarded() || !root.is_object()) throw InvalidInput(file, "", "is no JSON object");
-  const auto markups = root.find("markups");
-  if (markups == root.end() || !markups->is_array())
-    throw InvalidInput(file, "markups", "is missing: no markups of 3D Slicer");
+  const json root = parsed(file);
+  const json& markups = root.at("markups");
   MarkupsPlan plan;
-  for (std::size_t i = 0; i < markups->size(); ++i)
-    read_markup((*markups)[i], {file, "markups[" + std::to_string(i) + "]"}, plan);
+  for (std::size_t i = 0; i < markups.size(); ++i)
+    read_markup(markups[i], {file, "markups[" + std::to_string(i) + "]"}, plan);
   return plan;
 }
 
@@ -204,6 +218,36 @@ TakenTunnels read_tunnels(const std::filesystem::path& file, const cases::Plan& 
   }
   taken.tunnels = std::move(plan.tunnels);
   return taken;
+}
+
+std::string origin_doubt(const std::filesystem::path& file, const cases::Case& knee,
+                         const std::vector<cases::PlanVersion>& kept) {
+  const json root = parsed(file);
+  const auto is_of = [&](const std::string& hash) {
+    cases::Case other = knee;
+    const auto says_it = [&] { return word_after(cases::plan_in_words(other), "plan ") == hash; };
+    if (says_it()) return true;
+    return std::ranges::any_of(kept, [&](const cases::PlanVersion& version) {
+      other.plan = version.plan;
+      return says_it();
+    });
+  };
+  const bones::Side other_side = knee.side == bones::Side::Left ? bones::Side::Right : bones::Side::Left;
+  std::string doubt;
+  for (const json& node : root.at("markups")) {
+    if (!node.is_object()) continue;
+    const std::string said = text_of(node, "description", ""), name = text_of(node, "name", "");
+    if (!name.ends_with(" tunnel")) continue;
+    if (said.find(std::string(bones::to_text(other_side)) + " knee") != std::string::npos)
+      throw InvalidInput(file, name,
+                         "is of a " + std::string(bones::to_text(other_side)) + " knee (\"" + said +
+                             "\"), and the case is a " + std::string(bones::to_text(knee.side)) + " one");
+    const std::string hash = word_after(said, ", plan ");
+    if (doubt.empty() && !hash.empty() && !is_of(hash))
+      doubt = "the markups say that they were written of plan " + hash +
+              ", which is neither the case's nor a version that it keeps: are they of this knee?";
+  }
+  return doubt;
 }
 
 }  // namespace arthronaut::plan_export

@@ -12,9 +12,11 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "planning/bones/bone.h"
 #include "planning/cases/case.h"
+#include "planning/cases/plan_versions.h"
 #include "planning/geometry/surface.h"
 #include "planning/tunnels/tunnel.h"
 
@@ -45,5 +47,11 @@ struct TakenTunnels {
 [[nodiscard]] TakenTunnels read_tunnels(
     const std::filesystem::path& file, const cases::Plan& plan,
     const std::function<const geometry::Surface*(bones::BoneKind)>& surface_of);
+
+// What a file that says of which knee and plan it was written says against this case: throws InvalidInput
+// where it was the other knee; words where it was another plan than the case's of now and every one of
+// `kept`. Empty where nothing is against it, as where descriptions were emptied.
+[[nodiscard]] std::string origin_doubt(const std::filesystem::path& file, const cases::Case& knee,
+                                       const std::vector<cases::PlanVersion>& kept);
 
 }  // namespace arthronaut::plan_export

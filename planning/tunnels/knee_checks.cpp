@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "planning/files/format.h"
+#include "planning/geometry/rigid_transform.h"
 #include "planning/graft/graft_course.h"
 #include "planning/graft/roof_clearance.h"
 #include "planning/tunnels/knee_pose.h"
@@ -14,6 +15,15 @@ namespace arthronaut::tunnels {
 namespace {
 
 using Verdict = PlanCheck::Verdict;
+
+// Cone 2019 (10.2106/JBJS.RVW.18.00145), 92 articles: the means of adults' ligaments are 26 to 38 mm, by
+// whatever they were measured. The longest later one is 40.6 +- 3.6 mm (PMC7120849).
+constexpr double kShortGraft_mm = 26, kLongGraft_mm = 44.2;
+// A choice: grafts are measured in steps of half a millimetre.
+constexpr double kDiametersApart_mm = 0.5;
+// A choice, some 1.5 sigma of what the axes of both bones tell of the flexion: up to here a knee was imaged
+// in extension.
+constexpr double kStillExtended_deg = 10;
 
 std::string name_of(const char* tunnel, const KneePlan& plan) {
   const norms::Bundle graft = plan.graft;
@@ -41,17 +51,56 @@ graft::GraftEnd end_of(const Tunnel& tunnel, const TunnelGeometry& measured) {
   return {measured.entry_on_surface_mm, tunnel.direction};
 }
 
+// Studies measure the ligament, each in its way and in a knee as it lay: what no mean of theirs comes near is
+// to be looked at, and only of a graft in place of the whole ligament.
 PlanCheck check_graft_length(const KneePlan& plan) {
   const double in_joint_mm =
       (plan.femoral_measured->entry_on_surface_mm - plan.tibial_measured->entry_on_surface_mm).norm();
   const double all_mm = in_joint_mm + plan.femoral_measured->length_mm + plan.tibial_measured->length_mm;
-  return {
+  PlanCheck check{
       .verdict = Verdict::Note,
       .name = "Graft length",
       .text = number_text(in_joint_mm, "mm") + " in the joint, " + number_text(all_mm, "mm") + " in all",
-      .source = "as imaged, straight between the openings; the ligament measures 40.6 +- 3.6 mm (PMC7120849)",
+      .source = "as imaged, straight between the openings; ",
       .value = in_joint_mm,
       .unit = "mm"};
+  if (plan.graft != norms::Bundle::Whole) {
+    check.source += "of one of two bundles: no published limit";
+    return check;
+  }
+  check.source +=
+      "the means of studies of the ligament are 26 to 38 mm (Cone 2019, 92 articles), along it in sagittal "
+      "MR "
+      "images 40.6 +- 3.6 mm (PMC7120849)";
+  check.least = kShortGraft_mm;
+  check.greatest = kLongGraft_mm;
+  const bool is_short = in_joint_mm<kShortGraft_mm, is_long = in_joint_mm> kLongGraft_mm;
+  check.verdict = is_short || is_long ? Verdict::Look : Verdict::Fine;
+  if (is_short) check.text += ": shorter in the joint than " + limit_text(kShortGraft_mm, "mm");
+  if (is_long) check.text += ": longer in the joint than " + limit_text(kLongGraft_mm, "mm");
+  return check;
+}
+
+// One graft through two tunnels of other widths is loose in the wider one. nullopt: they are alike.
+std::optional<PlanCheck> check_graft_diameters(const KneePlan& plan) {
+  const double apart_mm = std::abs(plan.femoral->diameter_mm - plan.tibial->diameter_mm);
+  if (apart_mm < 0.05) return std::nullopt;  // as they are said
+  PlanCheck check{.verdict = Verdict::Note,
+                  .name = "Graft diameter",
+                  .text = "femur " + number_text(plan.femoral->diameter_mm, "mm") + ", tibia " +
+                          number_text(plan.tibial->diameter_mm, "mm"),
+                  .source =
+                      "one graft; the means of studies are 8.2 mm in the femur and 8.4 mm in the tibia "
+                      "(PMC6024536), " +
+                      limit_text(kDiametersApart_mm, "mm") + " by choice",
+                  .value = apart_mm,
+                  .unit = "mm",
+                  .greatest = kDiametersApart_mm};
+  if (apart_mm > kDiametersApart_mm + 1e-9) {
+    check.verdict = Verdict::Look;
+    check.text += ": one graft is seldom of two widths";
+  }
+  return check;
 }
 
 std::optional<graft::GraftCourse> course_of_insertions(norms::Bundle graft,
@@ -139,6 +188,17 @@ PlanCheck note_bend(const char* name, double extended_deg, double greatest_deg) 
           .unit = "deg"};
 }
 
+// By the long axes of both bones, in the femur's lateral view; nullopt where either is the scanner's. Told by
+// the joint's ends alone it is good to some 7 degrees.
+std::optional<double> imaged_flexion_deg(const KneeSurroundings& surroundings) {
+  using Origin = landmarks::AnatomicalAxes::Origin;
+  const auto& femur = surroundings.femur_axes;
+  const auto& tibia = surroundings.tibia_axes;
+  if (!femur || !tibia || femur->origin == Origin::FromScanner) return std::nullopt;
+  return geometry::deg_from_rad(
+      std::atan2(tibia->proximal.dot(femur->anterior), tibia->proximal.dot(femur->proximal)));
+}
+
 PlanCheck check_roof(const KneePlan& plan, const KneeSurroundings& surroundings, const PlanNorms& norms) {
   if (const std::string missing = missing_tibial_tunnel(plan); !missing.empty())
     return not_checked("Roof", missing);
@@ -156,20 +216,34 @@ PlanCheck check_roof(const KneePlan& plan, const KneeSurroundings& surroundings,
                              .femur_axes = *surroundings.femur_axes});
   if (!clearance) return not_checked("Roof", "a Blumensaat's line that the lateral view shows");
   const double least_mm = std::min(clearance->outlet_mm, clearance->opening_mm);
+  const auto flexed_deg = imaged_flexion_deg(surroundings);
+  const bool is_flexed = flexed_deg && *flexed_deg > kStillExtended_deg;
   PlanCheck check{
       .verdict = Verdict::Fine,
       .name = "Roof",
-      .text = number_text(least_mm, "mm") + " between roof and graft in extension",
-      .source =
-          "the tibial tunnel prolonged, against Blumensaat's line, as imaged; the opening behind the "
-          "roof's slope (Howell 1995)",
+      .text = number_text(least_mm, "mm") + " between roof and graft",
+      .source = "the tibial tunnel prolonged, against Blumensaat's line, as imaged, " +
+                (!flexed_deg ? "which is taken for extension: how far it was flexed is not known"
+                 : is_flexed ? "flexed by about " + limit_text(std::round(*flexed_deg), "deg") +
+                                   " by the axes of both bones; the roof comes nearer as the knee is extended"
+                             : "which is taken for extension: by the axes of both bones it is within " +
+                                   limit_text(kStillExtended_deg, "deg") + " of it") +
+                "; the opening behind the roof's slope (Howell 1995)",
       .value = least_mm,
       .unit = "mm",
       .least = norms.least_roof_clearance_mm,
       .at_mm = anterior->second};
+  if (is_flexed)
+    check.text += ", as imaged: flexed by about " + limit_text(std::round(*flexed_deg), "deg");
+  else
+    check.text += " in extension";
   if (least_mm < norms.least_roof_clearance_mm) {
     check.verdict = Verdict::Look;
-    check.text += ": the roof presses on it";
+    check.text += is_flexed ? ", and the roof presses on it already" : ": the roof presses on it";
+  } else if (is_flexed) {
+    check.verdict = Verdict::Note;
+    check.text += ", so it is not judged";
+    check.least.reset();
   }
   return check;
 }
@@ -243,6 +317,7 @@ std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,
     return checks;
   }
   if (is_femur) checks.push_back(check_graft_length(plan));
+  if (auto diameters = check_graft_diameters(plan)) checks.push_back(*std::move(diameters));
   if (!surroundings.axis) {
     const char* needed = "the flexion axis: two condyles' centres, their posterior points or the epicondyles";
     if (is_femur)

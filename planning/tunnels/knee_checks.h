@@ -43,11 +43,14 @@ struct KneePlan {
   bool has_other_tunnels = false;
 };
 
-// Femur: length of the graft in the joint and in all, its change over flexion, how that differs from a graft
-// between the insertions' middles, its bend at the femur. The change is judged by its customary limit only
-// where those insertions keep it themselves in the same model; else it is a note. Tibia:
-// the roof in extension, which asks for the tibial tunnel alone, the bend at the tibia. What lacks a tunnel,
-// an axis or Blumensaat's line is said to be not checked; of bones that do not lie in one frame all of it is.
+// Femur: length of the graft in the joint, held against studies of the whole ligament, and in all, its change
+// over flexion, how that differs from a graft between the insertions' middles, its bend at the femur. The
+// change is judged by its customary limit only where those insertions keep it themselves in the same model;
+// else it is a note. Tibia: the roof in extension, which asks for the tibial tunnel alone and is not judged
+// in a knee that was imaged flexed (by the axes of both bones, where both are known) unless it presses
+// already, the bend at the tibia. Both: the diameters of the graft's two tunnels, where they differ. What
+// lacks a tunnel, an axis or Blumensaat's line is said to be not checked; of bones that do not lie in one
+// frame all of it is.
 [[nodiscard]] std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,
                                                 const KneeSurroundings& surroundings,
                                                 const PlanNorms& norms = {});

@@ -284,6 +284,17 @@ void add_grid_checks(const Tunnel& tunnel, const Eigen::Vector3d& entry, const P
                                  along.source));
     checks.push_back(
         check_share("High to low", percent.high_low, across.range, "higher", "lower", across.source));
+    const auto is_known = [&](const char* name) { return surroundings.landmarks.contains(name); };
+    // As landmarks::femoral_quadrant() takes its extents.
+    if (is_known("blumensaat_anterior") &&
+        !(is_known("lateral_condyle_deep") && is_known("lateral_condyle_shallow") &&
+          is_known("lateral_condyle_low")))
+      for (PlanCheck* share : {&checks.end()[-2], &checks.end()[-1]}) {
+        share->text += "; grid from the outline";
+        share->source +=
+            "; the grid touches the outline of the bone's surface, since lateral_condyle_deep, "
+            "lateral_condyle_shallow and lateral_condyle_low are not all known";
+      }
     return;
   }
   if (!surroundings.plateau) {

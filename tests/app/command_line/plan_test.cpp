@@ -31,6 +31,11 @@ class PlanCommand : public ::testing::Test {
  protected:
   PlanCommand() { save(knee_); }
   void save(const cases::Case& knee) const { cases::save_case(folder_ / "knee.arthro", knee); }
+  // Of the tibial tunnel, as the command line takes it.
+  [[nodiscard]] std::string entry_text() const {
+    const Eigen::Vector3d& entry = knee_.plan.tunnels.at(bones::BoneKind::Tibia).entry_mm;
+    return std::to_string(entry.x()) + "," + std::to_string(entry.y()) + "," + std::to_string(entry.z());
+  }
   [[nodiscard]] test::ProgramResult run(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin() + 1, folder_ / "knee.arthro");
     return run_program(arguments);
@@ -246,7 +251,8 @@ TEST_F(PlanCommand, ShowsThePlanOnProposedLandmarksAndKeepsNoneOfThem) {
   save(knee_);
   const auto result = run({"plan", "--bone", "femur"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_THAT(result.output, HasSubstr("Landmarks: proposed from the bone's shape, confirmed by nobody"));
+  EXPECT_THAT(result.output,
+              HasSubstr("Grid: landmarks proposed from the bone's shape, confirmed by nobody"));
   EXPECT_THAT(result.output, HasSubstr("Deep to shallow: "));
   EXPECT_THAT(result.output, Not(HasSubstr("not checked")));
   EXPECT_THAT(run({"plan", "--bone", "femur", "--json"}).output, HasSubstr("\"landmarks\": \"proposed\""));
@@ -286,6 +292,39 @@ TEST_F(PlanCommand, Hazard46SaysWhatSpokeAgainstTheBone) {
   const auto made = run({"plan", "--bone", "femur", "--default"});
   EXPECT_EQ(made.exit_code, 4);
   EXPECT_THAT(made.errors, HasSubstr("the femur: the images end within it"));
+}
+
+// What is placed by hand is done as it was asked: that it cannot be drilled is said wherever it goes, and is
+// no failure of the command.
+TEST_F(PlanCommand, AWrongPlanIsToldHoweverItWasMade) {
+  const auto placed =
+      run({"plan", "--bone", "tibia", "--entry=" + entry_text(), "--direction", "0.8,-0.4,-0.3"});
+  EXPECT_EQ(placed.exit_code, 0) << placed.errors;
+  EXPECT_THAT(placed.output, HasSubstr("  x "));
+  const auto exported = run({"plan", "--export", folder_ / "out"});
+  EXPECT_EQ(exported.exit_code, 0) << exported.errors;
+  EXPECT_THAT(exported.output, HasSubstr("Wrong, and exported all the same: tibia: "));
+}
+
+// Markups that say themselves that they are of the other knee are refused; of another plan they are doubted.
+TEST_F(PlanCommand, MarkupsOfAnotherKneeOrPlanAreNotTakenSilently) {
+  ASSERT_EQ(run({"plan", "--export", folder_ / "out"}).exit_code, 0);
+  const std::string file = folder_ / "out" / "plan.mrk.json";
+  const std::string ours = files::read_text(file);
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = ours;
+    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+    files::write_atomically(file, text);
+    return run({"plan", "--from-markups", file});
+  };
+  const auto other_knee = with("right knee", "left knee");
+  EXPECT_EQ(other_knee.exit_code, 3);
+  EXPECT_THAT(other_knee.errors, HasSubstr("is of a left knee"));
+  const auto other_plan = with(", plan ", ", plan 0");
+  EXPECT_EQ(other_plan.exit_code, 4);
+  EXPECT_THAT(other_plan.errors, HasSubstr("written of plan 0"));
+  EXPECT_EQ(with("right knee", "right knee").exit_code, 0);
 }
 
 TEST_F(PlanCommand, ExportsPlanAndDrilledBones) {

@@ -129,7 +129,7 @@ class Sources : public ::testing::Test {
 TEST_F(Sources, AreFoundInTheCase) {
   const auto for_camera = sources_for(Purpose::Camera, folder_, kTurns);
   ASSERT_GE(for_camera.size(), 3U);
-  EXPECT_EQ(for_camera[0].name, open_case::kSimulatedScope);
+  EXPECT_EQ(for_camera[0].name, camera::kSimulatedScope);
   EXPECT_EQ(for_camera[1].name, "Pictures in board");
   EXPECT_TRUE(for_camera[1].is_stills);
   EXPECT_EQ(for_camera[2].name, "knee.mkv");
@@ -176,7 +176,7 @@ TEST_F(Sources, Hazard26ARealCaseNeverOffersTheSimulatorUnasked) {
     ASSERT_FALSE(asked.empty());
     EXPECT_TRUE(asked.back().is_simulated);
   }
-  record.scope_name = open_case::kSimulatedScope;
+  record.scope_name = camera::kSimulatedScope;
   camera::write_camera_file(folder_ / "camera.json", record);
   EXPECT_TRUE(sources_for(Purpose::Tools, folder_, kTurns).front().is_simulated);
 }

@@ -60,6 +60,49 @@ TEST(FemoralQuadrant, NamesWhatItFollowsFrom) {
   EXPECT_EQ(grid_landmarks(bones::BoneKind::Femur, marks).size(), 4U) << "the outline tells the extents";
 }
 
+// One vertex that a segmentation drew out to a needle is no condyle: without landmarks of its extents the
+// rectangle is the one of the same bone without it, on every side.
+TEST(FemoralQuadrant, ANeedleIsNoOutline) {
+  const auto bone = test::ellipsoid({40, 30, 20}, 5);
+  const auto clean = femoral_quadrant(bone, roof_of_a_box(), bones::Side::Right);
+  ASSERT_TRUE(clean);
+  for (const Vector3d& way : {clean->low, clean->shallow, Vector3d(-clean->shallow)}) {
+    auto drawn_out = bone;
+    // Beside the middle, where the bone is on the lateral side of the notch.
+    const Vector3d towards = 15 * clean->lateral + 30 * way;
+    auto& tip = *std::ranges::max_element(drawn_out.vertices_mm, {}, [&](const Vector3d& v) {
+      return v.normalized().dot(towards.normalized());
+    });
+    tip += 6 * way;
+    const auto found = femoral_quadrant(drawn_out, roof_of_a_box(), bones::Side::Right);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->height_mm, clean->height_mm, 0.05);
+    EXPECT_NEAR(found->depth_mm, clean->depth_mm, 0.05);
+    EXPECT_LT((found->corner_mm - clean->corner_mm).norm(), 0.05);
+  }
+}
+
+// Two landmarks that the surgeon placed are not "proposed by the program": what is missing is said to be
+// missing.
+TEST(GridLandmarks, MissingOnesAreNotCalledProposed) {
+  Landmarks marks = roof_of_a_box();
+  const std::string missing = grid_doubt(bones::BoneKind::Femur, marks, {});
+  EXPECT_EQ(
+      missing,
+      "landmarks missing: lateral_condyle_posterior, medial_condyle_posterior, so that it is seen along "
+      "the scanner's axis");
+  EXPECT_FALSE(is_grid_confirmed(bones::BoneKind::Femur, marks, {}));
+  marks["lateral_condyle_center"] = {-20, 20, -5};
+  marks["medial_condyle_center"] = {20, 21, -5};
+  EXPECT_EQ(grid_doubt(bones::BoneKind::Femur, marks, {}), "");
+  LandmarkStates states{{"medial_condyle_center", LandmarkState::Proposed}};
+  EXPECT_EQ(grid_doubt(bones::BoneKind::Femur, marks, states),
+            "landmarks proposed from the bone's shape and not confirmed: medial_condyle_center");
+  for (const auto& [name, at] : marks) states[name] = LandmarkState::Proposed;
+  EXPECT_EQ(grid_doubt(bones::BoneKind::Femur, marks, states),
+            "landmarks proposed from the bone's shape, confirmed by nobody");
+}
+
 TEST(FemoralQuadrant, FindsThePointOfAPercentage) {
   const auto quadrant = femoral_quadrant(test::box({40, 30, 20}), roof_of_a_box(), bones::Side::Left);
   ASSERT_TRUE(quadrant);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "planning/bones/mesh_repair.h"
 #include "planning/geometry/rigid_transform.h"
 #include "tests/planning/geometry/shapes.h"
+#include "tests/planning/plan_export/exported_case.h"
 
 namespace arthronaut::plan_export {
 namespace {
@@ -35,8 +37,8 @@ TEST(DrilledBone, TakesACylinderOutOfASlab) {
 // Of 275,000 triangles each edge in the box about a side as long as the tunnel was tried against it: 14 s of
 // 16 that an export took.
 TEST(DrilledBone, ATunnelsWallIsInShortPieces) {
-  const auto femur = knee_case().bones.at(BoneKind::Femur).mesh;
-  const auto tunnel = knee_case().plan.tunnels.at(BoneKind::Femur);
+  const auto femur = test::knee_case().bones.at(BoneKind::Femur).mesh;
+  const auto tunnel = test::knee_case().plan.tunnels.at(BoneKind::Femur);
   const auto drilled = drill(femur, tunnel);
   ASSERT_TRUE(drilled.is_usable()) << drilled.reason;
   EXPECT_TRUE(bones::mend_mesh(drilled.mesh).report.is_closed);

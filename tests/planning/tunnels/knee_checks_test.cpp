@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::tunnels {
 namespace {
@@ -82,6 +86,91 @@ TEST_F(LengthOverFlexion, IsHeldAgainstTheInsertionsInBothDirections) {
   EXPECT_EQ(slack.verdict, Verdict::Fine);
   EXPECT_NEAR(*slack.value, longer_mm(4) - longer_mm(6), 1e-9);
   EXPECT_THAT(slack.text, HasSubstr("slacker, at 90.0 deg"));
+}
+
+// A graft between two tunnels, their openings so far apart in the joint.
+class OneGraft : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::vector<PlanCheck> checks(BoneKind bone,
+                                              norms::Bundle graft = norms::Bundle::Whole) const {
+    TunnelGeometry in_femur{.enters_bone = true}, in_tibia{.enters_bone = true};
+    in_tibia.entry_on_surface_mm = {0, 0, -apart_mm_};
+    return check_knee(bone, {&femoral_, &in_femur, &tibial_, &in_tibia, graft}, {});
+  }
+  static std::optional<PlanCheck> named(const std::vector<PlanCheck>& checks, std::string_view name) {
+    for (const PlanCheck& check : checks)
+      if (check.name == name) return check;
+    return std::nullopt;
+  }
+
+  double apart_mm_ = 30;
+  Tunnel femoral_{.bone = BoneKind::Femur, .diameter_mm = 9},
+      tibial_{.bone = BoneKind::Tibia, .diameter_mm = 9};
+};
+
+// What no study's ligament is as short or as long as, is said; of a bundle nobody has published a limit.
+TEST_F(OneGraft, IsHeldAgainstTheLigamentsOfStudies) {
+  EXPECT_EQ(named(checks(BoneKind::Femur), "Graft length")->verdict, Verdict::Fine);
+  apart_mm_ = 17.9;
+  const auto is_short = named(checks(BoneKind::Femur), "Graft length");
+  EXPECT_EQ(is_short->verdict, Verdict::Look);
+  EXPECT_EQ(is_short->text, "17.9 mm in the joint, 17.9 mm in all: shorter in the joint than 26 mm");
+  EXPECT_EQ(named(checks(BoneKind::Femur, norms::Bundle::Posterolateral), "Graft length")->verdict,
+            Verdict::Note);
+  apart_mm_ = 45;
+  EXPECT_EQ(named(checks(BoneKind::Femur), "Graft length")->verdict, Verdict::Look);
+}
+
+// Both tunnels are within the norm of a diameter, and one graft goes through both.
+TEST_F(OneGraft, IsOfOneDiameter) {
+  EXPECT_FALSE(named(checks(BoneKind::Femur), "Graft diameter"));
+  tibial_.diameter_mm = 9.5;
+  EXPECT_EQ(named(checks(BoneKind::Tibia), "Graft diameter")->verdict, Verdict::Note);
+  tibial_.diameter_mm = 10;
+  for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) {
+    const auto check = named(checks(bone), "Graft diameter");
+    ASSERT_TRUE(check);
+    EXPECT_EQ(check->verdict, Verdict::Look);
+    EXPECT_EQ(check->text, "femur 9.0 mm, tibia 10.0 mm: one graft is seldom of two widths");
+  }
+}
+
+// A knee whose tibia was imaged turned backwards by so much. The tunnel's mouth lies 30 mm below the roof's
+// anterior end and so far behind it.
+class RoofAsImaged : public ::testing::Test {
+ protected:
+  [[nodiscard]] PlanCheck roof(double flexed_deg, double behind_mm) const {
+    KneeSurroundings knee;
+    knee.femur_landmarks = {{"blumensaat_anterior", {0, -10, 0}}, {"blumensaat_posterior", {0, 10, 12}}};
+    knee.femur_axes = landmarks::AnatomicalAxes{.origin = landmarks::AnatomicalAxes::Origin::FromLandmarks};
+    const double flexed = flexed_deg * geometry::kPi / 180;
+    knee.tibia_axes = landmarks::AnatomicalAxes{.origin = landmarks::AnatomicalAxes::Origin::FromLandmarks,
+                                                .anterior = {0, -std::cos(flexed), -std::sin(flexed)},
+                                                .proximal = {0, -std::sin(flexed), std::cos(flexed)}};
+    if (std::isnan(flexed_deg)) knee.tibia_axes.reset();
+    const Tunnel tibial{.bone = BoneKind::Tibia, .direction = {0, 0, -1}, .diameter_mm = 9};
+    TunnelGeometry in_tibia{.enters_bone = true};
+    in_tibia.entry_on_surface_mm = {0, -10 + behind_mm, -30};
+    return check_knee(BoneKind::Tibia, {.tibial = &tibial, .tibial_measured = &in_tibia}, knee).front();
+  }
+};
+
+// In a knee that was imaged flexed the number says nothing of extension: no tick. One that is pressed on
+// already is pressed on the more as it is extended.
+TEST_F(RoofAsImaged, IsJudgedInExtensionAlone) {
+  EXPECT_EQ(roof(4, 40).verdict, Verdict::Fine);
+  EXPECT_THAT(roof(4, 40).text, HasSubstr(" in extension"));
+  EXPECT_THAT(roof(4, 40).source, HasSubstr("within 10 deg of it"));
+  const PlanCheck flexed = roof(21, 40);
+  EXPECT_EQ(flexed.verdict, Verdict::Note);
+  EXPECT_TRUE(flexed.text.ends_with(
+      " between roof and graft, as imaged: flexed by about 21 deg, so it is not judged"))
+      << flexed.text;
+  EXPECT_EQ(roof(21, 0).verdict, Verdict::Look);
+  EXPECT_THAT(roof(21, 0).text, HasSubstr("presses on it already"));
+  const PlanCheck unknown = roof(std::nan(""), 40);
+  EXPECT_EQ(unknown.verdict, Verdict::Fine);
+  EXPECT_THAT(unknown.source, HasSubstr("how far it was flexed is not known"));
 }
 
 }  // namespace

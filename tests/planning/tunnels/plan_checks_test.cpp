@@ -129,6 +129,19 @@ TEST(PlanChecks, JudgesThePlaceInTheQuadrant) {
   EXPECT_EQ(named(checks, "High to low").text, "10.0 %: higher than 28.8 %");
 }
 
+// A grid of Blumensaat's line alone touches the outline of the surface: the numbers say so beside themselves.
+TEST(PlanChecks, SayThatTheGridIsFromTheOutline) {
+  const Tunnel tunnel{.bone = BoneKind::Femur};
+  auto geometry = inside(35, 5);
+  geometry.entry_on_surface_mm = {3, -2.84, -7.14};
+  PlanSurroundings known = with_quadrant();
+  known.landmarks = {{"blumensaat_anterior", {0, 0, 0}}, {"blumensaat_posterior", {0, 10, 0}}};
+  EXPECT_EQ(named(check_plan(tunnel, geometry, known), "High to low").text, "35.7 %; grid from the outline");
+  for (const char* end : {"deep", "shallow", "low"})
+    known.landmarks["lateral_condyle_" + std::string(end)] = {0, 0, 0};
+  EXPECT_EQ(named(check_plan(tunnel, geometry, known), "High to low").text, "35.7 %");
+}
+
 // Every number to compare with says where it comes from, and norms can be changed.
 TEST(PlanChecks, NameTheirSourcesAndFollowChangedNorms) {
   const Tunnel tunnel{.bone = BoneKind::Femur};

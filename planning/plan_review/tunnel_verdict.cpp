@@ -1,0 +1,46 @@
+#include "planning/plan_review/tunnel_verdict.h"
+
+#include "planning/landmarks/grid_landmarks.h"
+
+namespace arthronaut::plan_review {
+
+using Verdict = tunnels::PlanCheck::Verdict;
+
+Verdict TunnelVerdict::worst() const {
+  return is_wrong() ? Verdict::Wrong : is_fine() ? Verdict::Fine : Verdict::Look;
+}
+
+std::string TunnelVerdict::in_short() const {
+  if (is_fine()) return "";
+  const std::size_t more = wrong.size() + look.size() - 1;
+  return (is_wrong() ? wrong : look).front() + (more > 0 ? " (and " + std::to_string(more) + " more)" : "");
+}
+
+TunnelVerdict verdict_of(const std::vector<tunnels::PlanCheck>& checks,
+                         const std::vector<std::string>& bone_doubts, const std::string& grid_doubt) {
+  TunnelVerdict verdict{.wrong = tunnels::wrong_in_words(checks)};
+  for (const std::string& doubt : bone_doubts) verdict.look.push_back("Bone: " + doubt);
+  if (!grid_doubt.empty()) verdict.look.push_back("Grid: " + grid_doubt);
+  for (const tunnels::PlanCheck& check : checks)
+    if (check.verdict == Verdict::Look) verdict.look.push_back(check.name + ": " + check.text);
+  return verdict;
+}
+
+std::string grid_doubt(const cases::Case& knee, bones::BoneKind kind) {
+  const auto marks = knee.landmarks.find(kind);
+  const auto states = knee.landmark_states.find(kind);
+  return landmarks::grid_doubt(
+      kind, marks == knee.landmarks.end() ? landmarks::Landmarks{} : marks->second,
+      states == knee.landmark_states.end() ? landmarks::LandmarkStates{} : states->second);
+}
+
+std::string side_doubt(const cases::BoneDoubts& doubts) {
+  // As planning/import/import_side.h words it, whatever the witness.
+  for (const auto& [bone, sentences] : doubts)
+    for (const std::string& sentence : sentences)
+      if (sentence.find("but the side is ") != std::string::npos && sentence.ends_with(": check the side"))
+        return sentence;
+  return "";
+}
+
+}  // namespace arthronaut::plan_review

@@ -1,0 +1,38 @@
+// What everything that is asked of a tunnel comes to: one sign and its reasons, for whoever has room for no
+// more. A plan that cannot be drilled must look like one wherever it is taken along.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "planning/cases/bone_doubts.h"
+#include "planning/cases/case.h"
+#include "planning/tunnels/plan_checks.h"
+
+namespace arthronaut::plan_review {
+
+struct TunnelVerdict {
+  // "Wall: -3.5 mm ...": of checks. What cannot be drilled like this; what is to be looked at, where also the
+  // doubts about bone and grid stand.
+  std::vector<std::string> wrong = {}, look = {};
+
+  [[nodiscard]] bool is_wrong() const { return !wrong.empty(); }
+  // Nothing speaks against it. What was not checked has not failed.
+  [[nodiscard]] bool is_fine() const { return wrong.empty() && look.empty(); }
+  [[nodiscard]] tunnels::PlanCheck::Verdict worst() const;  // Wrong, Look or Fine
+  // The first of the worst, and how many more there are; empty where it is fine.
+  [[nodiscard]] std::string in_short() const;
+};
+
+// bone_doubts: of its bone. grid_doubt: see below.
+[[nodiscard]] TunnelVerdict verdict_of(const std::vector<tunnels::PlanCheck>& checks,
+                                       const std::vector<std::string>& bone_doubts,
+                                       const std::string& grid_doubt);
+
+// What speaks against the grid of a case's bone, in words that follow "Grid: "; empty where all that it
+// follows from is confirmed.
+[[nodiscard]] std::string grid_doubt(const cases::Case& knee, bones::BoneKind kind);
+// The first of the doubts by which the bones are of the other knee than their case; empty where none is.
+[[nodiscard]] std::string side_doubt(const cases::BoneDoubts& doubts);
+
+}  // namespace arthronaut::plan_review
