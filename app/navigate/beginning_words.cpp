@@ -61,22 +61,30 @@ CardLine registration_line(const recording::Resumable& left) {
 
 }  // namespace
 
-std::vector<CardLine> time_out_lines(const operation::OperationState& state, const std::string& patient) {
+std::vector<CardLine> time_out_lines(const operation::OperationState& state, const std::string& patient,
+                                     const plan_review::TunnelVerdict& verdict) {
   const operation::SourceSetup& source = *state.source;
   using Topic = CardLine::Topic;
-  return {{patient.empty() ? Severity::Caution : Severity::Quiet, "Patient",
-           patient.empty() ? "not known: the case names none" : patient, Topic::Patient},
-          {Severity::Quiet, "Knee",
-           std::string(bones::to_text(source.pipeline.side)) + ", " + std::string(bones::to_text(state.bone)),
-           Topic::Knee},
-          {state.plan ? Severity::Quiet : Severity::Caution, "Plan", plan_in_words(state.plan), Topic::Plan},
-          {Severity::Quiet, "Camera and tools", source.calibration, Topic::CameraAndTools},
-          medium_line(state)};
+  return {
+      {patient.empty() ? Severity::Caution : Severity::Quiet, "Patient",
+       patient.empty() ? "not known: the case names none" : patient, Topic::Patient},
+      {Severity::Quiet, "Knee",
+       std::string(bones::to_text(source.pipeline.side)) + ", " + std::string(bones::to_text(state.bone)),
+       Topic::Knee},
+      {!state.plan || !verdict.is_fine() ? (verdict.is_wrong() ? Severity::Bad : Severity::Caution)
+                                         : Severity::Quiet,
+       "Plan",
+       plan_in_words(state.plan) +
+           (verdict.is_fine() ? "" : (verdict.is_wrong() ? "; WRONG: " : "; look: ") + verdict.in_short()),
+       Topic::Plan},
+      {Severity::Quiet, "Camera and tools", source.calibration, Topic::CameraAndTools},
+      medium_line(state)};
 }
 
 // What is asked, and how it is answered, stands above it as the next step.
-Card time_out_card(const operation::OperationState& state, const std::string& patient) {
-  Card card{"navigate.time_out", "", time_out_lines(state, patient), ""};
+Card time_out_card(const operation::OperationState& state, const std::string& patient,
+                   const plan_review::TunnelVerdict& verdict) {
+  Card card{"navigate.time_out", "", time_out_lines(state, patient, verdict), ""};
   for (CardLine& line : card.lines) {
     if (line.topic != CardLine::Topic::CameraAndTools) continue;
     line.name.clear();  // its text names them

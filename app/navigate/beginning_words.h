@@ -9,6 +9,7 @@
 #include "app/navigate/resume_offer.h"
 #include "app/widgets/controls.h"
 #include "navigation/operation/operation_state.h"
+#include "planning/plan_review/tunnel_verdict.h"
 
 namespace arthronaut::navigate {
 
@@ -28,10 +29,12 @@ struct Card {
 };
 
 // Patient, knee, plan, camera, tools and medium, in the order in which they are read out. `patient`: in
-// words; empty: not known. Precondition: a source was started.
+// words; empty: not known. verdict: of the plan. Precondition: a source was started.
 [[nodiscard]] std::vector<CardLine> time_out_lines(const operation::OperationState& state,
-                                                   const std::string& patient);
-[[nodiscard]] Card time_out_card(const operation::OperationState& state, const std::string& patient);
+                                                   const std::string& patient,
+                                                   const plan_review::TunnelVerdict& verdict = {});
+[[nodiscard]] Card time_out_card(const operation::OperationState& state, const std::string& patient,
+                                 const plan_review::TunnelVerdict& verdict = {});
 
 // `plan`: the case's, as an operation that begins afresh would have it.
 [[nodiscard]] Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedTunnel>& plan,

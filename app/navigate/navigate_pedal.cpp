@@ -136,11 +136,21 @@ std::string NavigateView::next_step() {
   return (have_ended ? "the pictures have ended: " : "") + words_of_start();
 }
 
+std::string NavigateView::words_of_verdict() const {
+  const plan_review::TunnelVerdict& verdict = judged_.verdict();
+  return verdict.is_fine() ? ""
+                           : (verdict.is_wrong() ? "the plan is wrong: " : "the plan is to be looked at: ") +
+                                 verdict.in_short();
+}
+
 std::string NavigateView::missing_now(const Rail& rail) {
   const bool asks_otherwise = model_ == nullptr || cameras_.is_open() || left_behind() != nullptr ||
                               resume_.is_looking() || choices_.goes_to_other_bone || !lent_step().empty();
   if (asks_otherwise) return "";
-  if (choices_.looked_at) return hindrance_of(rail[static_cast<std::size_t>(*choices_.looked_at)], true);
+  if (choices_.looked_at) {
+    const RailStep& step = rail[static_cast<std::size_t>(*choices_.looked_at)];
+    return step.verdict == tunnels::PlanCheck::Verdict::Fine ? hindrance_of(step, true) : words_of_verdict();
+  }
   if (finishes()) return "";
   const bool has_pictures = is_running() && !awaits_picture(*live_) && words_without_pictures().empty();
   if (has_pictures && !is_in_wrong_medium())
@@ -148,6 +158,8 @@ std::string NavigateView::missing_now(const Rail& rail) {
       return words;
   const std::string words = hindrance_of(rail[static_cast<std::size_t>(step_of_now(rail))], false);
   const auto& source = live_->operation->source;
+  // Before anything is begun by it; after that the sign in the row of steps says it.
+  if (words.empty() && source == nullptr && judged_.verdict().is_wrong()) return words_of_verdict();
   return words.empty() && source != nullptr && operation::has_camera_of_simulator(*source)
              ? navigate::words_of(Missing::CameraOfScope)
              : words;
@@ -360,6 +372,7 @@ RailContext NavigateView::rail_context() const {
   if (model_ == nullptr) return context;
   context.is_planned = bones_.plan_of(choices_.bone).has_value();
   context.must_choose = bones_.must_choose(choices_.bone);
+  context.plan_verdict = judged_.verdict().worst();
   context.simulates = simulates();
   context.has_camera = context.simulates || choices_.has_camera_file;
   context.camera_is_simulated = choices_.has_camera_file && !choices_.has_real_scope;

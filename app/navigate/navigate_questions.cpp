@@ -54,7 +54,7 @@ bool NavigateView::draw_questions(const widgets::Ui& ui, const TheatreLayout& la
     case Question::TimeOut:
       // The states' line stays beside it: nobody confirms what a dead picture is of without seeing that it
       // is.
-      draw_card(ui, area, time_out_card(*live_->operation, patient_));
+      draw_card(ui, area, time_out_card(*live_->operation, patient_, judged_.verdict()));
       break;
     case Question::Finish:
       draw_card(ui, area, {"navigate.finish", "Finish", finish_list(finished_bones()).lines, ""});
@@ -94,6 +94,7 @@ void NavigateView::note_states(const widgets::Ui& ui, const NavigateScreen& scre
   const auto& guiding = live_->operation->plan;
   ui.log.note_state("tunnel", guiding ? tunnels::name_of(guiding->tunnel.key()) : "none");
   ui.log.note_state("drilled", std::to_string(choices_.drilled.size()));
+  ui.log.note_state("plan_verdict", std::string(to_text(judged_.verdict().worst())));
   ui.log.note_state("plan", live_->operation->plan_was_edited ? "edited" : "in force");
   ui.log.note_state("registrations", std::to_string(registration().history->size()));
   ui.log.note_state("strokes", std::to_string(words_.strokes.size()));

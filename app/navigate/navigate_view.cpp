@@ -67,7 +67,9 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   cameras_.forget_tracker();
   resume_.open(*opened.model, opened.folder, !opened.read_only.empty(), opened.left_by_crash_since);
   patient_.clear();
+  judged_.open({});
   try {  // who it is is never guessed: what cannot be read is said
+    judged_.open(case_folder_.empty() ? cases::BoneDoubts{} : cases::load_bone_doubts(case_folder_));
     if (const auto identity = cases::load_identity(case_folder_)) patient_ = identity->in_words();
   } catch (const std::runtime_error& error) {
     notice_ = error.what();
@@ -350,6 +352,8 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   // The bone is made ready for registration as soon as this mode is looked at.
   if (model_ != nullptr && model_->has_bone(choices_.bone)) (void)bones_.operation(choices_.bone);
   read_live();
+  const auto& in_force = live_->operation->plan;
+  if (model_ != nullptr) judged_.judge(*model_, in_force ? in_force : bones_.plan_of(choices_.bone));
   drawn_.live = live_;
   const double now = drawn_.since_s = theatre::LiveOperation::now_s();
   NavigateDisplay display = display_of(live_.get(), now);

@@ -11,6 +11,7 @@
 #include "app/navigate/beginning_panel.h"
 #include "app/navigate/camera_choice.h"
 #include "app/navigate/finish_words.h"
+#include "app/navigate/judged_plan.h"
 #include "app/navigate/navigate_choices.h"
 #include "app/navigate/navigate_panels.h"
 #include "app/navigate/navigate_scene.h"
@@ -131,6 +132,7 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] std::string next_step();
   // What that waits for; empty: nothing, or next_step() says it.
   [[nodiscard]] std::string missing_now(const Rail& rail);
+  [[nodiscard]] std::string words_of_verdict() const;  // of the plan; empty: nothing speaks against it
   [[nodiscard]] std::string lent_step() const { return lent_ && lent_->next_step ? lent_->next_step() : ""; }
   [[nodiscard]] bool can_simulate() const;
   [[nodiscard]] bool is_running() const;
@@ -159,6 +161,7 @@ class NavigateView : public mode::Mode {
   VideoTextures video_;
   std::shared_ptr<PoseSharing> sharing_;  // also with operations that end behind the screen
   TheatreBones bones_;
+  JudgedPlan judged_;  // of the chosen bone
   ResumeOffer resume_;
   DepthEntry depth_;
   CameraChoice cameras_;

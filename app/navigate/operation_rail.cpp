@@ -217,6 +217,7 @@ Rail rail_of(const OperationState& state, const RailContext& context) {
       shown.missing = condition != Missing::Nothing ? condition : rest;
     } else if (rest == Missing::Nothing && (condition == Missing::Nothing || known.is_drilled())) {
       shown.state = StepState::Done;
+      if (step == Step::Plan) shown.verdict = context.plan_verdict;
     } else if (condition != Missing::Nothing) {
       shown.missing = condition;
     } else {

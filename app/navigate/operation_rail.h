@@ -10,6 +10,7 @@
 #include <string>
 
 #include "navigation/operation/operation_state.h"
+#include "planning/tunnels/plan_checks.h"
 
 namespace arthronaut::navigate {
 
@@ -51,6 +52,8 @@ struct RailStep {
   operation::Step step = operation::Step::Plan;
   StepState state = StepState::Closed;
   Missing missing = Missing::Nothing;  // of Now and Closed: what it waits for
+  // Of what is done: that there is a plan is no tick for a plan that fails its own checks. Fine, Look, Wrong.
+  tunnels::PlanCheck::Verdict verdict = tunnels::PlanCheck::Verdict::Fine;
 };
 using Rail = std::array<RailStep, kStepCount>;
 
@@ -58,8 +61,9 @@ using Rail = std::array<RailStep, kStepCount>;
 struct RailContext {
   bool is_planned = false;   // a tunnel of this bone, and nobody has to choose one
   bool must_choose = false;  // of two
-  bool has_camera = false;   // for the pictures that come next; the one in use counts once a source ran
-  bool simulates = false;    // those pictures
+  tunnels::PlanCheck::Verdict plan_verdict = tunnels::PlanCheck::Verdict::Fine;  // JudgedPlan's worst
+  bool has_camera = false;  // for the pictures that come next; the one in use counts once a source ran
+  bool simulates = false;   // those pictures
   bool camera_is_simulated = false;
   const tools::ToolSet* tools = nullptr;  // likewise; null: none that can be read
   bool is_drilled = false;                // said since the case was opened, of the plan in force

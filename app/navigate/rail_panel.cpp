@@ -14,8 +14,16 @@ using widgets::Severity;
 
 std::string numbered(Step step) { return std::to_string(static_cast<int>(step) + 1) + "  " + name_of(step); }
 
-// A step by its shape: a tick where it is done, its number else; filled where it is now, hollow where it is
-// open, and a small bar alone where something is missing.
+// What is done is as good as what it came to.
+Severity severity_of(const RailStep& step) {
+  using Verdict = tunnels::PlanCheck::Verdict;
+  return step.verdict == Verdict::Wrong  ? Severity::Bad
+         : step.verdict == Verdict::Look ? Severity::Caution
+                                         : Severity::Good;
+}
+
+// A step by its shape: a tick where it is done, or the sign of what speaks against it, its number else;
+// filled where it is now, hollow where it is open, and a small bar alone where something is missing.
 void draw_step(const widgets::Ui& ui, const widgets::Rect& place, const RailStep& step, bool is_looked_at) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float label = ui.theme.body->FontSize;
@@ -25,7 +33,7 @@ void draw_step(const widgets::Ui& ui, const widgets::Rect& place, const RailStep
   const float radius = std::min(box.width, box.height) / 2 - ui.theme.px(2);
   const bool is_now = step.state == StepState::Now;
   if (step.state == StepState::Done) {
-    widgets::draw_sign(draw, center, radius * 0.8F, Severity::Good);
+    widgets::draw_sign(draw, center, radius * 0.8F, severity_of(step));
   } else {
     const ImU32 edge = step.state == StepState::Closed ? widgets::kPanelEdge : widgets::kQuietText;
     if (is_now)

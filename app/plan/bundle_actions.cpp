@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/plan/plan_view.h"
+#include "app/plan/tunnel_moves.h"
 
 namespace arthronaut::plan {
 
@@ -31,6 +32,16 @@ void PlanView::work_on_bone(bones::BoneKind bone) {
   if (places_entry) state_.placing = Placing::Entry;
 }
 
+// Whose norms are drawn: those of the bone's tunnels; of what is worked on where none is planned.
+std::vector<norms::Bundle> PlanView::bundles_shown(bones::BoneKind kind) const {
+  std::vector<norms::Bundle> bundles;
+  // Where one is still to be placed it goes by its own norm.
+  if (kind == state_.key.bone && !model_->tunnel(state_.key)) return {state_.key.bundle};
+  for (const tunnels::TunnelKey& key : model_->knee().plan.of(kind)) bundles.push_back(key.bundle);
+  if (bundles.empty()) bundles.push_back(key_in(kind).bundle);
+  return bundles;
+}
+
 void PlanView::follow_plan() {
   if (model_ == nullptr) return;
   // What was said of a plan is true of that plan alone.
@@ -55,7 +66,7 @@ void PlanView::plan_bundles() {
     }
     // One of another surface would pass for one of this.
     const auto single = model_->plan_fit(am.bone).is_valid() ? model_->tunnel(am.bone) : std::nullopt;
-    if (single) history_.apply_tunnels({{am, *single}}, what);
+    if (single) history_.apply_tunnels({{am, for_graft(*single, am.bundle)}}, what);
     work_on(single ? pl : am);
     show_page(PanelPage::Checks);  // where P places the entry
     state_.hint = {"No default for two bundles: " + missing->made.message + ". Press P and place the entry."};
@@ -74,7 +85,7 @@ void PlanView::plan_single() {
     }
     work_on(beside.bone);
     if (is_usable) return take_defaults(std::move(made), what);
-    history_.apply_tunnels({{beside.bone, *here}}, what);
+    history_.apply_tunnels({{beside.bone, for_graft(*here, Bundle::Whole)}}, what);
   });
 }
 

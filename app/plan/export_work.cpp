@@ -10,14 +10,17 @@ namespace arthronaut::plan {
 std::string ExportOutcome::in_words(std::uint64_t revision_now) const {
   std::string words = text;
   if (is_written && revision_now != revision) words += "\nIt is the plan as it was before the last change.";
+  for (const std::string& one : wrong) words += "\nWrong, and exported all the same: " + one;
   for (const std::string& doubt : doubts) words += "\nLook: " + doubt;
   return words;
 }
 
-void ExportWork::start(cases::Case knee, std::uint64_t revision, std::filesystem::path case_folder) {
+void ExportWork::start(cases::Case knee, std::uint64_t revision, std::filesystem::path case_folder,
+                       std::vector<std::string> wrong) {
   stop_ = {};
   running_.start(
-      [case_folder = std::move(case_folder), knee = std::move(knee), revision, stop = stop_.get_token()] {
+      [case_folder = std::move(case_folder), knee = std::move(knee), revision, wrong = std::move(wrong),
+       stop = stop_.get_token()] {
         ExportOutcome outcome{.revision = revision};
         try {  // a full disk is a state of the screen
           // By the hash that stands in the files.
@@ -31,6 +34,7 @@ void ExportWork::start(cases::Case knee, std::uint64_t revision, std::filesystem
           outcome.text = "Exported into " + folder.string() + ":";
           for (const auto& file : summary.files) outcome.text += " " + file.filename().string();
           outcome.doubts = summary.doubts;
+          outcome.wrong = wrong;
           outcome.is_written = true;
         } catch (const std::exception& error) {  // the top of a thread: the geometry library's assertions too
           outcome.text = std::string("Not exported: ") + error.what();

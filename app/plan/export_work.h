@@ -19,6 +19,7 @@ struct ExportOutcome {
   bool is_written = false, was_stopped = false;
   std::string text = {};                 // where what was written, or why nothing was
   std::vector<std::string> doubts = {};  // what to look at in what was written
+  std::vector<std::string> wrong = {};   // what of it cannot be drilled like this, by the checks
 
   // For who may have changed the plan meanwhile.
   [[nodiscard]] std::string in_words(std::uint64_t revision_now) const;
@@ -34,8 +35,9 @@ class ExportWork {
 
   // Into the plan's folder within "export" of the case (cases::export_folder), which is its owner's alone to
   // read, as `arthronaut plan --export` writes them (plan_export::export_plan). Precondition: not
-  // is_running().
-  void start(cases::Case knee, std::uint64_t revision, std::filesystem::path case_folder);
+  // is_running(). wrong: what the plan's checks say, which goes into the outcome.
+  void start(cases::Case knee, std::uint64_t revision, std::filesystem::path case_folder,
+             std::vector<std::string> wrong = {});
   // Nothing will have been written, unless all was drilled by then: the outcome says it.
   void stop() { stop_.request_stop(); }
   [[nodiscard]] bool is_running() const { return running_.is_busy(); }

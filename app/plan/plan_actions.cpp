@@ -184,9 +184,11 @@ void PlanView::place_entry(const scene::SceneRay& ray) {
   }
   const auto tunnel = model_->tunnel(state_.key);
   change("Place the entry of the", false,
-         tunnel ? with_entry_at(*tunnel, met->point_mm)
-                : tunnels::first_tunnel(state_.key.bone, met->point_mm, model_->axes(state_.key.bone),
-                                        model_->surface(state_.key.bone)));
+         tunnel
+             ? with_entry_at(*tunnel, met->point_mm)
+             : for_graft(tunnels::first_tunnel(state_.key.bone, met->point_mm, model_->axes(state_.key.bone),
+                                               model_->surface(state_.key.bone)),
+                         state_.key.bundle));
   state_.placing = Placing::Nothing;
   state_.hint = {};
 }

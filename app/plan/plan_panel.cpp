@@ -130,7 +130,7 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
                                                            panel.model.axes(panel.key.bone)));
   ImGui::Dummy({0, ui.theme.px(4)});
   draw_bone_doubts(ui, panel);
-  for (const tunnels::PlanCheck& check : panel.model.checks(panel.key)) {
+  for (const tunnels::PlanCheck& check : worst_first(panel.model.checks(panel.key))) {
     ImGui::BeginGroup();
     widgets::status_row(ui, severity_of(check.verdict), check.name, files::with_signs(check.text));
     ImGui::EndGroup();

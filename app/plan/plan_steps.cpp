@@ -16,7 +16,69 @@ bool is_wrong(const open_case::PlanModel& model, const tunnels::TunnelKey& key) 
                              [](const tunnels::PlanCheck& check) { return check.verdict == Verdict::Wrong; });
 }
 
+// "A, B and C".
+std::string listed(const std::vector<std::string>& names) {
+  std::string words;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    words += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return words;
+}
+
+NextStep to_theatre(const open_case::PlanModel& model, const StepState& state) {
+  const std::size_t count = warnings_of(model).size() + state.bone_doubts;
+  return {
+      "The plan can be taken to theatre" +
+          (count == 0 ? "" : ", with " + std::to_string(count) + (count == 1 ? " warning" : " warnings")) +
+          ": set up the arthroscope",
+      "mode.setup"};
+}
+
+// Whether the bone's own landmarks give what a default is aimed by.
+bool has_joint(const open_case::PlanModel& model, BoneKind bone) {
+  return model.footprint(bone) != nullptr &&
+         model.axes(bone).origin == landmarks::AnatomicalAxes::Origin::FromLandmarks &&
+         (bone == BoneKind::Tibia || model.knee_surroundings().axis);
+}
+
 }  // namespace
+
+std::vector<tunnels::PlanCheck> worst_first(std::vector<tunnels::PlanCheck> checks) {
+  std::ranges::stable_sort(checks, {}, [](const tunnels::PlanCheck& check) {
+    return check.verdict == Verdict::Wrong ? 0 : check.verdict == Verdict::Look ? 1 : 2;
+  });
+  return checks;
+}
+
+std::vector<std::string> warnings_of(const open_case::PlanModel& model) {
+  std::vector<std::string> warnings;
+  const auto add = [&](const std::string& words) {
+    // What is said of both tunnels of a pair is one.
+    if (std::ranges::find(warnings, words) == warnings.end()) warnings.push_back(words);
+  };
+  for (const auto& [key, tunnel] : model.tunnels()) {
+    for (const tunnels::PlanCheck& check : model.checks(key))
+      if (check.verdict == Verdict::Look) add(check.name + ": " + check.text);
+    const auto& surroundings = model.surroundings(key.bone);
+    const std::string doubt =
+        landmarks::grid_doubt(key.bone, model.landmarks(key.bone), model.landmark_states(key.bone));
+    if ((surroundings.quadrant || surroundings.plateau) && !doubt.empty())
+      add("Grid of the " + std::string(bones::to_text(key.bone)) + ": " + doubt);
+  }
+  return warnings;
+}
+
+std::vector<std::string> missing_for_default(const open_case::PlanModel& model, BoneKind bone) {
+  if (has_joint(model, bone)) return {};
+  // What the shape gives takes the place of what is missing.
+  if (const auto& proposal = model.proposal(bone); !proposal || proposal->is_usable()) return {};
+  std::vector<std::string> titles;
+  for (const std::string& name : landmarks::grid_landmarks(bone, model.landmarks(bone))) {
+    if (model.landmarks(bone).contains(name)) continue;
+    const landmarks::LandmarkKind* const kind = landmarks::find_landmark(bone, name);
+    titles.push_back(kind == nullptr ? name : std::string(kind->title));
+  }
+  return titles;
+}
 
 bool has_unconfirmed_grid(const open_case::PlanModel& model, BoneKind bone) {
   const auto& states = model.landmark_states(bone);
@@ -52,12 +114,23 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
   if (state.is_in_conflict) return {"Take the other program's plan, or keep this one", "plan.take_theirs"};
   if (state.is_unsaved)
     return {"The plan is not saved: mend what is said below. It is tried again by itself", ""};
+  if (!state.side_doubt.empty())
+    return {"Check the side first: " + state.side_doubt +
+                ". If it is wrong, import the bones anew as the other knee: press F5, then O",
+            ""};
   if (state.makes_default) return {"Wait for the default plan, then move it; Esc leaves it", ""};
   if (state.places_entry) return {"Click on the " + bone + " where the tunnel begins", ""};
   if (!model.has_bone(here)) return {"This case has no " + bone + ": plan the other bone", "plan.bone"};
   // The default would move what is planned of the other bundle.
   const auto beside = other_bundle(state.key);
-  if (!model.tunnel(state.key) && model.footprint(here) && !(beside && model.tunnel(*beside)))
+  const bool wants_default = !model.tunnel(state.key) && !(beside && model.tunnel(*beside));
+  if (const auto missing = wants_default ? missing_for_default(model, here) : std::vector<std::string>{};
+      !missing.empty())
+    return {"For a default plan " + listed(missing) + (missing.size() == 1 ? " is" : " are") + " missing: " +
+                (state.shows_landmarks ? "choose each in the list, press P and click where it is"
+                                       : "press L, then P for each. Or press P and place the entry by hand"),
+            state.shows_landmarks ? "plan.landmark_place" : "plan.landmarks_page"};
+  if (wants_default && model.footprint(here))
     return {"Make the default plan, then move it: press N", "plan.default"};
   if (!model.tunnel(state.key) && state.shows_landmarks)
     return {"Place the entry of the " + adjective(state.key) + " tunnel: press C, then P",
@@ -85,8 +158,7 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
   if (has_unconfirmed_grid(model, here))
     return {"Look at the " + bone + "'s landmarks, which nobody has confirmed: press L",
             "plan.landmarks_page"};
-  if (!model.has_bone(other))
-    return {"The plan can be taken to theatre: set up the arthroscope", "mode.setup"};
+  if (!model.has_bone(other)) return to_theatre(model, state);
   const auto others = model.knee().plan.of(other);
   if (others.empty()) return {"Plan the " + adjective(other) + " tunnel: press Tab", "plan.bone"};
   for (const tunnels::TunnelKey& key : others) {
@@ -102,7 +174,7 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
                 (is_single ? "B" : "Tab, then B") + " for two in both",
             is_single ? "plan.bundles" : "plan.bone"};
   }
-  return {"The plan can be taken to theatre: set up the arthroscope", "mode.setup"};
+  return to_theatre(model, state);
 }
 
 }  // namespace arthronaut::plan

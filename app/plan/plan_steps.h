@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/case/plan_model.h"
 
@@ -23,13 +24,27 @@ struct StepState {
   bool places_entry = false;
   bool shows_landmarks = false;  // whose keys P, Enter and the arrows are then
   bool is_read_only = false, is_in_conflict = false;
-  bool makes_default = false;  // the default plan is on its way
-  bool is_unsaved = false;     // it could not be saved
+  bool makes_default = false;   // the default plan is on its way
+  bool is_unsaved = false;      // it could not be saved
+  std::string side_doubt = {};  // what of the bones contradicts the case's side; empty: nothing does
+  std::size_t bone_doubts = 0;  // all that spoke against the bones
 };
 
-// The first of what is missing: an answer to a conflict, an entry, a tunnel that can be drilled, the other
-// bundle's, the other bone's; else to theatre.
+// The first of what is missing: an answer to a conflict, the right side, an entry, a tunnel that can be
+// drilled, the other bundle's, the other bone's; else to theatre.
 [[nodiscard]] NextStep next_step(const open_case::PlanModel& model, const StepState& state);
+
+// The same checks with what speaks against the tunnel first: wrong, to be looked at, then the rest, each as
+// they were.
+[[nodiscard]] std::vector<tunnels::PlanCheck> worst_first(std::vector<tunnels::PlanCheck> checks);
+
+// What is to be looked at in the plan of both bones, each once: "Roof: ...".
+[[nodiscard]] std::vector<std::string> warnings_of(const open_case::PlanModel& model);
+
+// The landmarks without which the bone has no default plan, by their titles; empty where one can be made.
+// Precondition: has_bone(bone).
+[[nodiscard]] std::vector<std::string> missing_for_default(const open_case::PlanModel& model,
+                                                           bones::BoneKind bone);
 
 // Whether the bone's grid follows from points that nobody has looked at; whether a check of one of its
 // tunnels says that it is wrong. Precondition: has_bone(bone).

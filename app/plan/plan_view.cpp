@@ -8,6 +8,7 @@
 #include "app/plan/tunnel_moves.h"
 #include "app/scene/grid_lines.h"
 #include "app/scene/solid_mesh.h"
+#include "planning/plan_review/tunnel_verdict.h"
 
 namespace arthronaut::plan {
 
@@ -92,7 +93,8 @@ void PlanView::tick(double now_s) {
   follow_defaults();
   if (const auto exported = export_.take_outcome())
     state_.hint = {exported->in_words(model_->revision()),
-                   exported->was_stopped || (exported->is_written && exported->doubts.empty()),
+                   exported->was_stopped ||
+                       (exported->is_written && exported->doubts.empty() && exported->wrong.empty()),
                    model_->revision()};  // beside another plan it would be of that
   if (volume_.is_on()) slices_.want();
   slices_.tick();
@@ -149,13 +151,17 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   } else {
     draw_bones(ui, rest);
   }
+  std::size_t doubt_count = 0;
+  for (const auto& [bone, doubts] : bone_doubts_) doubt_count += doubts.size();
   const StepState step{state_.key,
                        state_.placing == Placing::Entry,
                        state_.page == PanelPage::Landmarks,
                        status.save == open_case::PlanStatus::Save::ReadOnly,
                        history_.is_in_conflict(),
                        defaults_.is_running(),
-                       status.save == open_case::PlanStatus::Save::Failed};
+                       status.save == open_case::PlanStatus::Save::Failed,
+                       plan_review::side_doubt(bone_doubts_),
+                       doubt_count};
   const NextStep next = next_step(*model_, step);
   const PanelClick clicked = draw_plan_panel(
       ui, panel,
@@ -295,14 +301,6 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   follow(bones_.draw(ui, area, shown));
   draw_survey_legend(ui, area);
   draw_hint(ui, area);
-}
-
-// Whose norms are drawn: those of the bone's tunnels; of what is worked on where none is planned.
-std::vector<norms::Bundle> PlanView::bundles_shown(BoneKind kind) const {
-  std::vector<norms::Bundle> bundles;
-  for (const tunnels::TunnelKey& key : model_->knee().plan.of(kind)) bundles.push_back(key.bundle);
-  if (bundles.empty()) bundles.push_back(key_in(kind).bundle);
-  return bundles;
 }
 
 // What is said of a norm where the mouse stands on it.

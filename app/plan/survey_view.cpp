@@ -77,14 +77,7 @@ void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& ar
                                                   : "There is no tunnel yet");
   } else {
     if (state_.shows_map) {
-      const auto count = [&](tunnels::PlanCheck::Verdict verdict) {
-        return std::to_string(
-            std::ranges::count(state_.survey->entries, verdict, &tunnels::EntrySample::verdict));
-      };
-      using Verdict = tunnels::PlanCheck::Verdict;
-      lines.push_back("Entries of a tunnel of this direction: dot, every check passed (" +
-                      count(Verdict::Fine) + "); ring, to be looked at (" + count(Verdict::Look) +
-                      "); cross, wrong (" + count(Verdict::Wrong) + ")");
+      lines.push_back(map_in_words(*state_.survey, model_->checks(state_.key)));
       if (is_entry_hidden())
         lines.push_back(state_.key.bone == bones::BoneKind::Femur
                             ? "They lie behind the bone from here: Notch (6) shows them"

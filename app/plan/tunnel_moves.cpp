@@ -62,6 +62,15 @@ tunnels::Tunnel aimed_at(const tunnels::Tunnel& tunnel, const Eigen::Vector3d& p
   return result;
 }
 
+tunnels::Tunnel for_graft(const tunnels::Tunnel& tunnel, norms::Bundle graft) {
+  constexpr double kSame_mm = 0.05;
+  tunnels::Tunnel result = tunnel;
+  result.bundle = graft;
+  if (std::abs(tunnel.diameter_mm - tunnels::usual_diameter_mm(tunnel.bundle)) < kSame_mm)
+    result.diameter_mm = tunnels::usual_diameter_mm(graft);
+  return result;
+}
+
 tunnels::Tunnel with_diameter(const tunnels::Tunnel& tunnel, double diameter_mm) {
   tunnels::Tunnel result = tunnel;
   result.diameter_mm = std::clamp(diameter_mm, tunnels::kLeastDiameter_mm, tunnels::kGreatestDiameter_mm);

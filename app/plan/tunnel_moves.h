@@ -22,6 +22,9 @@ namespace arthronaut::plan {
 [[nodiscard]] tunnels::Tunnel aimed_at(const tunnels::Tunnel& tunnel, const Eigen::Vector3d& point_mm);
 // Clamped to the range of tunnels/diameter_range.h.
 [[nodiscard]] tunnels::Tunnel with_diameter(const tunnels::Tunnel& tunnel, double diameter_mm);
+// The same tunnel for another graft: as wide as is usual of that one where it was as wide as is usual of its
+// own; a width that somebody chose stays.
+[[nodiscard]] tunnels::Tunnel for_graft(const tunnels::Tunnel& tunnel, norms::Bundle graft);
 
 // Where the ray meets the plane through the point that faces the eye; nullopt where it does not. A point that
 // goes on from there stays in that plane: dragged out and back it is where it was.

@@ -77,6 +77,20 @@ Survey survey(const SurveyRequest& request, const std::function<bool()>& is_canc
   return found;
 }
 
+std::string map_in_words(const Survey& survey, const std::vector<tunnels::PlanCheck>& of_tunnel) {
+  using Verdict = tunnels::PlanCheck::Verdict;
+  const auto count = [&](Verdict verdict) {
+    return std::to_string(std::ranges::count(survey.entries, verdict, &tunnels::EntrySample::verdict));
+  };
+  std::string unmade;
+  for (const tunnels::PlanCheck& check : of_tunnel)
+    if (check.verdict == Verdict::NotChecked) unmade += (unmade.empty() ? "" : ", ") + check.name;
+  return "Entries of a tunnel of this direction: dot, every check " +
+         std::string(unmade.empty() ? "" : "that can be made ") + "passed (" + count(Verdict::Fine) +
+         "); ring, to be looked at (" + count(Verdict::Look) + "); cross, wrong (" + count(Verdict::Wrong) +
+         ")" + (unmade.empty() ? "" : ". Not checked at any: " + unmade);
+}
+
 void add_aims(scene::SceneContent& content, const Survey& survey, const tunnels::Tunnel& tunnel,
               double length_mm) {
   for (const tunnels::PortalAim& aim : survey.portal) {

@@ -49,6 +49,11 @@ struct Survey {
                             const std::function<void(double done)>& tell = {},
                             const std::function<void(const Survey& map)>& map_made = {});
 
+// What the map's marks mean, how many there are of each, and which checks of the tunnel nobody can make: what
+// these would say no dot says. of_tunnel: its checks.
+[[nodiscard]] std::string map_in_words(const Survey& survey,
+                                       const std::vector<tunnels::PlanCheck>& of_tunnel);
+
 // The lines along which the drill can come: clear ones of the portal, and those from outside in.
 void add_aims(scene::SceneContent& content, const Survey& survey, const tunnels::Tunnel& tunnel,
               double length_mm);

@@ -5,6 +5,7 @@
 
 #include "app/plan/plan_view.h"
 #include "planning/plan_export/markups_file.h"
+#include "planning/plan_review/tunnel_verdict.h"
 
 namespace arthronaut::plan {
 
@@ -49,7 +50,12 @@ void PlanView::take_version(std::size_t place) {
 void PlanView::export_plan() {
   history_.settle_now();
   state_.hint = {};
-  export_.start(model_->knee(), model_->revision(), case_folder_);
+  std::vector<std::string> wrong;
+  for (const auto& [key, tunnel] : model_->tunnels())
+    for (const std::string& words : tunnels::wrong_in_words(model_->checks(key)))
+      wrong.push_back(tunnels::name_of(key) + ": " + words);
+  if (const std::string side = plan_review::side_doubt(bone_doubts_); !side.empty()) wrong.push_back(side);
+  export_.start(model_->knee(), model_->revision(), case_folder_, std::move(wrong));
 }
 
 void PlanView::take_markups(const std::filesystem::path& file) {
@@ -59,6 +65,9 @@ void PlanView::take_markups(const std::filesystem::path& file) {
     return;
   }
   try {  // a file from elsewhere
+    std::vector<cases::PlanVersion> kept;
+    for (const KeptVersion& one : versions_) kept.push_back(one.version);
+    const std::string doubt = plan_export::origin_doubt(file, model_->knee(), kept);
     const auto [tunnels, note] = plan_export::read_tunnels(
         file, model_->knee().plan,
         [this](bones::BoneKind kind) { return model_->has_bone(kind) ? &model_->surface(kind) : nullptr; });
@@ -66,9 +75,9 @@ void PlanView::take_markups(const std::filesystem::path& file) {
     std::string names;
     for (const auto& [key, tunnel] : tunnels) names += (names.empty() ? "" : ", ") + tunnels::name_of(key);
     state_.hint = {"Taken from " + file.filename().string() + ": " + names +
-                       (note.empty() ? "" : ". The " + note) +
+                       (note.empty() ? "" : ". The " + note) + (doubt.empty() ? "" : ". Look: " + doubt) +
                        ". Ctrl+Z brings back the plan that was there.",
-                   true, model_->revision()};
+                   doubt.empty(), model_->revision()};
     follow_plan();
   } catch (const std::runtime_error& error) {
     state_.hint = {error.what()};

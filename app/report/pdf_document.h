@@ -19,6 +19,7 @@ inline constexpr Ink kBlack{0.08, 0.09, 0.10};
 inline constexpr Ink kGray{0.42, 0.45, 0.48};
 inline constexpr Ink kAccent{0.05, 0.35, 0.52};
 inline constexpr Ink kWarning{0.72, 0.22, 0.05};
+inline constexpr Ink kCaution{0.66, 0.42, 0.0};
 
 struct TextStyle {
   double size_pt = 9.5;

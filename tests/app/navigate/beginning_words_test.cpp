@@ -53,6 +53,21 @@ TEST(TimeOutCard, Hazard20NamesPatientKneePlanCameraToolsAndMedium) {
   EXPECT_EQ(line_of(time_out_card(state, ""), "Plan").text, "none");
 }
 
+// What its checks say of the plan is read out with it.
+TEST(TimeOutCard, SaysWhatSpeaksAgainstThePlan) {
+  operation::OperationState state;
+  state.source = std::make_shared<operation::SourceSetup>();
+  state.plan = plan();
+  const CardLine wrong = line_of(
+      time_out_card(state, "", {.wrong = {"Wall: -3.5 mm"}, .look = {"Bone: check the side"}}), "Plan");
+  EXPECT_EQ(wrong.severity, Severity::Bad);
+  EXPECT_EQ(wrong.text, "8.5 mm wide, 31.2 mm long; WRONG: Wall: -3.5 mm (and 1 more)");
+  const CardLine look = line_of(time_out_card(state, "", {.look = {"Bone: check the side"}}), "Plan");
+  EXPECT_EQ(look.severity, Severity::Caution);
+  EXPECT_EQ(look.text, "8.5 mm wide, 31.2 mm long; look: Bone: check the side");
+  EXPECT_EQ(line_of(time_out_card(state, ""), "Plan").severity, Severity::Quiet);
+}
+
 LeftBehind left_behind() {
   LeftBehind left;
   left.has_same_camera = left.has_same_tools = true;

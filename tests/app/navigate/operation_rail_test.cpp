@@ -74,6 +74,22 @@ void expect_whole(const Rail& rail) {
   EXPECT_TRUE(now == 1 || state_of(rail, Step::Finish) == StepState::Done);
 }
 
+// That there is a plan is no tick for one that its own checks call wrong; nothing waits for that.
+TEST(OperationRail, APlanIsAsGoodAsItsChecks) {
+  using Verdict = tunnels::PlanCheck::Verdict;
+  Course course;
+  course.start();
+  EXPECT_EQ(course.rail().front().verdict, Verdict::Fine);
+  for (const Verdict verdict : {Verdict::Look, Verdict::Wrong}) {
+    course.context.plan_verdict = verdict;
+    const Rail rail = course.rail();
+    expect_whole(rail);
+    EXPECT_EQ(rail.front().state, StepState::Done);
+    EXPECT_EQ(rail.front().verdict, verdict);
+    for (std::size_t i = 1; i < rail.size(); ++i) EXPECT_EQ(rail[i].verdict, Verdict::Fine) << i;
+  }
+}
+
 TEST(OperationRail, LeadsThroughTheNineSteps) {
   Course course;
   Rail rail = course.rail();

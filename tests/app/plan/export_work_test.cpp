@@ -70,6 +70,16 @@ TEST(ExportWork, SaysWhyNothingWasWritten) {
   EXPECT_THAT(outcome.in_words(8), StartsWith("Not exported: plan: nothing is planned"));
 }
 
+// What cannot be drilled goes out with its warning, not as if nothing were wrong.
+TEST(ExportWork, SaysWhatIsWrongWithWhatWasWritten) {
+  const ExportOutcome outcome{.is_written = true,
+                              .text = "Exported into /cases/A.arthro/export: plan.json",
+                              .wrong = {"femur: Wall: -3.5 mm"}};
+  EXPECT_EQ(outcome.in_words(0),
+            "Exported into /cases/A.arthro/export: plan.json\n"
+            "Wrong, and exported all the same: femur: Wall: -3.5 mm");
+}
+
 // It takes a while: by then the plan may have been changed, and what lies there is not what is seen.
 TEST(ExportWork, SaysThatThePlanWasChangedMeanwhile) {
   const ExportOutcome outcome{.revision = 7,

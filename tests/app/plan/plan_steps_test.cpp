@@ -110,6 +110,63 @@ TEST(NextStep, OfTwoBundlesBothAreWanted) {
       "Mend the femoral AM tunnel: Between the tunnels. Drag its entry or its aim, or take another diameter");
 }
 
+// A knee of the wrong side has every landmark on the wrong side: that comes before any tunnel.
+TEST(NextStep, ADoubtedSideComesFirst) {
+  const open_case::PlanModel model(knee());
+  const NextStep next = next_step(model, {.side_doubt = "the fibula lies on the left of the tibia"});
+  EXPECT_TRUE(
+      next.text.starts_with("Check the side first: the fibula lies on the left of the tibia. If it is "
+                            "wrong, import the bones anew as the other knee"))
+      << next.text;
+}
+
+// A plan with open warnings can be taken to theatre, and says how many.
+TEST(NextStep, ToTheatreWithItsWarnings) {
+  open_case::PlanModel model(knee());
+  const std::size_t before = warnings_of(model).size();
+  tunnels::Tunnel wide = *model.tunnel(BoneKind::Tibia);
+  wide.diameter_mm = 6;
+  model.set_tunnel(BoneKind::Tibia, wide);
+  EXPECT_GT(warnings_of(model).size(), before);
+  const NextStep next = next_step(model, {});
+  EXPECT_EQ(next.action, "mode.setup");
+  EXPECT_TRUE(next.text.starts_with("The plan can be taken to theatre, with ")) << next.text;
+  EXPECT_TRUE(next_step(model, {.bone_doubts = 1}).text.ends_with(" warnings: set up the arthroscope"));
+}
+
+// A shape that proposes nothing, and two landmarks that do not suffice: what is missing is named, and the key
+// that places it, instead of the default that would be refused.
+TEST(NextStep, NamesTheLandmarksThatADefaultLacks) {
+  cases::Case half = knee();
+  half.plan = {};
+  geometry::TriangleMesh& mesh = half.bones.at(BoneKind::Femur).mesh;
+  mesh.triangles.resize(mesh.triangles.size() / 4);  // a piece: no shape to propose by
+  std::erase_if(half.landmarks.at(BoneKind::Femur),
+                [](const auto& one) { return !one.first.starts_with("blumensaat"); });
+  const open_case::PlanModel model(half);
+  ASSERT_FALSE(missing_for_default(model, BoneKind::Femur).empty());
+  const NextStep next = next_step(model, {});
+  EXPECT_TRUE(next.text.starts_with("For a default plan ")) << next.text;
+  EXPECT_NE(next.text.find(landmarks::find_landmark(BoneKind::Femur, "lateral_condyle_posterior")->title),
+            std::string::npos)
+      << next.text;
+  EXPECT_EQ(next.action, "plan.landmarks_page");
+  EXPECT_EQ(next_step(model, {.shows_landmarks = true}).action, "plan.landmark_place");
+}
+
+TEST(WorstFirst, KeepsTheOrderOfTheRest) {
+  using Verdict = tunnels::PlanCheck::Verdict;
+  std::string order;
+  for (const tunnels::PlanCheck& check :
+       worst_first({{.verdict = Verdict::Fine, .name = "a", .text = ""},
+                    {.verdict = Verdict::Look, .name = "b", .text = ""},
+                    {.verdict = Verdict::NotChecked, .name = "c", .text = ""},
+                    {.verdict = Verdict::Wrong, .name = "d", .text = ""},
+                    {.verdict = Verdict::Look, .name = "e", .text = ""}}))
+    order += check.name;
+  EXPECT_EQ(order, "dbeac");
+}
+
 // Two bundles in one bone and a single tunnel in the other is more often forgotten than meant.
 TEST(NextStep, OneTunnelBesideTwoOfTheOtherBoneIsAskedAbout) {
   open_case::PlanModel model(knee());

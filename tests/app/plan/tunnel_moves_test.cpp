@@ -22,6 +22,17 @@ tunnels::Tunnel straight() {
   return tunnel;
 }
 
+// One graft made two: each as wide as is usual, unless somebody chose its width.
+TEST(TunnelMoves, AnotherGraftIsAsWideAsIsUsualOfIt) {
+  tunnels::Tunnel single = straight();
+  single.diameter_mm = 9;
+  EXPECT_EQ(for_graft(single, norms::Bundle::Anteromedial).diameter_mm, 7);
+  EXPECT_EQ(for_graft(single, norms::Bundle::Posterolateral).diameter_mm, 6);
+  EXPECT_EQ(for_graft(for_graft(single, norms::Bundle::Anteromedial), norms::Bundle::Whole).diameter_mm, 9);
+  single.diameter_mm = 8.5;
+  EXPECT_EQ(for_graft(single, norms::Bundle::Anteromedial).diameter_mm, 8.5);
+}
+
 // A click puts the entry there and keeps the aim.
 TEST(TunnelMoves, EntryFollowsTheClick) {
   const tunnels::Tunnel moved = with_entry_at(straight(), {7, 0, 9});

@@ -50,6 +50,21 @@ TEST_F(TunnelSurveyed, TheMapSaysOfTheEntryWhatTheChecksSay) {
   }
 }
 
+// What nobody can check no dot says: the legend does not call it passed.
+TEST(EntryMapWords, NameWhatIsNotChecked) {
+  Survey found;
+  found.entries = {{.verdict = Verdict::Fine}, {.verdict = Verdict::Fine}, {.verdict = Verdict::Wrong}};
+  const tunnels::PlanCheck fine{.verdict = Verdict::Fine, .name = "Length", .text = ""},
+      unmade{.verdict = Verdict::NotChecked, .name = "High to low", .text = ""};
+  EXPECT_EQ(map_in_words(found, {fine}),
+            "Entries of a tunnel of this direction: dot, every check passed (2); ring, to be looked at (0); "
+            "cross, wrong (1)");
+  EXPECT_EQ(
+      map_in_words(found, {fine, unmade}),
+      "Entries of a tunnel of this direction: dot, every check that can be made passed (2); ring, to be "
+      "looked at (0); cross, wrong (1). Not checked at any: High to low");
+}
+
 // An edit ends what was shown, at once; the next survey is of the edited tunnel.
 TEST_F(TunnelSurveyed, IsTrueOfOnePlanAlone) {
   TunnelSurvey survey({});

@@ -179,7 +179,7 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
   write(pdf());
   text = pdf_text();
   expect_contains(text, "proposed landmarks)");
-  expect_contains(text, "Landmarks: proposed by the program");
+  expect_contains(text, "Grid: landmarks proposed");
   knee_.landmarks = placed;
   knee_.landmark_states.clear();
   // The plan goes elsewhere: the differences are not those to it.

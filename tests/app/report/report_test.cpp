@@ -45,6 +45,20 @@ TEST_F(Report, TellsWhatGoesOn) {
   EXPECT_GT(share, 0.5);
 }
 
+// The verdict of the checks stands at the head of the first page, before any number.
+TEST_F(Report, SaysFirstWhatIsWrongWithThePlan) {
+  tunnels::Tunnel& femoral = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  femoral.direction = Eigen::Vector3d(-0.2, -0.1, 0.97).normalized();  // along the wall, out of it
+  cases::save_case(knee_folder(), knee_);
+  cases::save_bone_doubts(knee_folder(), {{bones::BoneKind::Tibia, {"the images end within it"}}});
+  const plan_review::CaseReview review(cases::load_case(knee_folder()));
+  ASSERT_FALSE(tunnels::wrong_in_words(review.checks(bones::BoneKind::Femur)).empty());
+  write(pdf());
+  const std::string text = pdf_text(), head = text.substr(0, text.find("Planned tunnels"));
+  expect_contains(head, "Checks of the femur: WRONG: ");
+  expect_contains(head, "Checks of the tibia: look: Bone: the images end within it");
+}
+
 // The sheet has every check of both tunnels, in words, and the percentages of the entries.
 TEST_F(Report, HasThePlanOnOneSheet) {
   write(pdf());
