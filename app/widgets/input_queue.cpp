@@ -26,6 +26,11 @@ bool only_types(const InputEvent& event) {
 
 // Of two of which one at least is the mouse's. What a key opened, or a click, is there in the next frame.
 bool clashes_with_mouse(const InputEvent& event, const InputEvent& before) {
+  // A key that is held while the wheel turns would wait a frame for each turn, and its release with it.
+  const auto are = [&](Kind one, Kind other) {
+    return (event.kind == one && before.kind == other) || (event.kind == other && before.kind == one);
+  };
+  if (are(Kind::Repeat, Kind::Wheel)) return false;
   if (is_of_mouse(event) && is_of_mouse(before))
     return event.kind != Kind::Wheel || before.kind != Kind::Wheel;
   if (is_of_mouse(event)) return before.kind != Kind::Release && !is_modifier(before.key);

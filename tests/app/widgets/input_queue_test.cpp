@@ -150,6 +150,20 @@ TEST_F(InputQueueTest, AClickSeesItsModifierAndTheTurnedList) {
 
 // A key that is held until a field opens writes nothing into it, however long it is held on; pressed once
 // more, in the field, it is a letter like any other.
+// A key that is held while the wheel turns: its release is not kept back by one frame a turn.
+TEST_F(InputQueueTest, AHeldKeyAndTheWheelDoNotWaitForEachOther) {
+  queue_.add({Kind::Press, GLFW_KEY_F, 0, 0, 0});
+  for (int i = 0; i < 20; ++i) {
+    queue_.add({Kind::Repeat, GLFW_KEY_F, 0, 0, 0});
+    queue_.add({.kind = Kind::Wheel, .wheel_y = 1});
+  }
+  queue_.add({Kind::Release, GLFW_KEY_F, 0, 0, 0});
+  std::vector<InputEvent> frame;
+  int frames = 0;
+  for (; !queue_.is_empty() && frames < 50; ++frames) queue_.take_frame(frame, false);
+  EXPECT_LE(frames, 3);
+}
+
 TEST_F(InputQueueTest, TheKeyThatOpenedAFieldWritesNothingIntoIt) {
   std::vector<InputEvent> frame;
   const auto letters = [&] {
