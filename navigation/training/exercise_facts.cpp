@@ -127,6 +127,7 @@ void Examiner::follow_guide(const operation::OperationState& state, const simula
   facts_.tunnel_error_mm = stands ? error_mm : std::nullopt;
   const bool is_wrong = error_mm && *error_mm > kWrong_mm;
   const bool guides_rightly = state.frame.guidance.is_valid() && !is_wrong;
+  if (guides_rightly) before_.guided_s = before_.time_s;
   if (truth.hand.held != simulator::Held::Guide) {
     before_.guides_rightly = guides_rightly;
     return;
@@ -152,8 +153,11 @@ void Examiner::follow_guide(const operation::OperationState& state, const simula
 
 void Examiner::finish() {
   facts_.is_done = true;
-  // Who says that the guide stands right while nothing guides has guessed.
-  if (exercise_.goal == Goal::Aim && !before_.guides_rightly) {
+  // Who says that the guide stands right while nothing guides has guessed; a picture or two without numbers
+  // in the moment of the key are nobody's fault.
+  constexpr double kMoment_s = 0.5;
+  if (exercise_.goal == Goal::Aim && !before_.guides_rightly &&
+      before_.time_s - before_.guided_s > kMoment_s) {
     facts_.bad_data_mm = facts_.entry_offset_mm.value_or(0) + 2;
     facts_.worst_bad_error_mm = before_.error_mm;
   }

@@ -75,6 +75,7 @@ class Examiner {
     std::size_t registrations = 0;  // in the history
     std::optional<std::size_t> entry_in_force;
     bool guides_rightly = true;
+    double guided_s = 0;  // when it last did
     double error_mm = 0;
   } before_;
   std::vector<geometry::RigidTransform> world_from_probe_;

@@ -137,7 +137,7 @@ std::string what_was_found(Measure measure, double value, const ExerciseFacts& f
       return format("Alarms: %d, of which you dismissed or drilled through: %d", facts.alarms,
                     facts.alarms_ignored);
     case Measure::ActedOnBadData:
-      if (value <= 0) return "The drill stood still whenever the numbers on the screen were gone or wrong";
+      if (value <= 0) return "Nothing was done while the numbers on the screen were gone or wrong";
       return "You drilled " + said + " while the numbers on the screen were gone or wrong" +
              (facts.worst_bad_error_mm > 0 ? format(" (by up to %.1f mm)", facts.worst_bad_error_mm) : "");
     case Measure::OffBone:

@@ -65,7 +65,7 @@ TEST_F(WorkstationTraining, AnExerciseIsDoneByHandAndScored) {
   ASSERT_EQ(scores.size(), 1u);
   EXPECT_EQ(scores[0].at("exercise"), "aim");
   EXPECT_EQ(scores[0].at("trainee"), "by hand");
-  EXPECT_EQ(scores[0].at("parts").size(), 5u);
+  EXPECT_EQ(scores[0].at("parts").size(), 6u);
   EXPECT_FALSE(found(scores[0].at("session").get<std::string>()).empty()) << scores[0].at("session");
 
   // Back in the list it is one run; Navigate knows nothing of it.

@@ -101,6 +101,22 @@ TEST_F(ExaminerTest, CountsWhatIsDrilledByAWrongRegistration) {
   EXPECT_TRUE(facts.marker_was_bumped);
 }
 
+// The numbers may be gone in the very picture in which the key is pressed; who has had none for longer has
+// guessed.
+TEST_F(ExaminerTest, AimingIsBlindAfterHalfASecondWithoutNumbers) {
+  examiner_ = Examiner(*find_exercise("aim"), {.entry_mm = {10, 0, 0}, .direction = {0, 0, 1}}, kLength_mm,
+                       {0, 0, 0});
+  go_on(30);
+  state_.frame.guidance.state = guidance::GuidanceState::WorldMarkerLost;
+  go_on(2);
+  Examiner after_two = examiner_;
+  after_two.finish();
+  EXPECT_EQ(after_two.facts().bad_data_mm, 0);
+  go_on(20);
+  examiner_.finish();
+  EXPECT_GT(examiner_.facts().bad_data_mm, 2);
+}
+
 // A registration that the program refuses earns nothing, however exact it is; that it was wrong is still held
 // against who drills by it.
 TEST_F(ExaminerTest, ARegistrationThatDoesNotStandIsNone) {
