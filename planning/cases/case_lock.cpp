@@ -129,13 +129,14 @@ bool is_of_a_copy(const LockFile& lock, const fs::path& file) {
 }
 
 // Why the lock on file stands in the way; empty when it does not.
-std::string obstacle(const LockFile& lock, const fs::path& file) {
+std::string obstacle(const LockFile& lock, const fs::path& file, bool kernel_locks) {
   if (lock.holder.process == 0) return "";  // broken: nobody can be asked
   if (lock.holder.host != host_name()) {
     return "is open elsewhere: " + lock.holder.in_words() +
            ". If that program is gone, or this folder is a copy of its case, delete " + file.string();
   }
-  if (is_of_a_copy(lock, file)) return "";
+  // Where the kernel locks no folders, as on some mounts, neither are the folders' numbers to be relied on.
+  if (kernel_locks && is_of_a_copy(lock, file)) return "";
   return lives_here(lock) ? "is open elsewhere: " + lock.holder.in_words() : "";
 }
 
@@ -235,7 +236,7 @@ CaseLock::CaseLock(const fs::path& case_folder) {
   if (!kernel.is_known) turn.emplace(fs::path(file) += ".taking");
   try {
     const auto before = read_lock(file);
-    if (before) refusal_ = obstacle(*before, file);
+    if (before) refusal_ = obstacle(*before, file, kernel.is_known);
     if (refusal_.empty() && turn) refusal_ = turn->refusal();
     if (refusal_.empty()) {
       make_case_private(case_folder);

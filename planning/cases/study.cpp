@@ -78,6 +78,7 @@ DicomOrigin study_of_image(const fs::path& case_folder, const std::string& image
   const AllStudies studies = load_all(case_folder);
   if (const auto found = studies.of_images.find(image_file); found != studies.of_images.end())
     return found->second;
+  if (!studies.of_images.empty()) return {};  // a case of now: this image came from no DICOM study
   const auto is_first = [&](const auto& one) { return one.second == studies.of_bones.begin()->second; };
   if (studies.of_bones.empty() || !std::ranges::all_of(studies.of_bones, is_first)) return {};
   return studies.of_bones.begin()->second;
