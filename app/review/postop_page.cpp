@@ -182,7 +182,10 @@ void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
                               : shown_.comparisons.empty()                                     ? "none"
                                                                                                : "kept");
   const float gap = ui.theme.px(12);
-  draw_head(ui, area.cut_top(ui.theme.px(176), gap));
+  // A reason takes two lines, and none of it is cut.
+  const bool says_why = !problem_.empty() || !shown_.other_patient.empty() || !shown_.not_its_bones.empty() ||
+                        !better_kept_.empty();
+  draw_head(ui, area.cut_top(ui.theme.px(says_why ? 236 : 176), gap));
   if (search_.is_open) return draw_browser(ui, area);
   if (!which_.empty()) return draw_question(ui, area);
   if (shown_.comparisons.empty() || !model_->has_bone(chosen_.bone)) {
@@ -240,13 +243,12 @@ void PostopPage::draw_head(const widgets::Ui& ui, widgets::Rect area) {
     widgets::status_row(ui, widgets::Severity::Bad, "Not the plan's bones",
                         "they are not surely in these images (" + shown_.not_its_bones +
                             "); nothing of them is kept or shown");
-  } else if (shown_.answer == nullptr && !shown_.comparisons.empty()) {
-    widgets::text_in(ui.theme.body, widgets::kQuietText,
-                     "As kept in the case (achieved.json). Its images are read again by a comparison (C).");
   } else if (!better_kept_.empty()) {
     widgets::status_row(ui, widgets::Severity::Caution, "Kept from before", better_kept_);
   } else if (!read_only_.empty() && shown_.answer != nullptr) {
     widgets::status_row(ui, widgets::Severity::Caution, "Not kept", read_only_);
+  } else if (shown_.answer != nullptr) {
+    widgets::text_in(ui.theme.body, widgets::kQuietText, "Of " + source_.string());
   }
   widgets::end_panel();
 }
@@ -283,10 +285,17 @@ void PostopPage::draw_question(const widgets::Ui& ui, const widgets::Rect& area)
 
 void PostopPage::draw_table(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::begin_panel(ui, "review.postop_table", area, "");
+  const std::string standing = standing_in_words(shown_, is_running(), !problem_.empty());
+  const bool is_earlier = standing.starts_with("EARLIER");
+  ui.log.note_state("postop_standing", standing);
+  if (!standing.empty())
+    widgets::text_in(ui.theme.strong, is_earlier ? widgets::kCaution : widgets::kQuietText, standing);
   std::map<tunnels::TunnelKey, double> lengths;
   for (const auto& [key, tunnel] : planned()) lengths[key] = model_->measured(key).length_mm;
   for (const AchievedRow& row : achieved_rows(shown_.comparisons, planned(), lengths, places())) {
-    widgets::status_row(ui, row.severity, row.tunnel, row.verdict);
+    const bool is_good = row.severity == widgets::Severity::Good;
+    widgets::status_row(ui, is_good && is_earlier ? widgets::Severity::Caution : row.severity, row.tunnel,
+                        row.verdict);
     for (const auto& [name, value] : {std::pair("Entry", &row.offset), std::pair("Grid", &row.grid),
                                       std::pair("Angle", &row.angle), std::pair("Diameter", &row.diameter),
                                       std::pair("Length", &row.length), std::pair("Least wall", &row.wall)})
@@ -360,8 +369,10 @@ void PostopPage::draw_slice(const widgets::Ui& ui, const widgets::Rect& area, in
   if (comparison->tunnel.is_found)
     draw_tunnel(comparison->tunnel.tunnel, comparison->tunnel.length_mm, IM_COL32(230, 159, 0, 255));
   draw.PopClipRect();
-  widgets::caption(ui, area, widgets::kText,
-                   quarter_turns == 0 ? "Along the planned axis" : "The same, turned by 90\u00B0");
+  widgets::caption(
+      ui, area, widgets::kText,
+      std::string(quarter_turns == 0 ? "Along the planned axis" : "The same, turned by 90\u00B0") +
+          (shown_.answer == nullptr ? ". Its images are not read: compare again (C)" : ""));
   ui.log.note("review.postop_slice_" + std::to_string(quarter_turns), area.min(), area.max());
 }
 

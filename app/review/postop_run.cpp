@@ -68,6 +68,14 @@ bool take_answer(std::shared_ptr<const open_case::PostopAnswer> answer, PostopSh
   return true;
 }
 
+std::string standing_in_words(const PostopShown& shown, bool is_running, bool asked_in_vain) {
+  if (shown.comparisons.empty()) return "";
+  if (is_running) return "EARLIER COMPARISON: not of the images that are being compared";
+  if (asked_in_vain || !shown.other_patient.empty() || !shown.not_its_bones.empty())
+    return "EARLIER COMPARISON: not of the images that were asked for last";
+  return shown.answer == nullptr ? "As kept in the case: a comparison (C) reads its images again" : "";
+}
+
 std::filesystem::path achieved_file(const std::filesystem::path& case_folder) {
   return case_folder / "achieved.json";
 }

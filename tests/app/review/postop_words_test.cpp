@@ -150,6 +150,20 @@ TEST(PostopShown, AnotherPatientsImagesTakeNothingAway) {
 }
 
 // A file that does not say how well entry and direction are known was read as if they were known exactly.
+// A failed or running comparison left the numbers of the one before in green, and nothing said so.
+TEST(PostopShown, NumbersOfEarlierImagesSaySo) {
+  PostopShown shown;
+  EXPECT_EQ(standing_in_words(shown, true, false), "") << "there are none";
+  shown.comparisons[bones::BoneKind::Femur];
+  EXPECT_THAT(standing_in_words(shown, false, false), HasSubstr("As kept in the case"));
+  EXPECT_THAT(standing_in_words(shown, true, false), HasSubstr("EARLIER"));
+  EXPECT_THAT(standing_in_words(shown, false, true), HasSubstr("EARLIER"));
+  shown.answer = std::make_shared<open_case::PostopAnswer>();
+  EXPECT_EQ(standing_in_words(shown, false, false), "");
+  shown.not_its_bones = "the femur is not found";
+  EXPECT_THAT(standing_in_words(shown, false, false), HasSubstr("EARLIER"));
+}
+
 TEST(AchievedFile, ASigmaThatItDoesNotSayIsNotKnown) {
   const test::TemporaryFolder folder;
   const auto file = folder / "achieved.json";
