@@ -140,10 +140,11 @@ bool is_asked_for(const PlanArguments& arguments, bones::BoneKind bone) {
   return arguments.bone.empty() || arguments.bone == bones::to_text(bone);
 }
 
-// Returns what the file itself says against this case.
-std::string take_markups(const PlanArguments& arguments, cases::Case& knee, std::vector<std::string>& notes) {
+void take_markups(const PlanArguments& arguments, cases::Case& knee, std::vector<std::string>& notes) {
+  // Of a file that is moved and taken more than once it is so, too: a question, and no failure.
   const std::string doubt =
       plan_export::origin_doubt(arguments.markups, knee, cases::load_plan_versions(arguments.case_folder));
+  if (!doubt.empty()) notes.push_back("Look: " + doubt);
   std::map<bones::BoneKind, geometry::Surface> surfaces;
   const auto surface_of = [&](bones::BoneKind kind) -> const geometry::Surface* {
     const auto bone = knee.bones.find(kind);
@@ -154,7 +155,6 @@ std::string take_markups(const PlanArguments& arguments, cases::Case& knee, std:
   for (const auto& [key, tunnel] : taken.tunnels)
     if (is_asked_for(arguments, key.bone))
       put(tunnel, bones::mesh_sha256(knee.bones.at(key.bone).mesh), knee, notes);
-  return doubt;
 }
 
 // The tunnels of what was asked for.
@@ -338,11 +338,10 @@ void add_plan_command(CLI::App& app, Context& context) {
     cases::BoneDoubts doubts = cases::load_bone_doubts(arguments->case_folder);
     PlanVerdict verdict;
     plan_review::ProposedBone proposed;  // of the bone that a default plan was made of
-    std::string doubt_of_markups;
-    std::vector<std::string> notes;  // said once it is so on the disk
+    std::vector<std::string> notes;      // said once it is so on the disk
     const cases::Plan before = knee.plan;
     if (!arguments->markups.empty()) {
-      doubt_of_markups = take_markups(*arguments, knee, notes);
+      take_markups(*arguments, knee, notes);
     } else if (arguments->version > 0) {
       std::vector<bones::BoneKind> asked_for{bones::BoneKind::Femur, bones::BoneKind::Tibia};
       std::erase_if(asked_for, [&](bones::BoneKind kind) { return !is_asked_for(*arguments, kind); });
@@ -390,8 +389,6 @@ void add_plan_command(CLI::App& app, Context& context) {
     }
     if (!arguments->export_folder.empty()) export_to(*arguments, context, knee, wrong_in_plan(review));
     if (!verdict.is_reliable) context.say_unreliable("The default plan", verdict.reasons);
-    // What is placed by hand is the plan that was asked for, whatever the checks say of it above.
-    if (!doubt_of_markups.empty()) context.say_unreliable("The plan", {doubt_of_markups});
   });
 }
 

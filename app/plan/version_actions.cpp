@@ -77,7 +77,7 @@ void PlanView::take_markups(const std::filesystem::path& file) {
     state_.hint = {"Taken from " + file.filename().string() + ": " + names +
                        (note.empty() ? "" : ". The " + note) + (doubt.empty() ? "" : ". Look: " + doubt) +
                        ". Ctrl+Z brings back the plan that was there.",
-                   doubt.empty(), model_->revision()};
+                   true, model_->revision()};
     follow_plan();
   } catch (const std::runtime_error& error) {
     state_.hint = {error.what()};

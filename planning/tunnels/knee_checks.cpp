@@ -88,7 +88,8 @@ std::optional<PlanCheck> check_graft_diameters(const KneePlan& plan) {
   PlanCheck check{.verdict = Verdict::Note,
                   .name = "Graft diameter",
                   .text = "femur " + number_text(plan.femoral->diameter_mm, "mm") + ", tibia " +
-                          number_text(plan.tibial->diameter_mm, "mm"),
+                          number_text(plan.tibial->diameter_mm, "mm") + ", " + number_text(apart_mm, "mm") +
+                          " apart",
                   .source =
                       "one graft; the means of studies are 8.2 mm in the femur and 8.4 mm in the tibia "
                       "(PMC6024536), " +

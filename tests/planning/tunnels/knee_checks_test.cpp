@@ -131,7 +131,7 @@ TEST_F(OneGraft, IsOfOneDiameter) {
     const auto check = named(checks(bone), "Graft diameter");
     ASSERT_TRUE(check);
     EXPECT_EQ(check->verdict, Verdict::Look);
-    EXPECT_EQ(check->text, "femur 9.0 mm, tibia 10.0 mm: one graft is seldom of two widths");
+    EXPECT_EQ(check->text, "femur 9.0 mm, tibia 10.0 mm, 1.0 mm apart: one graft is seldom of two widths");
   }
 }
 
