@@ -32,9 +32,9 @@ struct Card {
 // words; empty: not known. verdict: of the plan. Precondition: a source was started.
 [[nodiscard]] std::vector<CardLine> time_out_lines(const operation::OperationState& state,
                                                    const std::string& patient,
-                                                   const plan_review::TunnelVerdict& verdict = {});
+                                                   const plan_review::TunnelVerdict& verdict);
 [[nodiscard]] Card time_out_card(const operation::OperationState& state, const std::string& patient,
-                                 const plan_review::TunnelVerdict& verdict = {});
+                                 const plan_review::TunnelVerdict& verdict);
 
 // `plan`: the case's, as an operation that begins afresh would have it.
 [[nodiscard]] Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedTunnel>& plan,

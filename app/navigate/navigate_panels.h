@@ -6,6 +6,7 @@
 #include "app/navigate/registration_words.h"
 #include "app/navigate/theatre_bones.h"
 #include "app/widgets/undistorted_texture.h"
+#include "planning/plan_review/tunnel_verdict.h"
 
 namespace arthronaut::navigate {
 
@@ -34,6 +35,7 @@ struct NavigateScreen {
   std::optional<operation::Step> looked_at = std::nullopt;  // the surgeon went back to it
   std::optional<double> reached_for_s = std::nullopt;       // the guide has stood on the plan for so long
   std::string patient = "";                                 // in words; empty: not known
+  const plan_review::TunnelVerdict* verdict = nullptr;      // of the plan; null: nobody judged it
   bool is_muted = false;                                    // no sound, by the user's word
   std::string sound_trouble = "";                           // why none can be heard; empty: it can
   std::string sharing = "";  // what goes out by OpenIGTLink; empty: nothing is asked for

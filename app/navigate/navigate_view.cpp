@@ -52,6 +52,21 @@ std::optional<sources::SourceKind> NavigateView::source_kind() const {
   return live_->operation->source->kind;
 }
 
+namespace {
+
+// Doubts that nobody can read are one: a plan on these bones must not look as if nothing spoke against them.
+cases::BoneDoubts doubts_in(const std::filesystem::path& case_folder) {
+  if (case_folder.empty()) return {};
+  try {
+    return cases::load_bone_doubts(case_folder);
+  } catch (const std::runtime_error&) {
+    const std::vector<std::string> unread = {"what spoke against it cannot be read"};
+    return {{bones::BoneKind::Femur, unread}, {bones::BoneKind::Tibia, unread}};
+  }
+}
+
+}  // namespace
+
 void NavigateView::case_opened(const mode::OpenCase& opened) {
   bones_.open(opened.model, opened.folder, opened.read_only);
   live_ = TheatreBones::nothing();
@@ -67,9 +82,8 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   cameras_.forget_tracker();
   resume_.open(*opened.model, opened.folder, !opened.read_only.empty(), opened.left_by_crash_since);
   patient_.clear();
-  judged_.open({});
+  judged_.open(doubts_in(case_folder_));
   try {  // who it is is never guessed: what cannot be read is said
-    judged_.open(case_folder_.empty() ? cases::BoneDoubts{} : cases::load_bone_doubts(case_folder_));
     if (const auto identity = cases::load_identity(case_folder_)) patient_ = identity->in_words();
   } catch (const std::runtime_error& error) {
     notice_ = error.what();
@@ -90,6 +104,10 @@ void NavigateView::enter() {
   } catch (const std::runtime_error& error) {  // what is wrong with them is a step that is not done
     notice_ = error.what();
   }
+}
+
+void NavigateView::turn_to(bones::BoneKind bone) {
+  if (bone != choices_.bone) take_other_bone();
 }
 
 void NavigateView::end_source() {
@@ -306,6 +324,7 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
   screen.missing = refusal_notice(*live_, now_s);
   if (screen.missing.empty()) screen.missing = missing;
   screen.patient = patient_;
+  screen.verdict = &judged_.verdict();
   follow_reached(display, now_s);
   screen.reached_for_s = choices_.reached.since(now_s);
   screen.is_muted = player_.is_muted();

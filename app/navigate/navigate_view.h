@@ -49,6 +49,8 @@ class NavigateView : public mode::Mode {
   // While pictures come, or have come, nothing but them and what belongs to them is on the screen.
   [[nodiscard]] std::optional<widgets::Rect> header_in(const widgets::Ui& ui,
                                                        const widgets::Rect& window) const override;
+  // Says why not where a source runs, or an exercise.
+  void turn_to(bones::BoneKind bone);
   // The bone whose operation was cut off is chosen then.
   [[nodiscard]] bool asks_for_front() override;
   [[nodiscard]] bool is_busy() const override;

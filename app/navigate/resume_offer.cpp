@@ -89,8 +89,9 @@ void ResumeOffer::decline(bones::BoneKind bone) {
   answer(bone);
   const auto left = left_.find(bone);
   if (left == left_.end()) return;
-  left->second.found.was_declined = true;
+  // What cannot be kept holds for as long as the case is open: look_again() asks the file of what was.
   recording::decline_resume(left->second.found.folder);
+  left->second.found.was_declined = true;
 }
 
 void ResumeOffer::look_again() {

@@ -194,7 +194,8 @@ void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const Navig
     draw_touch_row(ui, screen);
     draw_probe(ui, screen);
     const operation::OperationState& state = *screen.live->operation;
-    draw_rows(ui, beginning_rows(state, screen.patient));
+    draw_rows(ui, beginning_rows(state, screen.patient,
+                                 screen.verdict != nullptr ? *screen.verdict : plan_review::TunnelVerdict{}));
     draw_rows(ui, source_rows(*screen.live));
     draw_rows(ui, record_rows(*screen.live, screen.display));
     widgets::status_row(ui, Severity::Quiet, state.source->title, state.source->calibration);

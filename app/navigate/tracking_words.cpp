@@ -89,11 +89,12 @@ std::vector<SeverityText> source_rows(const theatre::LiveState& live) {
   return rows;
 }
 
-std::vector<SeverityText> beginning_rows(const operation::OperationState& state, const std::string& patient) {
+std::vector<SeverityText> beginning_rows(const operation::OperationState& state, const std::string& patient,
+                                         const plan_review::TunnelVerdict& verdict) {
   using Topic = CardLine::Topic;
   std::vector<SeverityText> rows;
   std::string knee;
-  for (const CardLine& line : time_out_lines(state, patient)) {
+  for (const CardLine& line : time_out_lines(state, patient, verdict)) {
     if (line.topic == Topic::Knee) knee = line.text;
     if (line.topic == Topic::Plan) rows.push_back({line.severity, line.name + ", " + knee, line.text});
     if (line.topic == Topic::Medium) rows.push_back({line.severity, line.name, line.text});

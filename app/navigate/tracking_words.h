@@ -7,13 +7,15 @@
 
 #include "app/navigate/navigate_display.h"
 #include "app/navigate/registration_words.h"
+#include "planning/plan_review/tunnel_verdict.h"
 
 namespace arthronaut::navigate {
 
 // What a time-out reads out, whether or not one was asked for, in few lines: the patient stands in the title,
 // camera and tools with the source.
 [[nodiscard]] std::vector<SeverityText> beginning_rows(const operation::OperationState& state,
-                                                       const std::string& patient);
+                                                       const std::string& patient,
+                                                       const plan_review::TunnelVerdict& verdict);
 // Whether the picture shows the registered bone where it lay, or why that is not checked: good never, since
 // it makes nothing more sure. Empty while no registration stands or an alarm of another kind holds.
 [[nodiscard]] std::vector<SeverityText> contour_rows(const operation::OperationState& state);

@@ -297,7 +297,7 @@ void ReviewView::resume() {
   try {
     recording::take_back_declined_resume(open_->review.folder);
     open_->can_be_resumed = false;
-    to_theatre_();
+    to_theatre_(open_->review.session->header.bone);
   } catch (const IoError& error) {
     notice_ = error.what();
   }

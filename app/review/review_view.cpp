@@ -34,7 +34,7 @@ bool was_kept(const recording::SessionOverview& session, std::int64_t frame) {
 }  // namespace
 
 ReviewView::ReviewView(std::function<void()> make_current, std::function<void()> wake,
-                       std::function<void()> to_theatre)
+                       std::function<void(bones::BoneKind)> to_theatre)
     : wake_(std::move(wake)),
       to_theatre_(std::move(to_theatre)),
       pane_(make_current),

@@ -45,9 +45,9 @@ struct OpenSession {
 
 class ReviewView : public mode::Mode {
  public:
-  // to_theatre: shows Navigate.
+  // to_theatre: shows Navigate, turned to that bone.
   ReviewView(std::function<void()> make_current, std::function<void()> wake,
-             std::function<void()> to_theatre);
+             std::function<void(bones::BoneKind)> to_theatre);
 
   [[nodiscard]] mode::ModeTitle title() const override;
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const override { return {"review."}; }
@@ -133,7 +133,8 @@ class ReviewView : public mode::Mode {
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
   std::string read_only_;
-  std::function<void()> wake_, to_theatre_;
+  std::function<void()> wake_;
+  std::function<void(bones::BoneKind)> to_theatre_;
   widgets::ScenePane pane_;
   widgets::VideoTexture video_;
   SessionList sessions_;

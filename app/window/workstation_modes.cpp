@@ -39,7 +39,11 @@ void WorkstationWindow::make_modes() {
                                                                      : openigtlink::Reach::ThisMachine));
   navigate::NavigateView* const screen = theatre.get();
   modes_.push_back(std::move(theatre));
-  auto review = std::make_unique<review::ReviewView>(make_current, wake, [this] { show(kNavigate); });
+  auto review =
+      std::make_unique<review::ReviewView>(make_current, wake, [this, screen](bones::BoneKind bone) {
+        screen->turn_to(bone);
+        show(kNavigate);
+      });
   review_ = review.get();
   modes_.push_back(std::move(review));
   modes_.push_back(std::make_unique<training_mode::TrainingView>(

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "navigation/recording/case_sessions.h"
+#include "navigation/recording/session_facts.h"
 #include "navigation/recording/session_files.h"
 #include "planning/cases/case.h"
 #include "planning/files/json_document.h"
@@ -41,7 +42,9 @@ bool can_be_taken_back(const std::filesystem::path& case_folder,
     try {  // passed over as find_resumable() does
       pipeline::PipelineOptions options;
       const SessionHeader header = read_session_header(folder, options);
-      if (header.bone == *bone && !is_exercise(header)) return false;
+      if (header.bone != *bone || is_exercise(header)) continue;
+      // Without a frame, or where nothing tells of one, it decides nothing.
+      if (read_session_facts(folder).length_min || !header.continues.empty()) return false;
     } catch (const std::runtime_error&) {
       continue;
     }

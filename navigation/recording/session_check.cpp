@@ -253,12 +253,12 @@ std::string check_words(const SessionCheck& check) {
     case Outcome::NoChain:
       return "holds no hashes";
     case Outcome::Unbroken:
-      return files::format("as recorded: nothing was changed or lost in %.1f MB of files, by %lld hashes%s",
-                           static_cast<double>(check.covered_bytes) / 1e6,
-                           static_cast<long long>(check.record_count),
-                           check.was_finished        ? ""
-                           : check.is_being_recorded ? "; being recorded, whole up to its last hash"
-                                                     : "; cut off, whole up to its last hash");
+      return files::format(
+          "as recorded: nothing that was hashed was changed or lost, %.1f MB of files, by %lld hashes%s",
+          static_cast<double>(check.covered_bytes) / 1e6, static_cast<long long>(check.record_count),
+          check.was_finished        ? ""
+          : check.is_being_recorded ? "; being recorded, whole up to its last hash"
+                                    : "; cut off, whole up to its last hash");
     case Outcome::Broken:
       return check.findings.front().text() +
              (check.findings.size() > 1 ? "; and " + std::to_string(check.findings.size() - 1) + " more"

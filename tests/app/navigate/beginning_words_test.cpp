@@ -34,7 +34,7 @@ TEST(TimeOutCard, Hazard20NamesPatientKneePlanCameraToolsAndMedium) {
   state.source = source;
   state.bone = bones::BoneKind::Tibia;
   state.plan = plan();
-  const Card card = time_out_card(state, "Muster, Anna \u00B7 4711 \u00B7 1990-01-31");
+  const Card card = time_out_card(state, "Muster, Anna \u00B7 4711 \u00B7 1990-01-31", {});
   EXPECT_EQ(line_of(card, "Patient").text, "Muster, Anna \u00B7 4711 \u00B7 1990-01-31");
   EXPECT_EQ(line_of(card, "Knee").text, "left, tibia");
   EXPECT_EQ(line_of(card, "Plan").text, "8.5 mm wide, 31.2 mm long");
@@ -44,13 +44,13 @@ TEST(TimeOutCard, Hazard20NamesPatientKneePlanCameraToolsAndMedium) {
   EXPECT_EQ(line_of(card, "Medium").text, "saline");
   EXPECT_EQ(line_of(card, "Medium").topic, CardLine::Topic::Medium);
   state.medium = {.fit = pipeline::MediumFit::Contradicts, .stated_index = 1.3345, .other_index = 1};
-  const CardLine wrong = line_of(time_out_card(state, ""), "Medium");
+  const CardLine wrong = line_of(time_out_card(state, "", {}), "Medium");
   EXPECT_EQ(wrong.text, "saline, but the markers look as in air");
   EXPECT_EQ(wrong.severity, Severity::Bad);
   EXPECT_EQ(line_of(card, "Plan").topic, CardLine::Topic::Plan);
-  EXPECT_EQ(line_of(time_out_card(state, ""), "Patient").severity, Severity::Caution);
+  EXPECT_EQ(line_of(time_out_card(state, "", {}), "Patient").severity, Severity::Caution);
   state.plan.reset();
-  EXPECT_EQ(line_of(time_out_card(state, ""), "Plan").text, "none");
+  EXPECT_EQ(line_of(time_out_card(state, "", {}), "Plan").text, "none");
 }
 
 // What its checks say of the plan is read out with it.
@@ -65,7 +65,7 @@ TEST(TimeOutCard, SaysWhatSpeaksAgainstThePlan) {
   const CardLine look = line_of(time_out_card(state, "", {.look = {"Bone: check the side"}}), "Plan");
   EXPECT_EQ(look.severity, Severity::Caution);
   EXPECT_EQ(look.text, "8.5 mm wide, 31.2 mm long; look: Bone: check the side");
-  EXPECT_EQ(line_of(time_out_card(state, ""), "Plan").severity, Severity::Quiet);
+  EXPECT_EQ(line_of(time_out_card(state, "", {}), "Plan").severity, Severity::Quiet);
 }
 
 LeftBehind left_behind() {

@@ -272,7 +272,7 @@ TEST(BeginningRows, ShowPlanKneeAndMedium) {
   state.source = source;
   state.bone = bones::BoneKind::Tibia;
   state.depth_stop_mm = 21.5;
-  const auto rows = beginning_rows(state, "Muster, Anna");
+  const auto rows = beginning_rows(state, "Muster, Anna", {});
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_EQ(rows[0].name, "Plan, left, tibia");
   EXPECT_EQ(rows[0].text, "none");

@@ -157,7 +157,7 @@ TEST_F(TunnelChoice, Hazard38TheTimeOutNamesTheTunnel) {
   operation::OperationState state;
   state.source = std::make_shared<const operation::SourceSetup>();
   state.plan = bones_.plan_of(BoneKind::Femur);
-  const auto lines = time_out_lines(state, "");
+  const auto lines = time_out_lines(state, "", {});
   EXPECT_TRUE(std::ranges::any_of(
       lines, [](const CardLine& line) { return line.text.find("tunnel femur PL, ") == 0; }));
 }

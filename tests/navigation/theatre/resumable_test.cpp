@@ -66,6 +66,17 @@ TEST_F(ResumableTest, WhatWasDeclinedStaysDeclined) {
   decline_resume(left->folder);
   EXPECT_TRUE(found()->was_declined);
   EXPECT_TRUE(can_be_taken_back(folder_.path(), left->folder));
+  // A camera that gave no picture leaves a record that decides nothing.
+  {
+    SessionHeader empty;
+    empty.bone = left->header.bone;
+    empty.source_kind = "live";
+    pipeline::PipelineOptions options;
+    options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+    SessionRecorder(cases::create_session_folder(folder_.path()), empty, options).finish();
+  }
+  ASSERT_TRUE(found());
+  EXPECT_TRUE(can_be_taken_back(folder_.path(), left->folder));
   continues_.clear();
   PhantomOperation afresh;
   operate(afresh, source);
