@@ -20,7 +20,7 @@ std::string caption_of(const NavigateScreen& screen, bool asks) {
   if (asks) return bone + ". White: drawn. Orange: draw here";
   if (screen.layout == NavigateLayout::Guide) return bone + ": plan; the guide is not known now";
   const bool has_strokes = screen.live != nullptr && !screen.live->operation->registration->drawn->empty();
-  return bone + (has_strokes ? ": plan, and what was drawn. Green: on the bone"
+  return bone + (has_strokes ? ": plan, and what was drawn. Green: surely on the bone"
                              : ": plan; what is drawn will show here");
 }
 

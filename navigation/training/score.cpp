@@ -141,7 +141,7 @@ std::string what_was_found(Measure measure, double value, const ExerciseFacts& f
       return "You drilled " + said + " while the numbers on the screen were gone or wrong" +
              (facts.worst_bad_error_mm > 0 ? format(" (by up to %.1f mm)", facts.worst_bad_error_mm) : "");
     case Measure::OffBone:
-      return value <= 0 ? "The guide's point stands on the bone"
+      return value < 0.05 ? "The guide's point stands on the bone"
                         : "The guide's point ended " + said + " off the bone";
   }
   return "";
