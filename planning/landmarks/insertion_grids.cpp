@@ -3,10 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "planning/geometry/rigid_transform.h"
@@ -19,8 +17,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kLeastSpan_mm = 5.0;
-// A choice: a cap of a condyle's radius has lost 0.02 mm of its height where it is so large.
-constexpr double kLeastReach_mm2 = 3.0;
+// A choice, between needles and the outermost vertices of clean bones: triangles at 62 degrees to the
+// outline.
+constexpr double kLeastSeen = 0.1;
 constexpr double kRounding_mm = 1e-6;  // a vertex on the edge counts alike however the bone lies
 
 std::optional<Vector3d> find(const Landmarks& landmarks, const char* name) {
@@ -41,40 +40,32 @@ std::optional<Vector3d> condylar_line(const Landmarks& landmarks) {
   return std::nullopt;
 }
 
-// How far along the unit `direction` from `origin` the vertices that count reach: as far as the furthest of
-// them that stand for kLeastReach_mm2 of the surface between them, as it is seen along it, and the less the
-// steeper it is. A needle stands for next to nothing and moves nothing, however long it is; a corner of a
-// coarse mesh stands for enough by itself.
-// -infinity where none counts.
+// How far along the unit `direction` from `origin` the vertices that count reach, needles left out: a vertex
+// whose triangles all stand steeply to that direction, however far it is drawn out. On clean bones the
+// outermost vertices have shares of 0.55 and more, also where Blumensaat's line cuts the outline off; a
+// vertex drawn out by 6 mm has 0.03 at the most. -infinity where none counts.
 template <typename Counts>
 double reach_of(const geometry::TriangleMesh& mesh, const Counts& counts, const Vector3d& origin,
                 const Vector3d& direction) {
-  std::vector<double> seen_mm2(mesh.vertices_mm.size(), 0);
+  std::vector<double> seen(mesh.vertices_mm.size(), 0), whole(mesh.vertices_mm.size(), 0);
   for (const auto& t : mesh.triangles) {
     const auto corner = [&](std::size_t k) -> const Vector3d& {
       return mesh.vertices_mm[static_cast<std::size_t>(t[k])];
     };
-    const Vector3d area = 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0));
-    const double across = area.dot(direction);
-    if (!(across > 0)) continue;
-    const double facing = across / area.norm();  // the flank of a needle is steep
-    for (const std::int32_t k : t) seen_mm2[static_cast<std::size_t>(k)] += facing * facing * across / 3;
+    const Vector3d across = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    const double area = across.norm();
+    if (!(area > 0)) continue;
+    const double facing = std::abs(across.dot(direction)) / area;
+    for (const std::int32_t k : t) {
+      seen[static_cast<std::size_t>(k)] += facing * facing * facing * area;
+      whole[static_cast<std::size_t>(k)] += area;
+    }
   }
-  std::vector<std::pair<double, double>> heights;  // and what is seen of each
+  double reach_mm = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < mesh.vertices_mm.size(); ++i)
-    if (counts(mesh.vertices_mm[i]))
-      heights.emplace_back((mesh.vertices_mm[i] - origin).dot(direction), seen_mm2[i]);
-  std::ranges::sort(heights, std::greater<>());
-  double sum_mm2 = 0, before_mm = -std::numeric_limits<double>::infinity();
-  for (const auto& [height_mm, each_mm2] : heights) {
-    if (sum_mm2 + each_mm2 >= kLeastReach_mm2)
-      // Evenly from one to the next, so that a landmark that is dragged moves the edge without a jump.
-      return sum_mm2 > 0 ? before_mm + (height_mm - before_mm) * (kLeastReach_mm2 - sum_mm2) / each_mm2
-                         : height_mm;
-    sum_mm2 += each_mm2;
-    before_mm = height_mm;
-  }
-  return before_mm;
+    if (seen[i] > kLeastSeen * whole[i] && counts(mesh.vertices_mm[i]))
+      reach_mm = std::max(reach_mm, (mesh.vertices_mm[i] - origin).dot(direction));
+  return reach_mm;
 }
 
 struct Extents {

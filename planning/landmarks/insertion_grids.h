@@ -37,7 +37,7 @@ struct FemoralQuadrant {
 // Needs blumensaat_anterior and blumensaat_posterior. The view is exactly along the condylar line: through
 // the condyles' centres, else their posterior points, where either pair is known, else along the patient's x
 // laid across the line; Blumensaat's line is taken as that view shows it. Extents: lateral_condyle_deep,
-// _shallow and _low where all three are known, else the outline of the mesh, as far as 3 mm2 of it reach.
+// _shallow and _low where all three are known, else the outline of the mesh, needles left out.
 // nullopt when a landmark is missing or the line is shorter than 5 mm in the view.
 [[nodiscard]] std::optional<FemoralQuadrant> femoral_quadrant(const geometry::TriangleMesh& femur,
                                                               const Landmarks& landmarks, bones::Side side);

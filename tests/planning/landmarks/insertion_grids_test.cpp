@@ -82,6 +82,23 @@ TEST(FemoralQuadrant, ANeedleIsNoOutline) {
   }
 }
 
+// Where Blumensaat's line cuts the outline off while it still widens, the edge is at the cut, and not further
+// in.
+TEST(FemoralQuadrant, ACutOutlineReachesToTheCut) {
+  const auto bone = test::ellipsoid({40, 30, 20}, 5);
+  const Landmarks marks{{"blumensaat_anterior", {0, -20, -8}}, {"blumensaat_posterior", {0, 10, -8}}};
+  const auto quadrant = femoral_quadrant(bone, marks, bones::Side::Right);
+  ASSERT_TRUE(quadrant);
+  double deep = 0, shallow = 0;
+  for (const Vector3d& v : bone.vertices_mm) {
+    if (v.dot(quadrant->lateral) < 1e-6 || v.z() > -8) continue;
+    deep = std::max(deep, -v.dot(quadrant->shallow));
+    shallow = std::max(shallow, v.dot(quadrant->shallow));
+  }
+  EXPECT_NEAR(quadrant->depth_mm, deep + shallow, 0.05);
+  EXPECT_NEAR(quadrant->height_mm, 12, 0.05);
+}
+
 // Two landmarks that the surgeon placed are not "proposed by the program": what is missing is said to be
 // missing.
 TEST(GridLandmarks, MissingOnesAreNotCalledProposed) {
