@@ -139,7 +139,10 @@ std::vector<BetterKept> keep_tunnel_by_tunnel(const std::filesystem::path& file,
         "newer images show it less well" + (why_not_now.empty() ? std::string() : ": " + why_not_now);
   }
   // Of this plan's, by the landmarks of now, as those beside them.
-  auto places = places_of(cases::load_case(case_folder), kept);
+  const cases::Case knee = cases::load_case(case_folder);  // whose plan may have changed meanwhile
+  Comparisons planned_now = kept;
+  std::erase_if(planned_now, [&](const auto& one) { return !knee.plan.tunnels.contains(one.first); });
+  auto places = places_of(knee, planned_now);
   places.insert(answer.places.begin(), answer.places.end());
   Comparisons together = kept;
   together.insert(answer.comparisons.begin(), answer.comparisons.end());

@@ -17,7 +17,7 @@ std::string off_by(double entry_mm, double angle_deg) {
 
 std::string by_navigation(const Content& content, const TunnelResult& result) {
   if (result.is_by_word) return "drilled by word alone: no pose shows where";
-  if (result.navigated == nullptr) return content.session ? "not drilled" : "\u2013";
+  if (result.navigated == nullptr) return content.session ? "not drilled in this session" : "\u2013";
   const operation::AchievedTunnel& achieved = *result.navigated;
   const operation::TunnelDifference off = operation::compare(achieved.planned, achieved.measured);
   return off_by(off.entry_mm, off.angle_deg) +
@@ -30,7 +30,8 @@ std::string by_ct(const Content& content, const TunnelResult& result) {
   const postop::AchievedTunnel& found = result.imaged->tunnel;
   if (!found.is_found) return verdict;
   return off_by(found.offset_mm, geometry::deg_from_rad(found.angle_rad)) +
-         (verdict == "reliable" ? "" : "; " + verdict);
+         (verdict == "reliable" ? "" : "; " + verdict) +
+         (result.imaged->kept_because.empty() ? "" : "; kept from earlier images");
 }
 
 // Whether the CT's numbers stand, whatever became of the plan since.

@@ -142,7 +142,7 @@ std::string what_was_found(Measure measure, double value, const ExerciseFacts& f
              (facts.worst_bad_error_mm > 0 ? format(" (by up to %.1f mm)", facts.worst_bad_error_mm) : "");
     case Measure::OffBone:
       return value < 0.05 ? "The guide's point stands on the bone"
-                        : "The guide's point ended " + said + " off the bone";
+                          : "The guide's point ended " + said + " off the bone";
   }
   return "";
 }

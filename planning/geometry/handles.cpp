@@ -14,6 +14,8 @@ namespace arthronaut::geometry {
 
 namespace {
 
+constexpr double kMostWork = 2.5e6;  // handles times triangles; see the header
+
 using Eigen::Vector3d;
 using Index = std::int32_t;
 
@@ -222,14 +224,20 @@ int genus(const TriangleMesh& mesh, const std::vector<Edge>& edges) {
 
 }  // namespace
 
-int genus_of(const TriangleMesh& mesh) { return genus(mesh, edges_of(mesh)); }
+int genus_of(const TriangleMesh& mesh) {
+  const std::vector<Edge> edges = edges_of(mesh);
+  return edges.empty() ? 0 : genus(mesh, edges);
+}
 
 std::vector<Handle> handles_of(const TriangleMesh& mesh, double least_around_mm) {
   TriangleMesh left = mesh;
   std::vector<Handle> handles;
   while (true) {
     const std::vector<Edge> edges = edges_of(left);
-    if (edges.empty() || genus(left, edges) <= 0) return handles;
+    const int count = edges.empty() ? 0 : genus(left, edges);
+    if (count <= 0) return handles;
+    // Each costs some ten walks over the whole surface.
+    if (static_cast<double>(count) * static_cast<double>(left.triangles.size()) > kMostWork) return {};
     Loops loops(left, edges);
     Loops::Loop shortest;
     Union parts(left.vertices_mm.size());

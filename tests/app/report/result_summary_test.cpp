@@ -85,7 +85,7 @@ TEST_F(ResultSummary, SaysFirstThatItWasASimulation) {
   write(pdf());
   const std::string text = pdf_text();
   expect_contains(text.substr(0, text.find('\f')), "SIMULATION: nobody's knee");
-  expect_contains(text, "not drilled");  // the tibia
+  expect_contains(text, "not drilled in this session");  // the tibia
 }
 
 }  // namespace
