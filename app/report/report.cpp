@@ -24,10 +24,8 @@
 #include "planning/cases/plan_file.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
-#include "planning/files/unit_signs.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
-#include "planning/plan_review/tunnel_verdict.h"
 #include "planning/tunnels/tunnel.h"
 
 namespace arthronaut::report {
@@ -142,7 +140,6 @@ class Report {
   }
 
   void plan_page();
-  void say_verdicts();
   void say_plan_fit(const tunnels::TunnelKey& key);
   void navigate_page();
   void registration_section(const registration::RegistrationSummary& registration);
@@ -170,7 +167,7 @@ void Report::plan_page() {
     about.push_back({"Created", files::utc_in_words(content_.knee.created_utc)});
   if (options_.says_when_made) about.push_back({"Report made", files::utc_now_as("%Y-%m-%d %H:%M:%S UTC")});
   pages_.table({45, 125}, about);
-  say_verdicts();
+  draw_plan_verdicts(pages_, content_);
   pages_.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
   draw_result_summary(pages_, content_);
   pages_.heading("Planned tunnels");
@@ -194,29 +191,6 @@ void Report::plan_page() {
     for (const auto& [key, tunnel] : content_.knee.plan.tunnels) say_plan_fit(key);
   }
   pictures(scene::ViewDirection::Anterior, scene::ViewDirection::Lateral);
-}
-
-// Before any number: what the checks come to, tunnel by tunnel. Which they all are stands on the plan's
-// sheet.
-void Report::say_verdicts() {
-  for (const auto& [key, measured] : content_.review->tunnels()) {
-    const auto checks = content_.review->checks(key);
-    const auto doubts = content_.bone_doubts.find(key.bone);
-    const plan_review::TunnelVerdict verdict = plan_review::verdict_of(
-        checks, doubts == content_.bone_doubts.end() ? std::vector<std::string>{} : doubts->second,
-        grid_doubt(content_, key.bone));
-    const auto unmade =
-        std::ranges::count(checks, tunnels::PlanCheck::Verdict::NotChecked, &tunnels::PlanCheck::verdict);
-    const std::string name = "Checks of the " + tunnels::name_of(key) + ": ";
-    for (const std::string& wrong : verdict.wrong)
-      pages_.sentence(files::with_signs(name + "WRONG: " + wrong), {.bold = true, .ink = kWarning});
-    for (const std::string& look : verdict.look)
-      pages_.sentence(files::with_signs(name + "look: " + look), {.size_pt = 9, .ink = kCaution});
-    if (verdict.is_fine())
-      pages_.sentence(name + "nothing speaks against it" +
-                          (unmade > 0 ? ", " + std::to_string(unmade) + " could not be made" : ""),
-                      {.size_pt = 9});
-  }
 }
 
 // A plan is of the mesh that it was made on, and of no other.

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/report/report_words.h"
+#include "app/report/result_summary.h"
 #include "app/report/session_rows.h"
 #include "app/report/versions.h"
 #include "navigation/camera/medium.h"
@@ -145,6 +146,7 @@ ordered_json json_of(const Content& content, const operation::AchievedTunnel& ac
 // Numbers of what was not found, or is not known, are null.
 ordered_json postoperative_of(const Content& content) {
   ordered_json all = ordered_json::array();
+  const std::vector<TunnelResult> results = results_of(content);
   for (const auto& [key, comparison] : content.postoperative) {
     const postop::AchievedTunnel& found = comparison.tunnel;
     const auto number = [&](double value) {
@@ -177,6 +179,12 @@ ordered_json postoperative_of(const Content& content) {
       node["widths"].push_back({{"from_entry_mm", width.from_entry_mm}, {"diameter_mm", width.diameter_mm}});
     if (const auto place = content.places.find(key); place != content.places.end())
       postop::put_place(node, place->second);
+    node["off_navigation"] = nullptr;  // what was drilled, by the CT, from what navigation measured
+    for (const TunnelResult& result : results)
+      if (result.key == key && result.navigated_to_imaged)
+        node["off_navigation"] = {{"entry_mm", result.navigated_to_imaged->entry_mm},
+                                  {"axis_to_entry_mm", result.navigated_to_imaged->axis_to_entry_mm},
+                                  {"angle_deg", result.navigated_to_imaged->angle_deg}};
     node["bone_rms_mm"] = comparison.bone.is_found ? ordered_json(comparison.bone.rms_mm) : ordered_json();
     all.push_back(std::move(node));
   }

@@ -5,7 +5,9 @@
 
 #include "app/report/report_words.h"
 #include "app/report/session_rows.h"
+#include "planning/files/unit_signs.h"
 #include "planning/geometry/rigid_transform.h"
+#include "planning/plan_review/tunnel_verdict.h"
 
 namespace arthronaut::report {
 
@@ -68,6 +70,27 @@ std::vector<TunnelResult> results_of(const Content& content) {
     in_order.push_back(result);
   }
   return in_order;
+}
+
+void draw_plan_verdicts(FlowingPages& pages, const Content& content) {
+  for (const auto& [key, measured] : content.review->tunnels()) {
+    const auto checks = content.review->checks(key);
+    const auto doubts = content.bone_doubts.find(key.bone);
+    const plan_review::TunnelVerdict verdict = plan_review::verdict_of(
+        checks, doubts == content.bone_doubts.end() ? std::vector<std::string>{} : doubts->second,
+        grid_doubt(content, key.bone));
+    const auto unmade =
+        std::ranges::count(checks, tunnels::PlanCheck::Verdict::NotChecked, &tunnels::PlanCheck::verdict);
+    const std::string name = "Checks of the " + tunnels::name_of(key) + ": ";
+    for (const std::string& wrong : verdict.wrong)
+      pages.sentence(files::with_signs(name + "WRONG: " + wrong), {.bold = true, .ink = kWarning});
+    for (const std::string& look : verdict.look)
+      pages.sentence(files::with_signs(name + "look: " + look), {.size_pt = 9, .ink = kCaution});
+    if (verdict.is_fine())
+      pages.sentence(name + "nothing speaks against it" +
+                         (unmade > 0 ? ", " + std::to_string(unmade) + " could not be made" : ""),
+                     {.size_pt = 9});
+  }
 }
 
 void draw_result_summary(FlowingPages& pages, const Content& content) {

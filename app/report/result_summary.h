@@ -1,5 +1,5 @@
-// What came of the plan, tunnel by tunnel, in a few rows: what whoever opens a report looks for first. Inner
-// header of report.
+// What the checks say of the plan, and what came of it, tunnel by tunnel, in a few rows: what whoever opens a
+// report looks for first. Inner header of report.
 #pragma once
 
 #include <optional>
@@ -28,6 +28,9 @@ struct TunnelResult {
 // In the order of the keys. The pointers are into `content`.
 [[nodiscard]] std::vector<TunnelResult> results_of(const Content& content);
 
+// Before any number: what the checks come to, tunnel by tunnel. Which they all are stands on the plan's
+// sheet.
+void draw_plan_verdicts(FlowingPages& pages, const Content& content);
 // Nothing where nothing was drilled, registered or compared yet.
 void draw_result_summary(FlowingPages& pages, const Content& content);
 

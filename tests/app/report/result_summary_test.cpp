@@ -70,6 +70,11 @@ TEST_F(ResultSummary, SetsNavigationAndCtAgainstEachOther) {
   for (const char* const part : {"1.2 mm, 0.0\u00B0", "1.8 mm, 0.0\u00B0", "3.0 mm, 0.0\u00B0"})
     expect_contains(first_page, part);
   EXPECT_EQ(first_page.find("SIMULATION"), std::string::npos);
+  const auto json_file = pdf().parent_path() / "report.json";
+  write(json_file);
+  const auto json = nlohmann::json::parse(files::read_text(json_file));
+  const auto& off = json.at("postoperative").at(0).at("off_navigation");
+  EXPECT_NEAR(off.at("entry_mm").get<double>(), 3.0, 1e-6) << "the same number for other programs";
 }
 
 TEST_F(ResultSummary, ADoubtedCtSaysNothingAboutTheNavigation) {
