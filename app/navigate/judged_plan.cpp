@@ -1,14 +1,20 @@
 #include "app/navigate/judged_plan.h"
 
-#include <utility>
+#include <stdexcept>
 
 #include "planning/landmarks/grid_landmarks.h"
 
 namespace arthronaut::navigate {
 
-void JudgedPlan::open(cases::BoneDoubts doubts) {
+void JudgedPlan::open(const std::filesystem::path& case_folder) {
   *this = {};
-  doubts_ = std::move(doubts);
+  if (case_folder.empty()) return;
+  try {
+    doubts_ = cases::load_bone_doubts(case_folder);
+  } catch (const std::runtime_error&) {
+    const std::vector<std::string> unread = {"what spoke against it cannot be read"};
+    doubts_ = {{bones::BoneKind::Femur, unread}, {bones::BoneKind::Tibia, unread}};
+  }
 }
 
 void JudgedPlan::judge(const open_case::PlanModel& model,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 
 #include "app/case/plan_model.h"
@@ -14,8 +15,9 @@ namespace arthronaut::navigate {
 
 class JudgedPlan {
  public:
-  // Of another case: what spoke against its bones.
-  void open(cases::BoneDoubts doubts);
+  // Another case, with what spoke against its bones; empty: of none. Doubts that nobody can read are one: a
+  // plan on these bones must not look as if nothing spoke against them.
+  void open(const std::filesystem::path& case_folder);
   // plan: in force, or the case's while nothing is; it may differ from the model's. Fine without one, which
   // says nothing.
   void judge(const open_case::PlanModel& model, const std::optional<operation::PlannedTunnel>& plan);

@@ -52,21 +52,6 @@ std::optional<sources::SourceKind> NavigateView::source_kind() const {
   return live_->operation->source->kind;
 }
 
-namespace {
-
-// Doubts that nobody can read are one: a plan on these bones must not look as if nothing spoke against them.
-cases::BoneDoubts doubts_in(const std::filesystem::path& case_folder) {
-  if (case_folder.empty()) return {};
-  try {
-    return cases::load_bone_doubts(case_folder);
-  } catch (const std::runtime_error&) {
-    const std::vector<std::string> unread = {"what spoke against it cannot be read"};
-    return {{bones::BoneKind::Femur, unread}, {bones::BoneKind::Tibia, unread}};
-  }
-}
-
-}  // namespace
-
 void NavigateView::case_opened(const mode::OpenCase& opened) {
   bones_.open(opened.model, opened.folder, opened.read_only);
   live_ = TheatreBones::nothing();
@@ -82,7 +67,7 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   cameras_.forget_tracker();
   resume_.open(*opened.model, opened.folder, !opened.read_only.empty(), opened.left_by_crash_since);
   patient_.clear();
-  judged_.open(doubts_in(case_folder_));
+  judged_.open(case_folder_);
   try {  // who it is is never guessed: what cannot be read is said
     if (const auto identity = cases::load_identity(case_folder_)) patient_ = identity->in_words();
   } catch (const std::runtime_error& error) {

@@ -80,7 +80,7 @@ void PostopPage::replace_kept() {
                                 shown_.answer->places);
     better_kept_.clear();
   } catch (const IoError& error) {
-    problem_ = error.what();
+    better_kept_ = error.what();
   }
 }
 
@@ -285,11 +285,12 @@ void PostopPage::draw_question(const widgets::Ui& ui, const widgets::Rect& area)
 
 void PostopPage::draw_table(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::begin_panel(ui, "review.postop_table", area, "");
-  const std::string standing = standing_in_words(shown_, is_running(), !problem_.empty());
-  const bool is_earlier = standing.starts_with("EARLIER");
-  ui.log.note_state("postop_standing", standing);
-  if (!standing.empty())
-    widgets::text_in(ui.theme.strong, is_earlier ? widgets::kCaution : widgets::kQuietText, standing);
+  const PostopStanding standing = standing_of(shown_, is_running(), !problem_.empty());
+  const bool is_earlier = is_of_earlier_images(standing);
+  const std::string words = in_words(standing);
+  ui.log.note_state("postop_standing", words);
+  if (!words.empty())
+    widgets::text_in(ui.theme.strong, is_earlier ? widgets::kCaution : widgets::kQuietText, words);
   std::map<tunnels::TunnelKey, double> lengths;
   for (const auto& [key, tunnel] : planned()) lengths[key] = model_->measured(key).length_mm;
   for (const AchievedRow& row : achieved_rows(shown_.comparisons, planned(), lengths, places())) {

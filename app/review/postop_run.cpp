@@ -68,12 +68,30 @@ bool take_answer(std::shared_ptr<const open_case::PostopAnswer> answer, PostopSh
   return true;
 }
 
-std::string standing_in_words(const PostopShown& shown, bool is_running, bool asked_in_vain) {
-  if (shown.comparisons.empty()) return "";
-  if (is_running) return "EARLIER COMPARISON: not of the images that are being compared";
+PostopStanding standing_of(const PostopShown& shown, bool is_running, bool asked_in_vain) {
+  if (shown.comparisons.empty()) return PostopStanding::OfTheseImages;
+  if (is_running) return PostopStanding::BeforeThese;
   if (asked_in_vain || !shown.other_patient.empty() || !shown.not_its_bones.empty())
-    return "EARLIER COMPARISON: not of the images that were asked for last";
-  return shown.answer == nullptr ? "As kept in the case: a comparison (C) reads its images again" : "";
+    return PostopStanding::BeforeFailed;
+  return shown.answer == nullptr ? PostopStanding::Kept : PostopStanding::OfTheseImages;
+}
+
+bool is_of_earlier_images(PostopStanding standing) {
+  return standing == PostopStanding::BeforeThese || standing == PostopStanding::BeforeFailed;
+}
+
+std::string in_words(PostopStanding standing) {
+  switch (standing) {
+    case PostopStanding::OfTheseImages:
+      return "";
+    case PostopStanding::Kept:
+      return "As kept in the case: a comparison (C) reads its images again";
+    case PostopStanding::BeforeThese:
+      return "EARLIER COMPARISON: not of the images that are being compared";
+    case PostopStanding::BeforeFailed:
+      return "EARLIER COMPARISON: not of the images that were asked for last";
+  }
+  return "";
 }
 
 std::filesystem::path achieved_file(const std::filesystem::path& case_folder) {

@@ -67,10 +67,17 @@ struct PostopShown {
   std::string
       not_its_bones;  // why those show no bone of the plan; empty: they do, or nothing was shown before
 };
-// What the numbers that are shown are not of, for whoever asked for other images just now: while those are
-// compared, or where nothing came of them. Empty: they are of the images that were asked for last.
+// Of which images the numbers that are shown are.
+enum class PostopStanding {
+  OfTheseImages,  // of those that were asked for last; or nothing is shown
+  Kept,           // in the case, and nobody has asked for any since
+  BeforeThese,    // others are being compared
+  BeforeFailed,   // others were asked for, and nothing came of them
+};
 // asked_in_vain: the comparison that was asked for last failed.
-[[nodiscard]] std::string standing_in_words(const PostopShown& shown, bool is_running, bool asked_in_vain);
+[[nodiscard]] PostopStanding standing_of(const PostopShown& shown, bool is_running, bool asked_in_vain);
+[[nodiscard]] bool is_of_earlier_images(PostopStanding standing);
+[[nodiscard]] std::string in_words(PostopStanding standing);  // empty: OfTheseImages
 // Images of another patient are refused: whose they are is told, and what was shown before stays. So are
 // those that show none of the plan's bones reliably, where what was shown before does. False then.
 bool take_answer(std::shared_ptr<const open_case::PostopAnswer> answer, PostopShown& shown);

@@ -36,7 +36,7 @@ enum class EvidenceOutcome {
   BesideEntry,   // it stood as deep as the bone, but not at the planned entry
   TooShort,      // it stood there, too shortly
   Seen,
-  NoPicture,  // no picture came when it was said to be drilled: nobody saw what was done since the last one
+  NoPicture,  // none that showed anything came when it was said: nobody saw what was done since the last
 };
 [[nodiscard]] std::string_view to_text(EvidenceOutcome outcome);  // plain words
 

@@ -2,17 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/planning/geometry/shapes.h"
+
 namespace arthronaut::navigate {
 namespace {
 
 // A box of 20 mm with its upper face at z = 0.
 geometry::TriangleMesh box() {
-  geometry::TriangleMesh mesh;
-  for (const double z : {-20.0, 0.0})
-    for (const double y : {-10.0, 10.0})
-      for (const double x : {-10.0, 10.0}) mesh.vertices_mm.emplace_back(x, y, z);
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  geometry::TriangleMesh mesh = test::box({10, 10, 10});
+  for (Eigen::Vector3d& p : mesh.vertices_mm) p.z() -= 10;
   return mesh;
 }
 

@@ -152,16 +152,19 @@ TEST(PostopShown, AnotherPatientsImagesTakeNothingAway) {
 // A file that does not say how well entry and direction are known was read as if they were known exactly.
 // A failed or running comparison left the numbers of the one before in green, and nothing said so.
 TEST(PostopShown, NumbersOfEarlierImagesSaySo) {
+  const auto said = [](const PostopShown& of, bool is_running, bool asked_in_vain) {
+    return in_words(standing_of(of, is_running, asked_in_vain));
+  };
   PostopShown shown;
-  EXPECT_EQ(standing_in_words(shown, true, false), "") << "there are none";
+  EXPECT_EQ(said(shown, true, false), "") << "there are none";
   shown.comparisons[bones::BoneKind::Femur];
-  EXPECT_THAT(standing_in_words(shown, false, false), HasSubstr("As kept in the case"));
-  EXPECT_THAT(standing_in_words(shown, true, false), HasSubstr("EARLIER"));
-  EXPECT_THAT(standing_in_words(shown, false, true), HasSubstr("EARLIER"));
+  EXPECT_THAT(said(shown, false, false), HasSubstr("As kept in the case"));
+  EXPECT_THAT(said(shown, true, false), HasSubstr("EARLIER"));
+  EXPECT_THAT(said(shown, false, true), HasSubstr("EARLIER"));
   shown.answer = std::make_shared<open_case::PostopAnswer>();
-  EXPECT_EQ(standing_in_words(shown, false, false), "");
+  EXPECT_EQ(said(shown, false, false), "");
   shown.not_its_bones = "the femur is not found";
-  EXPECT_THAT(standing_in_words(shown, false, false), HasSubstr("EARLIER"));
+  EXPECT_THAT(said(shown, false, false), HasSubstr("EARLIER"));
 }
 
 TEST(AchievedFile, ASigmaThatItDoesNotSayIsNotKnown) {
