@@ -1,6 +1,7 @@
 #include <iostream>
 #include <set>
 
+#include "app/case/case_side.h"
 #include "app/command_line/command.h"
 #include "app/library/workstation_library.h"
 #include "planning/cases/case_lock.h"
@@ -22,6 +23,7 @@ using library::CaseRecord;
 struct CasesArguments {
   std::string add, forget, note;
   std::string note_text;
+  std::string set_side, to_side;
   std::string side, state, order = "newest";
   std::string search;
   bool as_json = false, as_csv = false, with_identity = false;
@@ -111,7 +113,16 @@ void list_cases(const Context& context, const CasesArguments& arguments) {
     say_done(context, arguments,
              (arguments.note_text.empty() ? "Took the note off " : "Noted with ") + arguments.note + ".");
   }
-  const bool only_changes = !arguments.forget.empty() || !arguments.note.empty();
+  if (!arguments.set_side.empty()) {
+    const cases::CaseLock lock = cases::lock_or_refuse(arguments.set_side);
+    if (!lock.notice().empty()) say_done(context, arguments, lock.notice() + ".");
+    const auto said = open_case::say_side(arguments.set_side, bones::side_from_text(arguments.to_side));
+    (void)known.add(std::vector<fs::path>{arguments.set_side});
+    for (const std::string& line : said.lines)
+      say_done(context, arguments, (&line == said.lines.data() ? arguments.set_side + ": " : "    ") + line);
+  }
+  const bool only_changes =
+      !arguments.forget.empty() || !arguments.note.empty() || !arguments.set_side.empty();
   if (only_changes && !arguments.as_json && !arguments.as_csv) return;
   const std::vector<CaseRecord> all = looked_at(known);
   // All of them only where words may find one: each is a file to be read.
@@ -139,6 +150,7 @@ void add_cases_command(CLI::App& app, Context& context) {
   CLI::App* sub = add_subcommand(app, context, "cases",
                                  "List the cases of this workstation: what is planned, done and reached",
                                  "arthronaut cases --add /data/knees\n"
+                                 "  arthronaut cases --set-side Knee.arthro --to left\n"
                                  "  arthronaut cases --search \"left 2026-01\" --state drilled\n"
                                  "  arthronaut cases --csv > cohort.csv");
   sub->add_option("--add", arguments->add,
@@ -149,6 +161,15 @@ void add_cases_command(CLI::App& app, Context& context) {
       sub->add_option("--text", arguments->note_text, "The note, in place of the one there is; may be empty");
   note->needs(text);
   text->needs(note);
+  CLI::Option* set_side = sub->add_option(
+      "--set-side", arguments->set_side,
+      "Case folder that is of the side --to: another one than it says, or the same, which "
+      "somebody has checked then. Landmarks and plan of the other side are put aside, and are "
+      "back when that is set again");
+  CLI::Option* to_side =
+      sub->add_option("--to", arguments->to_side, "left or right")->check(CLI::IsMember({"left", "right"}));
+  set_side->needs(to_side);
+  to_side->needs(set_side);
   sub->add_option(
       "--search", arguments->search,
       "Words that must all stand in name, note, side, dates, state or outcome; with --with-identity "

@@ -26,6 +26,7 @@ void PlanView::add_actions(widgets::Actions& actions) {
   add_volume_actions(actions);
   add_history_actions(actions);
   add_version_actions(actions);
+  add_side_actions(actions);
   add_tour_actions(actions);
   actions.add({"plan.bone",
                "Other bone",
@@ -162,7 +163,7 @@ bool PlanView::can_stop_placing() const {
   const bool can_stop_export =
       export_.is_running() && !export_.is_stopping() && slices_.tool() == MeasuringTool::None;
   return can_stop_export || defaults_.is_running() || state_.placing != Placing::Nothing ||
-         !state_.hint.text.empty();
+         state_.asks_side || !state_.hint.text.empty();
 }
 
 // Where the eye sees the bone that is planned; anything else is said and changes nothing.
@@ -206,23 +207,25 @@ void PlanView::add_placing_actions(widgets::Actions& actions) {
                  state_.shows_lateral = false;  // in the radiograph nothing is placed
                  state_.hint = {};
                }});
-  actions.add({"plan.stop_placing",
-               "Cancel",
-               "Leaves the placing, or a default plan or an export that is being made, without a change",
-               GLFW_KEY_ESCAPE,
-               0,
-               false,
-               [this] { return can_stop_placing(); },
-               {},
-               [this] {
-                 // What is in front first: the export goes on beside it.
-                 if (state_.placing == Placing::Nothing && !defaults_.is_running() &&
-                     state_.hint.text.empty())
-                   export_.stop();
-                 state_.placing = Placing::Nothing;
-                 state_.hint = {};
-                 leave_defaults("it was left");
-               }});
+  actions.add(
+      {"plan.stop_placing",
+       "Cancel",
+       "Leaves the placing, the question for the side, or a default plan or an export that is being made, "
+       "without a change",
+       GLFW_KEY_ESCAPE,
+       0,
+       false,
+       [this] { return can_stop_placing(); },
+       {},
+       [this] {
+         // What is in front first: the export goes on beside it.
+         if (state_.placing == Placing::Nothing && !defaults_.is_running() && state_.hint.text.empty())
+           export_.stop();
+         state_.placing = Placing::Nothing;
+         state_.asks_side = false;
+         state_.hint = {};
+         leave_defaults("it was left");
+       }});
 }
 
 void PlanView::add_view_actions(widgets::Actions& actions) {

@@ -219,7 +219,7 @@ std::optional<std::size_t> draw_versions(const widgets::Ui& ui, const PlanPanel&
   std::optional<std::size_t> clicked;
   ImGui::Separator();
   button_pair(ui, "plan.keep", "plan.export");
-  widgets::action_button(ui, "plan.markups", ImGui::GetContentRegionAvail().x);
+  button_pair(ui, "plan.markups", "plan.side");
   ImGui::BeginChild("versions", {0, ImGui::GetContentRegionAvail().y - room_below_px});
   if (panel.versions.empty())
     widgets::text_in(ui.theme.body, widgets::kQuietText,

@@ -115,9 +115,7 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
   if (state.is_unsaved)
     return {"The plan is not saved: mend what is said below. It is tried again by itself", ""};
   if (!state.side_doubt.empty())
-    return {"Check the side first: " + state.side_doubt +
-                ". If it is wrong, import the bones anew as the other knee: press F5, then O",
-            ""};
+    return {"Check the side first: " + state.side_doubt + ". Press J and say which knee it is", "plan.side"};
   if (state.makes_default) return {"Wait for the default plan, then move it; Esc leaves it", ""};
   if (state.places_entry) return {"Click on the " + bone + " where the tunnel begins", ""};
   if (!model.has_bone(here)) return {"This case has no " + bone + ": plan the other bone", "plan.bone"};

@@ -7,7 +7,6 @@
 #include "app/case/case_opening.h"
 #include "app/plan/tunnel_moves.h"
 #include "app/scene/grid_lines.h"
-#include "app/scene/solid_mesh.h"
 #include "planning/plan_review/tunnel_verdict.h"
 
 namespace arthronaut::plan {
@@ -19,13 +18,6 @@ using bones::BoneKind;
 constexpr double kAimHandleBeyond_mm = 12;
 constexpr scene::Color kFootprintColor{0.25F, 0.85F, 0.65F};
 constexpr scene::Color kBesideColor{0.62F, 0.70F, 0.76F};  // the bone's tunnel that is not worked on
-
-// On its handle: of two tunnels each names its bundle.
-std::string entry_label(const tunnels::TunnelKey& key) {
-  return key.bundle == norms::Bundle::Whole          ? "Entry"
-         : key.bundle == norms::Bundle::Anteromedial ? "Entry AM"
-                                                     : "Entry PL";
-}
 
 const char* name_of(open_case::PlanStatus::Save save) {
   switch (save) {
@@ -46,8 +38,9 @@ const char* name_of(open_case::PlanStatus::Save save) {
 }  // namespace
 
 PlanView::PlanView(std::function<void()> make_current, const std::function<void()>& wake,
-                   std::function<void()> paint)
+                   std::function<void()> paint, std::function<std::vector<std::string>(bones::Side)> say_side)
     : paint_(std::move(paint)),
+      say_side_(std::move(say_side)),
       bones_(std::move(make_current)),
       slices_(wake),
       volume_(wake),
@@ -78,6 +71,7 @@ void PlanView::case_opened(const mode::OpenCase& opened) {
   lateral_.open(model_);
   load_versions();
   load_bone_doubts();
+  take_side_news();
 }
 
 bool PlanView::awaits_shape() const {
@@ -140,6 +134,8 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const std::optional<TourCard> card = tour_.card();
   if (card) draw_tour(ui, rest.cut_top(ui.theme.px(88), ui.theme.px(10)), *card);
   ui.log.note_state("tour", card ? std::to_string(card->number) + " " + card->title : "");
+  ui.log.note_state("asks_side", state_.asks_side ? "asks" : "");
+  if (state_.asks_side) draw_side(ui, rest.cut_top(ui.theme.px(116), ui.theme.px(10)));
   if (history_.is_in_conflict()) draw_conflict(ui, rest.cut_top(ui.theme.px(96), ui.theme.px(10)));
   if (state_.shows_slices) {
     const float gap = ui.theme.px(6);
@@ -189,57 +185,6 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("tunnel", tunnels::name_of(state_.key));
   const auto tunnel = model_->tunnel(state_.key);
   ui.log.note_state("diameter_mm", tunnel ? widgets::fixed(tunnel->diameter_mm, 2) : "");
-}
-
-void PlanView::draw_slices(const widgets::Ui& ui, const std::array<widgets::Rect, 3>& areas) {
-  slices_.want();
-  ui.log.note_state("slices", slices_.volume() != nullptr ? "shown"
-                              : slices_.is_loading()      ? "loading"
-                                                          : "none");
-  ui.log.note_state("measured",
-                    model_->measurements().empty() ? "" : model_->measurements().back().in_words());
-  if (slices_.volume() == nullptr) {
-    const widgets::Rect all{areas[1].x, areas[1].y, areas[2].x + areas[2].width - areas[1].x,
-                            areas[1].height};
-    widgets::text_centered(ui, all, ui.theme.title, widgets::kQuietText, slices_.reason());
-    return;
-  }
-  SliceContent content;
-  content.revision = model_->revision();
-  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
-    if (!model_->has_bone(kind)) continue;
-    content.meshes.push_back(
-        {&model_->knee().bones.at(kind).mesh, widgets::color_of(scene::kBoneColor), 1.5F});
-    for (const tunnels::TunnelKey& key : model_->knee().plan.of(kind)) {
-      content.meshes.push_back({&tunnel_mesh(key), widgets::color_of(scene::kPlanColor), 2.5F});
-      content.marks.push_back(
-          {entry_label(key), model_->tunnel(key)->entry_mm, widgets::color_of(scene::kPlanColor)});
-    }
-  }
-  for (const cases::Measurement& measurement : model_->measurements())
-    content.lines.push_back({measurement.points_mm, measurement.in_words()});
-  slices_.draw(ui, areas, std::move(content));
-  const auto points = slices_.take_measured();
-  if (!points) return;
-  std::vector<cases::Measurement> measurements = model_->measurements();
-  measurements.push_back({*points});
-  history_.apply_measurements(measurements, points->size() == 3 ? "Measure an angle" : "Measure a distance");
-}
-
-// The drill's cylinder, made anew when the plan has changed.
-const geometry::TriangleMesh& PlanView::tunnel_mesh(const tunnels::TunnelKey& key) {
-  TunnelMesh& kept = tunnel_meshes_[key];
-  if (kept.revision == model_->revision()) return kept.mesh;
-  const tunnels::Tunnel tunnel = *model_->tunnel(key);
-  scene::SolidMesh solid;
-  solid.add(scene::RodItem{tunnel.entry_mm - tunnel.direction,
-                           tunnel.entry_mm + (model_->drawn_length_mm(key) + 1) * tunnel.direction,
-                           tunnel.diameter_mm, tunnel.diameter_mm, scene::kPlanColor, false});
-  kept.mesh = {};
-  for (const Eigen::Vector3f& point : solid.points_mm) kept.mesh.vertices_mm.push_back(point.cast<double>());
-  kept.mesh.triangles = solid.triangles;
-  kept.revision = model_->revision();
-  return kept.mesh;
 }
 
 void PlanView::show_content() {

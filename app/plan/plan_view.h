@@ -34,9 +34,10 @@ enum class PanelPage { Checks, Landmarks, Steps };
 class PlanView : public mode::Mode {
  public:
   // wake: ends the window's wait, from any thread.
-  // paint: shows the painting of the case's bones.
-  PlanView(std::function<void()> make_current, const std::function<void()>& wake,
-           std::function<void()> paint);
+  // paint: shows the painting of the case's bones. say_side: the case is of that side, and is opened anew
+  // where it was of the other one; what came of it, in sentences. It throws InvalidInput or IoError.
+  PlanView(std::function<void()> make_current, const std::function<void()>& wake, std::function<void()> paint,
+           std::function<std::vector<std::string>(bones::Side)> say_side);
 
   [[nodiscard]] mode::ModeTitle title() const override;
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const override { return {"plan."}; }
@@ -84,6 +85,12 @@ class PlanView : public mode::Mode {
   void keep_version();
   void take_version(std::size_t place);  // in versions_
   void export_plan();
+
+  // side_actions.cpp
+  void add_side_actions(widgets::Actions& actions);
+  void say_side(bones::Side side);
+  void take_side_news();
+  void draw_side(const widgets::Ui& ui, const widgets::Rect& area) const;
 
   // landmark_actions.cpp
   void add_landmark_actions(widgets::Actions& actions);
@@ -166,6 +173,7 @@ class PlanView : public mode::Mode {
     tunnels::TunnelKey key = bones::BoneKind::Femur;  // that is worked on; of a bone's two it alone moves
     Placing placing = Placing::Nothing;
     std::size_t landmark = 0;  // row of landmark_rows()
+    bool asks_side = false;    // which knee it is
     bool has_dragged = false;
     // Where the aim's handle is while it is held: under the mouse, wherever the tunnel ends.
     std::optional<Eigen::Vector3d> held_aim_mm = {};
@@ -186,6 +194,8 @@ class PlanView : public mode::Mode {
   };
 
   std::function<void()> paint_;
+  std::function<std::vector<std::string>(bones::Side)> say_side_;
+  std::string side_news_;  // what came of the side that was said, for when the case is open anew
   open_case::PlanModel* model_ = nullptr;  // null until a case is open
   open_case::PlanHistory history_;
   BonePane bones_;
@@ -222,6 +232,10 @@ struct PanelClick {
 };
 [[nodiscard]] PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area,
                                          const PlanPanel& panel);
+// On an entry's handle: of two tunnels each names its bundle.
+[[nodiscard]] std::string entry_label(const tunnels::TunnelKey& key);
+// What stands beside the question which knee it is. doubt: what speaks against the case's side; may be empty.
+[[nodiscard]] std::string side_question(bones::Side of_case, const std::string& doubt);
 // A note, and what was not checked, are quiet.
 [[nodiscard]] widgets::Severity severity_of(tunnels::PlanCheck::Verdict verdict);
 

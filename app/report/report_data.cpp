@@ -94,6 +94,7 @@ ordered_json session_of(const Content& content) {
   ordered_json node = {{"id", if_told(content.session_name)},
                        {"started_utc", if_told(content.started_utc)},
                        {"bone", bones::to_text(header.bone)},
+                       {"side", bones::to_text(header.side)},
                        {"is_of_another_surface", content.is_of_another_surface},
                        {"source_kind", header.source_kind},
                        {"medium", camera::medium_to_text(header.refractive_index)},

@@ -29,9 +29,11 @@ std::string session_title(const std::string& folder_name) {
          date.substr(15);
 }
 
-SessionLine session_line(const library::SessionFacts& facts) {
+SessionLine session_line(const library::SessionFacts& facts, const std::string& case_side) {
   SessionLine line;
-  const std::vector<std::string> doubts = facts.doubts();
+  std::vector<std::string> doubts = facts.doubts();
+  if (!facts.side.empty() && !case_side.empty() && facts.side != case_side)
+    doubts.push_back("recorded as of a " + facts.side + " knee, the case is a " + case_side + " one");
   line.words = facts.what();
   line.words += (line.words.empty() ? "" : "; ") + facts.outcome();
   for (const std::string& doubt : doubts) line.words += "; " + doubt;
@@ -45,8 +47,9 @@ SessionLine session_line(const library::SessionFacts& facts) {
   return line;
 }
 
-void SessionList::open(const std::filesystem::path& case_folder) {
+void SessionList::open(const std::filesystem::path& case_folder, const std::string& case_side) {
   case_folder_ = case_folder;
+  case_side_ = case_side;
   folders_.clear();
   lines_.clear();
   reads_again_ = reading_.is_busy();
@@ -64,10 +67,10 @@ void SessionList::read() {
   if ((reads_again_ = reading_.is_busy())) return;
   if (folders_.empty()) return;
   reading_.start(
-      [folders = folders_] {
+      [folders = folders_, side = case_side_] {
         Lines lines;  // read_session_facts() throws nothing for what it finds
         for (const auto& folder : folders) {
-          SessionLine line = session_line(recording::read_session_facts(folder));
+          SessionLine line = session_line(recording::read_session_facts(folder), side);
           line.words = files::within_folder(folder, std::move(line.words));
           lines.emplace(folder, std::move(line));
         }

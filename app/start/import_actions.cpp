@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/start/import_questions.h"
+#include "app/start/side_line.h"
 #include "app/start/start_view.h"
 
 namespace arthronaut::start {
@@ -20,8 +21,14 @@ void StartView::start_import(bool images_only) {
   work_.start(wishes);
 }
 
+// One that Enter may pass by: a wrong side is a wrong operation.
+bool StartView::has_sure_side() const {
+  return state_.side.has_value() &&
+         !side_line(work_.result(), state_.side, state_.side_was_said).needs_choice;
+}
+
 void StartView::save_import() {
-  if (!state_.side) return;
+  if (!has_sure_side()) return;
   work_.set_side(*state_.side);
   work_.save(new_case_folder(cases_folder(), state_.name), state_.name);
 }
@@ -79,7 +86,7 @@ void StartView::add_import_actions(widgets::Actions& actions) {
                GLFW_KEY_ENTER,
                0,
                false,
-               [this, waits] { return waits() && state_.side.has_value(); },
+               [this, waits] { return waits() && has_sure_side(); },
                {},
                [this] { save_import(); }});
   actions.add({"start.swap_axes",

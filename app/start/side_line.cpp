@@ -6,7 +6,9 @@ namespace arthronaut::start {
 
 using widgets::Severity;
 
-SideLine side_line(const importing::BoneImport& import, std::optional<bones::Side> side, bool was_said) {
+namespace {
+
+SideLine line_of(const importing::BoneImport& import, std::optional<bones::Side> side, bool was_said) {
   using importing::SideSource;
   if (!side) return {Severity::Caution, "neither names nor images tell: press R or L"};
   const std::string by = importing::told_by(import.side_source);
@@ -32,6 +34,15 @@ SideLine side_line(const importing::BoneImport& import, std::optional<bones::Sid
   if (is_guess(import.side_source) || import.side_source == SideSource::Shapes)
     return {Severity::Caution, told + ": is that so? Press R or L"};
   return {Severity::Good, told};
+}
+
+}  // namespace
+
+SideLine side_line(const importing::BoneImport& import, std::optional<bones::Side> side, bool was_said) {
+  SideLine line = line_of(import, side, was_said);
+  line.needs_choice = !was_said && line.severity != Severity::Good;
+  if (line.needs_choice && line.severity == Severity::Bad) line.text += ", then press R or L";
+  return line;
 }
 
 }  // namespace arthronaut::start

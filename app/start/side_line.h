@@ -12,6 +12,8 @@ namespace arthronaut::start {
 struct SideLine {
   widgets::Severity severity = widgets::Severity::Caution;
   std::string text;
+  // Nobody chose it, and what told it does not make it sure: no case is made before somebody has.
+  bool needs_choice = false;
 };
 // was_said: a person chose it, before the import or after. Good where a person or the fibula says it, Bad
 // where they say different things; what a name or the bones' shape alone tells is to be looked at.

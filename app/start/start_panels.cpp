@@ -230,7 +230,8 @@ void StartView::draw_result(const widgets::Ui& ui, const widgets::Rect& area) {
   const widgets::Rect head = rest.cut_top(ui.theme.px(64));
   const std::vector<std::string> doubts = work_.doubts();
   widgets::draw_text(*ImGui::GetWindowDrawList(), ui.theme.title, head.x, head.y, widgets::kText,
-                     !state_.side ? "Which knee is it? Nothing says so"
+                     !state_.side       ? "Which knee is it? Nothing says so"
+                     : !has_sure_side() ? "Which knee is it? Press R or L before the case is made"
                      : work_.result().bones.empty()
                          ? "The images are read. Make the case, then paint its bones"
                      : doubts.empty() ? "The bones are made"

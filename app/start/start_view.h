@@ -71,6 +71,7 @@ class StartView {
   void accept_entry();
   void start_import(bool images_only = false);
   void save_import();
+  [[nodiscard]] bool has_sure_side() const;
   [[nodiscard]] std::size_t row_count() const;
   [[nodiscard]] bool imports() const;
   [[nodiscard]] importing::FailureReason question() const;

@@ -19,7 +19,8 @@ void WorkstationWindow::make_modes() {
   const auto wake = [] { GraphicsWindow::wake(); };
   const sources::DeviceTurns camera_turns;  // Set up and Navigate open one camera after the other
   constexpr std::size_t kNavigate = 2;
-  auto plan = std::make_unique<plan::PlanView>(make_current, wake, [this] { show_paint(); });
+  auto plan = std::make_unique<plan::PlanView>(
+      make_current, wake, [this] { show_paint(); }, [this](bones::Side side) { return say_side(side); });
   plan_ = plan.get();
   modes_.push_back(std::move(plan));
   modes_.push_back(std::make_unique<setup::SetupView>(

@@ -4,12 +4,14 @@
 
 #include <utility>
 
+#include "app/case/case_side.h"
 #include "app/folders/folder_listing.h"
 #include "app/library/workstation_library.h"
 #include "app/plan/plan_view.h"
 #include "app/review/review_view.h"
 #include "app/window/workstation_window.h"
 #include "planning/files/utc_clock.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::window {
 
@@ -106,6 +108,15 @@ void WorkstationWindow::reopen() {
   if (opening_ != nullptr) return;
   lender_ = case_.get();
   opening_ = std::make_unique<open_case::CaseOpening>(*case_, [] { GraphicsWindow::wake(); });
+}
+
+std::vector<std::string> WorkstationWindow::say_side(bones::Side side) {
+  if (case_ == nullptr || case_->is_read_only()) throw InvalidInput("the case can only be looked at");
+  if (opening_ != nullptr || has_running_work())
+    throw InvalidInput("something runs in this case: end it, then say which knee it is");
+  const auto said = open_case::say_side(case_->folder(), side);
+  if (said.is_changed) reopen();
+  return said.lines;
 }
 
 // A window that died, or was closed in another room, takes its case with it no longer than it is there: who

@@ -65,7 +65,9 @@ class WorkstationWindow {
   // The painting of the open case's bones.
   void show_paint();
   void close_paint();
-  void reopen();  // the open case, whose bones are others now
+  void reopen();  // the open case, whose bones or side are others now
+  // Of the open case; what came of it. Throws InvalidInput where it may not change now, or cannot.
+  std::vector<std::string> say_side(bones::Side side);
   void take_over_when_free();
   // What a crash cut off is offered as soon as it is found, in whatever mode the program opened.
   void offer_cut_off();

@@ -61,6 +61,7 @@ void read_header(const fs::path& folder, SessionFacts& facts) {
   const SessionHeader header = read_session_header(folder, options);
   facts.started_utc = header.started_utc;
   facts.bone = bones::to_text(header.bone);
+  facts.side = bones::to_text(header.side);
   facts.source_kind = header.source_kind;
   facts.is_exercise = is_exercise(header);
 }

@@ -4,6 +4,7 @@
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_outline.h"
+#include "planning/cases/landmark_json.h"
 #include "planning/cases/plan_file.h"
 #include "planning/cases/study.h"
 #include "planning/files/atomic_file.h"
@@ -18,34 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::string_view kCaseFormat = "arthronaut.case";
 constexpr int kCaseVersion = 1;
-
-nlohmann::ordered_json landmarks_to_json(const landmarks::Landmarks& landmarks,
-                                         const landmarks::LandmarkStates& states) {
-  auto json = nlohmann::ordered_json::array();
-  for (const auto& [name, position] : landmarks) {
-    json.push_back({{"name", name},
-                    {"position_mm", files::to_json(position)},
-                    {"state", landmarks::to_text(landmarks::state_of(states, name))}});
-  }
-  return json;
-}
-
-// A case that says no state is of a version before there were proposals: a person placed its landmarks.
-landmarks::Landmarks landmarks_from(const files::JsonObject& bone, landmarks::LandmarkStates& states) {
-  landmarks::Landmarks landmarks;
-  if (!bone.has("landmarks")) return landmarks;
-  for (const auto& node : bone.objects("landmarks")) {
-    if (!landmarks.emplace(node.text("name"), node.vector3("position_mm")).second)
-      node.fail("name", "is there twice");
-    if (!node.has("state")) continue;
-    try {
-      states[node.text("name")] = landmarks::landmark_state_from_text(node.text("state"));
-    } catch (const InvalidInput&) {
-      node.fail("state", "must be proposed or confirmed");
-    }
-  }
-  return landmarks;
-}
 
 nlohmann::ordered_json image_to_json(const CaseImage& image) {
   return {{"file", image.file},

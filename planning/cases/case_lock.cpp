@@ -14,6 +14,7 @@
 #include <sstream>
 #include <utility>
 
+#include "planning/cases/case_sides.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/json_document.h"
 #include "planning/files/local_time.h"
@@ -119,6 +120,18 @@ bool lives_here(const LockFile& lock) {
 // A folder that is no case, opened by a slip, keeps its rights.
 void make_case_private(const fs::path& folder) {
   if (std::error_code error; fs::exists(folder / "case.json", error)) files::make_private(folder);
+}
+
+// Ends what was cut off; why it cannot, as on a full disk: what was done in such a case would be lost to it
+// later. A file that is broken is told by whoever reads it.
+std::string cut_off_remains(const fs::path& folder) {
+  try {
+    (void)finish_side_change(folder);
+  } catch (const InvalidInput&) {
+  } catch (const std::runtime_error& error) {
+    return std::string("a change of its side was cut off and cannot be ended: ") + error.what();
+  }
+  return "";
 }
 
 // A case that was copied while it was open brings the original's lock along. Another host may number the
@@ -247,7 +260,9 @@ CaseLock::CaseLock(const fs::path& case_folder) {
       // Where the kernel's locks end at this machine another one may have come so far; the later file counts.
       const auto there = read_lock(file);
       if (there && is_same(*there, mine)) {
-        state_ = std::make_unique<State>(case_folder, kernel.descriptor, std::move(mine));
+        auto state = std::make_unique<State>(case_folder, kernel.descriptor, std::move(mine));
+        if (!(refusal_ = cut_off_remains(case_folder)).empty()) return;
+        state_ = std::move(state);
         if (before && is_of_a_copy(*before, file) && lives_here(*before)) {
           notice_ = "A copy of a case that was open: " + before->holder.in_words();
         } else if (before) {

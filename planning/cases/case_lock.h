@@ -40,7 +40,8 @@ class CaseLock {
  public:
   CaseLock();  // holds nothing, of no case
   // Takes the case, or says why not: look at is_held(). The folder exists. Mends the folder's privacy
-  // (files/private_folder.h) when it is taken and when it is let go. Does not throw for what it finds there.
+  // (files/private_folder.h) when it is taken and when it is let go, and ends a change of side that was cut
+  // off (case_sides.h) when it is taken. Does not throw for what it finds there.
   explicit CaseLock(const std::filesystem::path& case_folder);
   ~CaseLock();  // lets go
   CaseLock(CaseLock&&) noexcept;

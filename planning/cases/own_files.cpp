@@ -11,11 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 16> kFiles{
-    "case.json",           "plan.json",   "identity.json",       "study.json",
-    "case.lock",           "note.json",   "measurements.json",   "bone_doubts.json",
-    "fluid.json",          "femur.ply",   "femur_cartilage.ply", "tibia.ply",
-    "tibia_cartilage.ply", "camera.json", "tools.json",          "achieved.json"};
+constexpr std::array<std::string_view, 18> kFiles{
+    "case.json",   "plan.json",         "identity.json",       "study.json", "case.lock",
+    "note.json",   "measurements.json", "bone_doubts.json",    "sides.json", "history.json",
+    "fluid.json",  "femur.ply",         "femur_cartilage.ply", "tibia.ply",  "tibia_cartilage.ply",
+    "camera.json", "tools.json",        "achieved.json"};
 constexpr std::array<std::string_view, 7> kFolders{"sessions", "painting", "images",       "cache",
                                                    "screens",  "pictures", "plan_versions"};
 

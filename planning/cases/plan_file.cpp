@@ -47,7 +47,10 @@ void Plan::remove(const tunnels::TunnelKey& key) {
 }
 
 Plan plan_from(const std::string& text, const fs::path& file) {
-  const auto root = files::parse_json(text, file, kPlanFormat, kPlanFormatVersion);
+  return plan_from(files::parse_json(text, file, kPlanFormat, kPlanFormatVersion));
+}
+
+Plan plan_from(const files::JsonObject& root) {
   Plan plan;
   for (const auto& node : root.objects("tunnels")) {
     tunnels::Tunnel tunnel;

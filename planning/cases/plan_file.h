@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "planning/cases/case.h"
+#include "planning/files/json_document.h"
 
 namespace arthronaut::cases {
 
@@ -16,6 +17,8 @@ inline constexpr int kPlanFormatVersion = 2;
 
 // file: for what is wrong with the text. Throws InvalidInput (file, place, reason).
 [[nodiscard]] Plan plan_from(const std::string& text, const std::filesystem::path& file);
+// One that stands in another file of the case, as to_json() makes it.
+[[nodiscard]] Plan plan_from(const files::JsonObject& node);
 [[nodiscard]] nlohmann::ordered_json to_json(const Plan& plan);
 
 // What names a plan in all that is made of it: the SHA-256 of plan.json as save_plan() writes it, so that

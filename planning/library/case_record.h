@@ -20,6 +20,7 @@ namespace arthronaut::library {
 struct SessionFacts {
   std::string id, started_utc;
   std::string bone;          // "femur", "tibia"
+  std::string side;          // "left", "right": as which it was recorded; not in the library's index
   std::string source_kind;   // "live", "recording", "simulation"; empty in older records
   bool is_exercise = false;  // training: no operation, and in no CaseRecord
   bool was_finished = false;

@@ -2,6 +2,7 @@
 
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
+#include "planning/cases/case_sides.h"
 #include "planning/cases/identity.h"
 #include "planning/cases/measurements.h"
 #include "planning/cases/plan_file.h"
@@ -97,6 +98,17 @@ std::vector<Reader> case_readers() {
            [](const fs::path& folder, std::string_view bytes) {
              (void)put(folder, "bone_doubts.json", bytes);
              (void)cases::load_bone_doubts(folder);
+             return std::string();
+           }},
+          {"sides", "sides.json",
+           [](const fs::path& folder) {
+             cases::save_case(folder, example());
+             cases::change_side(folder, bones::Side::Right, {});
+             return std::map<std::string, std::string>{{"seed", taken(cases::sides_file(folder))}};
+           },
+           [](const fs::path& folder, std::string_view bytes) {
+             (void)put(folder, "sides.json", bytes);
+             (void)cases::load_side(folder, {}, bones::Side::Left);
              return std::string();
            }},
           {"identity", "identity.json",

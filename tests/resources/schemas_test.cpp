@@ -15,6 +15,7 @@
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_note.h"
+#include "planning/cases/case_sides.h"
 #include "planning/cases/identity.h"
 #include "planning/cases/measurements.h"
 #include "planning/cases/study.h"
@@ -183,6 +184,19 @@ TEST_F(Schemas, DescribeTheBonesDoubts) {
   cases::save_bone_doubts(folder_.path(), {{bones::BoneKind::Femur, {"cut off", "too short"}}});
   expect_described(cases::bone_doubts_file(folder_.path()), "bone_doubts",
                    [&] { (void)cases::load_bone_doubts(folder_.path()); });
+}
+
+// What a case had as a right knee, and that a change was cut off.
+TEST_F(Schemas, DescribeTheOtherSide) {
+  const cases::Case knee =
+      phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Knee of a test");
+  cases::save_case(folder_.path(), knee);
+  cases::change_side(folder_.path(), bones::Side::Left, {.plan = knee.plan});
+  expect_described(cases::sides_file(folder_.path()), "sides",
+                   [&] { (void)cases::load_side(folder_.path(), knee, bones::Side::Right); });
+  json cut_off = read(cases::sides_file(folder_.path()));
+  cut_off["changing_to"] = "right";
+  EXPECT_EQ(test::undescribed(cut_off, "sides"), "");
 }
 
 TEST_F(Schemas, DescribeTheNote) {

@@ -71,6 +71,28 @@ TEST_F(CasesCommand, Hazard15NotesNothingWithACaseThatAnotherProgramHolds) {
   EXPECT_EQ(cases({"--note", a_, "--text", "from the ward"}).exit_code, 0);
 }
 
+// Another side than the import said: the plan is the other side's, and comes back with it; nothing happens
+// where another program has the case.
+TEST_F(CasesCommand, SetsTheSideOfACase) {
+  const fs::path made = folder_ / "Made.arthro";
+  ASSERT_EQ(test::run_program({"phantom", "-o", made, "--quiet"}, {.data_home = folder_ / "home"}).exit_code,
+            0);
+  {
+    const cases::CaseLock lock(made);
+    ASSERT_TRUE(lock.is_held()) << lock.refusal();
+    EXPECT_EQ(cases({"--set-side", made, "--to", "left"}).exit_code, 3);
+  }
+  const auto set = cases({"--set-side", made, "--to", "left"});
+  EXPECT_EQ(set.exit_code, 0) << set.errors;
+  EXPECT_THAT(set.output, AllOf(HasSubstr("it is a left knee now; it was a right one"),
+                                HasSubstr("the plan of the right knee is put aside")));
+  EXPECT_THAT(cases({}).output, HasSubstr("Made, left knee: not planned"));
+  EXPECT_EQ(cases({"--set-side", made, "--to", "right"}).exit_code, 0);
+  EXPECT_THAT(cases({}).output, HasSubstr("Made, right knee: planned"));
+  EXPECT_EQ(cases({"--set-side", made}).exit_code, 2);
+  EXPECT_EQ(cases({"--set-side", made, "--to", "both"}).exit_code, 2);
+}
+
 TEST_F(CasesCommand, KeepsNotesInTheCase) {
   know_both();
   EXPECT_EQ(cases({"--note", a_, "--text", "look again\n#study"}).exit_code, 0);

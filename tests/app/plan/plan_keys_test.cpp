@@ -45,7 +45,8 @@ TEST(PlanKeys, NoTwoActionsShareOneWhateverWasPressed) {
   const auto case_folder = folder / "Keys.arthro";
   open_case::PlanModel model(imaged_knee(case_folder));
   const scene::OffscreenContext context;
-  PlanView view([&] { context.make_current(); }, [] {}, [] {});
+  PlanView view([&] { context.make_current(); }, [] {}, [] {},
+                [](bones::Side) { return std::vector<std::string>{"said"}; });
   widgets::Actions actions;
   view.add_actions(actions);
   view.case_opened({&model, case_folder, ""});
@@ -88,7 +89,8 @@ TEST(PlanKeys, OfACaseThatIsOnlyLookedAtNothingIsChanged) {
   const auto case_folder = folder / "Looked at.arthro";
   open_case::PlanModel model(imaged_knee(case_folder));
   const scene::OffscreenContext context;
-  PlanView view([&] { context.make_current(); }, [] {}, [] {});
+  PlanView view([&] { context.make_current(); }, [] {}, [] {},
+                [](bones::Side) { return std::vector<std::string>{"said"}; });
   widgets::Actions actions;
   view.add_actions(actions);
   view.case_opened({&model, case_folder, "is open elsewhere"});

@@ -115,9 +115,10 @@ TEST(NextStep, ADoubtedSideComesFirst) {
   const open_case::PlanModel model(knee());
   const NextStep next = next_step(model, {.side_doubt = "the fibula lies on the left of the tibia"});
   EXPECT_TRUE(
-      next.text.starts_with("Check the side first: the fibula lies on the left of the tibia. If it is "
-                            "wrong, import the bones anew as the other knee"))
+      next.text.starts_with("Check the side first: the fibula lies on the left of the tibia. Press "
+                            "J and say which knee it is"))
       << next.text;
+  EXPECT_EQ(next.action, "plan.side");
 }
 
 // A plan with open warnings can be taken to theatre, and says how many.

@@ -38,6 +38,16 @@ TEST(SessionList, SaysWhatItWas) {
   EXPECT_EQ(session_line(facts).words, "exercise, tibia; not registered");
 }
 
+// What was recorded as of the other knee says so: the case's side was changed since.
+TEST(SessionList, SaysOfWhichSideItWasRecorded) {
+  library::SessionFacts facts = drilled();
+  facts.side = "left";
+  EXPECT_EQ(session_line(facts, "left").severity, widgets::Severity::Good);
+  const SessionLine line = session_line(facts, "right");
+  EXPECT_TRUE(line.words.ends_with("; recorded as of a left knee, the case is a right one")) << line.words;
+  EXPECT_EQ(line.severity, widgets::Severity::Caution);
+}
+
 // What is being recorded is neither ticked nor doubted for having no end yet.
 TEST(SessionList, SaysWhatIsBeingRecorded) {
   library::SessionFacts facts;

@@ -81,6 +81,23 @@ TEST(SideLineTest, HowTheImagesAreMarkedIsTold) {
   EXPECT_TRUE(seen.text.starts_with("left, by the fibula, but the images are marked")) << seen.text;
 }
 
+// Enter alone must not pass what is doubted: a person chooses the side, and then it is chosen, whatever it
+// is.
+TEST(SideLineTest, Hazard52WhatIsNotSureNeedsSomebodysChoice) {
+  importing::BoneImport against = import_of(SideSource::Fibula);
+  against.side_in_images = Side::Right;
+  for (const importing::BoneImport& import :
+       {import_of(SideSource::SourceName), import_of(SideSource::ImageMark), import_of(SideSource::Shapes),
+        against}) {
+    const SideLine line = side_line(import, Side::Left, false);
+    EXPECT_TRUE(line.needs_choice) << line.text;
+    EXPECT_NE(line.text.find("ress R or L"), std::string::npos) << line.text;
+    EXPECT_FALSE(side_line(import, Side::Left, true).needs_choice);
+    EXPECT_FALSE(side_line(import, Side::Right, true).needs_choice);
+  }
+  EXPECT_FALSE(side_line(import_of(SideSource::Fibula), Side::Left, false).needs_choice);
+}
+
 // Where a bone alone was looked at, which tells nothing by itself.
 TEST(SideLineTest, APersonAgainstTheShapeOfABoneAloneIsTold) {
   importing::BoneImport import;

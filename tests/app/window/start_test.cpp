@@ -70,7 +70,12 @@ TEST_F(StartWindow, ImportsAFolderAsksForTheSideAndFindsTheCaseAgain) {
     ASSERT_TRUE(app.wait_for_state("import", "asking", 240));
     EXPECT_TRUE(app.wait_for_state("made_bones", "shown"));
     ASSERT_TRUE(app.wait_for_widget("start.sketch_left"));
+    // The shapes alone told a side: Enter does not pass that by.
+    ASSERT_TRUE(app.state("import_side").starts_with("look: ")) << app.state("import_side");
+    app.press("Return");
     app.press("l");
+    ASSERT_TRUE(app.wait_for_state("import_side", "good: left, as you say") ||
+                app.state("import_side").starts_with("look: left, as you say"));
     app.press("Return");
     ASSERT_TRUE(app.wait_for_state("case", "open", 240));
     ASSERT_TRUE(app.wait_for_state("screen", "mode"));

@@ -1,0 +1,111 @@
+#include "planning/import/case_side.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "planning/cases/case_sides.h"
+#include "planning/files/local_time.h"
+#include "planning/files/utc_clock.h"
+#include "planning/geometry/error.h"
+#include "planning/import/import_side.h"
+
+namespace arthronaut::importing {
+
+namespace {
+
+namespace fs = std::filesystem;
+using bones::Side;
+
+constexpr std::string_view kAsksForCheck = ": check the side";
+
+std::string knee_of(Side side) { return std::string(bones::to_text(side)) + " knee"; }
+
+// The sentence that asks for the side to be checked, without that.
+std::string without_question(std::string sentence) {
+  if (sentence.ends_with(kAsksForCheck)) sentence.erase(sentence.size() - kAsksForCheck.size());
+  return sentence;
+}
+
+// What tells this side while the case has the other one; also after somebody has looked at it.
+bool tells(const std::string& sentence, Side side, Side of_case) {
+  for (const std::string& told :
+       {other_side_by_fibula(side, of_case), other_side_by_shape(side, of_case, true),
+        other_side_by_shape(side, of_case, false), other_side_in_images(side, of_case)})
+    if (sentence.starts_with(without_question(told))) return true;
+  return sentence == side_by_shape_alone(of_case);
+}
+
+// Of a side that was checked. That shapes alone had told it is a doubt no more.
+bool settle(cases::BoneDoubts& doubts, Side side) {
+  bool is_settled = false;
+  for (auto& [bone, sentences] : doubts) {
+    is_settled |= std::erase(sentences, side_by_shape_alone(side)) > 0;
+    for (std::string& sentence : sentences) {
+      if (!sentence.ends_with(kAsksForCheck)) continue;
+      sentence = without_question(sentence) + "; somebody looked on " + files::local_day(files::utc_now()) +
+                 " and says that it is";
+      is_settled = true;
+    }
+  }
+  return is_settled;
+}
+
+cases::BoneDoubts doubts_as(const cases::Case& knee, cases::BoneDoubts doubts, Side side) {
+  std::size_t told = 0;
+  for (auto& [bone, sentences] : doubts)
+    told += std::erase_if(sentences, [&](const auto& one) { return tells(one, side, knee.side); });
+  (void)settle(doubts, side);
+  if (told == 0 && !knee.bones.empty())
+    doubts[knee.bones.begin()->first].push_back(
+        "until " + files::local_day(files::utc_now()) + " it was a " + knee_of(knee.side) +
+        ", and nothing that its bones were made from spoke against that; somebody says that it is a " +
+        knee_of(side));
+  return doubts;
+}
+
+void refuse_achieved(const fs::path& folder, Side side) {
+  if (!fs::exists(folder / "achieved.json")) return;
+  throw InvalidInput(folder, "",
+                     "holds what a CT after the operation showed, against the plan of a " +
+                         knee_of(side == Side::Left ? Side::Right : Side::Left) +
+                         ": its side stays. Import the bones into another case, as a " + knee_of(side));
+}
+
+}  // namespace
+
+SaidSide say_side_of_case(const fs::path& case_folder, Side side) {
+  const cases::Case knee = cases::load_case(case_folder);
+  cases::BoneDoubts doubts = cases::load_bone_doubts(case_folder);
+  SaidSide said;
+  if (knee.side == side) {
+    const bool is_settled = settle(doubts, side);
+    if (is_settled) cases::save_bone_doubts(case_folder, doubts);
+    said.lines.push_back("it is a " + knee_of(side) +
+                         (is_settled
+                              ? ", as you say: that somebody looked stands beside what spoke against it"
+                              : " already, and nothing is said against that"));
+    return said;
+  }
+  refuse_achieved(case_folder, side);
+  auto contents = cases::load_side(case_folder, knee, side);
+  const bool was_of_it = contents.has_value();
+  if (!contents) contents = cases::SideContents{};
+  // What was said of a bone when it was of this side stays as it was.
+  (void)settle(contents->doubts, side);
+  contents->doubts.merge(doubts_as(knee, std::move(doubts), side));
+  cases::change_side(case_folder, side, *contents);
+  said.is_changed = true;
+  said.lines.push_back("it is a " + knee_of(side) + " now; it was a " + knee_of(knee.side));
+  if (!knee.plan.tunnels.empty())
+    said.lines.push_back("the plan of the " + knee_of(knee.side) +
+                         " is put aside, and is back when that is said again");
+  if (!contents->plan.tunnels.empty())
+    said.lines.push_back("the plan that it had as a " + knee_of(side) + " is back");
+  else
+    said.lines.push_back("nothing is planned of the " + knee_of(side));
+  if (!was_of_it || contents->landmarks.empty())
+    said.lines.push_back("its landmarks are proposed anew, as of a " + knee_of(side));
+  return said;
+}
+
+}  // namespace arthronaut::importing
