@@ -21,21 +21,11 @@ bool is_same(const std::optional<tunnels::Tunnel>& a, const std::optional<tunnel
   return a->entry_mm == b->entry_mm && a->direction == b->direction && a->diameter_mm == b->diameter_mm;
 }
 
-bool is_same(const cases::Plan& a, const cases::Plan& b) {
-  return a.mesh_sha256 == b.mesh_sha256 &&
-         std::ranges::equal(a.tunnels, b.tunnels, [](const auto& one, const auto& other) {
-           return one.first == other.first && is_same(one.second, other.second);
-         });
-}
-
 }  // namespace
 
 void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folder,
                        const std::string& read_only) {
-  leave_steps();
-  PlanHistory anew;
-  anew.left_ = std::move(left_);
-  *this = std::move(anew);
+  *this = PlanHistory();
   model_ = model;
   case_folder_ = case_folder;
   if (model != nullptr) {
@@ -56,35 +46,41 @@ void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folde
   }
 }
 
-bool PlanHistory::is_same_state(const State& a, const State& b) {
-  return is_same(a.plan, b.plan) && a.measurements == b.measurements && a.landmarks == b.landmarks &&
-         a.landmark_states == b.landmark_states;
-}
-
-// The model may be gone by now: the last step knows how the case was left.
-void PlanHistory::leave_steps() {
-  if (steps_.empty() || is_in_conflict() || case_folder_.empty()) return;
-  left_[case_folder_] = {steps_, position_, position_ > 0 ? steps_[position_ - 1].after : steps_[0].before};
-}
-
 void PlanHistory::take_up_steps() {
-  const auto left = left_.find(case_folder_);
-  if (left == left_.end()) return;
-  if (is_same_state(left->second.state, state())) {
-    steps_ = std::move(left->second.steps);
-    position_ = left->second.position;
+  try {  // a file of the case, of which nothing but the steps is lost
+    cases::StepHistory kept = cases::load_step_history(case_folder_);
+    const auto position = kept.position_of(state());
+    if (!position) return;
+    steps_ = std::move(kept.steps);
+    position_ = *position;
     describe();
+  } catch (const std::runtime_error& error) {
+    status_.text = std::string("saved; what was done before cannot be taken back: ") + error.what();
   }
-  left_.erase(left);
+}
+
+// Before the plan is saved: whatever comes between the two, it is the plan of one of the steps.
+void PlanHistory::keep_steps() {
+  steps_not_kept_.clear();
+  try {
+    cases::save_step_history(case_folder_, {steps_, position_});
+  } catch (const std::runtime_error& error) {  // what counts is the plan
+    steps_not_kept_ = error.what();
+  }
 }
 
 void PlanHistory::begin(const std::string& what, bool continues) {
   if (is_moving_ && (!continues || what != steps_.back().what)) settle_now();
   if (is_moving_) return;
-  steps_.resize(position_);  // what was undone can't be redone after a new step
-  steps_.push_back({what, state(), {}});
-  ++position_;
+  add_step(what);
   is_moving_ = true;
+}
+
+void PlanHistory::add_step(const std::string& what) {
+  steps_.resize(position_);  // what was undone can't be redone after a new step
+  if (steps_.size() == cases::kMostSteps) steps_.erase(steps_.begin());
+  steps_.push_back({what, state(), {}});
+  position_ = steps_.size();
 }
 
 void PlanHistory::moved(double now_s) {
@@ -128,7 +124,7 @@ void PlanHistory::apply_tunnels(const std::map<tunnels::TunnelKey, tunnels::Tunn
 }
 
 void PlanHistory::apply_plan(const cases::Plan& plan, const std::string& what) {
-  if (model_ == nullptr || is_read_only_ || is_same(model_->knee().plan, plan)) return;
+  if (model_ == nullptr || is_read_only_ || cases::is_same_plan(model_->knee().plan, plan)) return;
   settle_now();
   begin(what, false);
   model_->set_plan(plan);
@@ -140,9 +136,7 @@ void PlanHistory::apply_measurements(const std::vector<cases::Measurement>& meas
                                      const std::string& what) {
   if (model_ == nullptr || is_read_only_ || measurements == model_->measurements()) return;
   settle_now();
-  steps_.resize(position_);
-  steps_.push_back({what, state(), {}});
-  ++position_;
+  add_step(what);
   model_->set_measurements(measurements);
   steps_.back().after = state();
   save();
@@ -268,11 +262,10 @@ void PlanHistory::take_theirs() {
   is_moving_ = false;  // what was moving stays a step, and is not written
   try {
     const cases::Case there = cases::load_case(case_folder_);
-    steps_.resize(position_);
-    steps_.push_back({"Take the plan of the other program", state(), {}});
-    ++position_;
+    add_step("Take the plan of the other program");
     model_->set_plan(there.plan);
     steps_.back().after = state();
+    keep_steps();
     version_ = there.plan_version;
     status_.save = PlanStatus::Save::Saved;
     status_.text = "as the other program saved it";
@@ -310,6 +303,7 @@ void PlanHistory::save() {
   };
   try {  // a disk that is full is a state of the screen, not the end of the frame
     const State now = state();
+    keep_steps();
     if (now.measurements != saved_.measurements) cases::save_measurements(case_folder_, now.measurements);
     if (now.landmarks != saved_.landmarks || now.landmark_states != saved_.landmark_states) {
       if (cases::plan_version(case_folder_) != version_) return set_conflict();
@@ -321,6 +315,8 @@ void PlanHistory::save() {
     saved_ = now;
     status_.save = PlanStatus::Save::Saved;
     status_.text = "saved at " + files::local_time_in_words(files::utc_now()).substr(11);
+    if (!steps_not_kept_.empty())
+      status_.text += "; after the program's end it cannot be taken back: " + steps_not_kept_;
   } catch (const IoError& error) {
     fail(error);
   } catch (const std::filesystem::filesystem_error& error) {

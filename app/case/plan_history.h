@@ -18,15 +18,16 @@
 
 #include "app/case/plan_edit.h"
 #include "app/case/plan_model.h"
+#include "planning/cases/step_history.h"
 
 namespace arthronaut::open_case {
 
 class PlanHistory {
  public:
-  // Another case. The steps of the one before are kept while the program runs: they are there again where it
-  // is opened anew as it was left; where anything of it was changed elsewhere, they are forgotten. The model
-  // outlives this history's use of it; null closes. read_only: why nothing may be changed; empty where it
-  // may.
+  // Another case. Its steps are kept with it (cases/step_history.h): they are there again whenever it is
+  // opened as it was left, also after the program was killed; where anything of it was changed elsewhere,
+  // they are forgotten. The model outlives this history's use of it; null closes. read_only: why nothing may
+  // be changed; empty where it may.
   void open(PlanModel* model, const std::filesystem::path& case_folder, const std::string& read_only = {});
   [[nodiscard]] const PlanModel* model() const { return model_; }  // null while no case is open
   [[nodiscard]] bool is_read_only() const { return is_read_only_; }
@@ -80,30 +81,15 @@ class PlanHistory {
   [[nodiscard]] const PlanStatus& status() const { return status_; }
 
  private:
-  struct State {
-    cases::Plan plan;
-    std::vector<cases::Measurement> measurements;
-    std::map<bones::BoneKind, landmarks::Landmarks> landmarks;
-    std::map<bones::BoneKind, landmarks::LandmarkStates> landmark_states;
-  };
-  struct Step {
-    std::string what;
-    State before, after;
-  };
-  // Of a case that is not open now.
-  struct Left {
-    std::vector<Step> steps;
-    std::size_t position = 0;
-    State state;  // as it was left
-  };
-  [[nodiscard]] static bool is_same_state(const State& a, const State& b);
-  void leave_steps();
+  using State = cases::PlanState;
   void take_up_steps();
+  void keep_steps();
   [[nodiscard]] State state() const;
   void put(const State& state);
   [[nodiscard]] bool is_saved_beside_plan(const State& now) const;
   // Before and after a change: begins a step, or goes on with the one that is moving.
   void begin(const std::string& what, bool continues);
+  void add_step(const std::string& what);
   void moved(double now_s);
   void save();
   void set_conflict();
@@ -117,10 +103,10 @@ class PlanHistory {
   std::string version_;                // of the plan on disk that the model's was made from
   std::optional<cases::Plan> theirs_;  // the other program's in a conflict, where it can be read
   bool is_read_only_ = false;
-  std::vector<Step> steps_;
-  std::size_t position_ = 0;  // steps_[0, position_) are done
-  std::map<std::filesystem::path, Left> left_;
-  bool is_moving_ = false;  // the last step is still going on
+  std::vector<cases::PlanStep> steps_;
+  std::size_t position_ = 0;    // steps_[0, position_) are done
+  std::string steps_not_kept_;  // why; empty: they are
+  bool is_moving_ = false;      // the last step is still going on
   double moved_at_s_ = 0, looked_at_s_ = 0;
   PlanStatus status_;
 };

@@ -2,16 +2,39 @@
 
 #include <algorithm>
 
-#include "planning/cases/plan_versions.h"
+#include "app/command_line/option_checks.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
 
-int keep_replaced(const std::string& case_folder, const cases::Plan& before, const cases::Plan& now,
+VersionOptions add_version_options(CLI::App& plan, VersionArguments& arguments) {
+  VersionOptions options{};
+  options.take =
+      plan.add_option("--take", arguments.taken, "Take a kept version as the plan")->check(above_zero());
+  options.keep =
+      plan.add_flag("--keep", arguments.keeps, "Keep the plan as a version beside the one that is worked on");
+  options.versions =
+      plan.add_flag("--versions", arguments.lists, "List the kept versions and how each differs");
+  options.name_version = plan.add_option("--name-version", arguments.named,
+                                         "Give this kept version --name and --note, in place of its own")
+                             ->check(above_zero());
+  options.keep->excludes(options.name_version);
+  plan.add_option("--name", arguments.words.name,
+                  "What the version is called that is kept or named; no patient's name");
+  plan.add_option("--note", arguments.words.note, "What is to be said of it");
+  return options;
+}
+
+void refuse_words_of_nothing(const VersionArguments& arguments) {
+  if (arguments.words != cases::VersionWords{} && !arguments.writes())
+    throw CLI::RequiredError("beside --name and --note, --keep or --name-version");
+}
+
+int keep_replaced(const std::string& case_folder, const cases::Plan& before, const cases::Case& now,
                   std::vector<std::string>& notes) {
   std::string replaced;
-  for (const auto& difference : cases::compare_plans(now, before))
+  for (const auto& difference : cases::compare_plans(now.plan, before))
     if (difference.is_lost_here()) replaced += (replaced.empty() ? "" : "; ") + difference.in_words();
   if (replaced.empty()) return 0;
   const auto versions = cases::load_plan_versions(case_folder);
@@ -20,7 +43,7 @@ int keep_replaced(const std::string& case_folder, const cases::Plan& before, con
                                 &cases::TunnelDifference::is_lost_here);
   });
   const int kept =
-      same != versions.end() ? same->number : cases::keep_plan_version(case_folder, before).number;
+      same != versions.end() ? same->number : cases::keep_plan_version(case_folder, before, now.side).number;
   const std::string number = std::to_string(kept);
   notes.push_back("The plan that was there is kept as version " + number + ", --take " + number +
                   " brings it back. Against the one that is there now, " + replaced + ".");
@@ -28,7 +51,8 @@ int keep_replaced(const std::string& case_folder, const cases::Plan& before, con
 }
 
 void take_version(const std::string& case_folder, int number, const std::vector<bones::BoneKind>& bones,
-                  cases::Plan& plan) {
+                  cases::Case& knee) {
+  cases::Plan& plan = knee.plan;
   const auto versions = cases::load_plan_versions(case_folder);
   const auto found = std::ranges::find(versions, number, &cases::PlanVersion::number);
   if (found == versions.end()) {
@@ -36,6 +60,8 @@ void take_version(const std::string& case_folder, int number, const std::vector<
         case_folder, "plan_versions",
         "holds no version " + std::to_string(number) + " (it holds " + std::to_string(versions.size()) + ")");
   }
+  if (const std::string refusal = cases::side_refusal(*found, knee.side); !refusal.empty())
+    throw InvalidInput(case_folder, "plan_versions", refusal);
   for (const bones::BoneKind bone : bones) {
     for (const tunnels::TunnelKey& key : plan.of(bone)) plan.remove(key);
     for (const tunnels::TunnelKey& key : found->plan.of(bone)) {
@@ -49,8 +75,10 @@ void list_versions(const std::string& case_folder, const Context& context, const
   const auto versions = cases::load_plan_versions(case_folder);
   if (versions.empty()) context.say("No version is kept. --keep keeps the plan as it is.");
   for (const cases::PlanVersion& version : versions) {
-    context.say("Version " + std::to_string(version.number) + ", kept " +
-                files::utc_in_words(version.kept_utc) + ", against the plan as it is:");
+    context.say(version.title() + ", kept " + files::utc_in_words(version.kept_utc) +
+                (version.side ? ", of a " + std::string(bones::to_text(*version.side)) + " knee" : "") +
+                ", against the plan as it is:");
+    if (!version.words.note.empty()) context.say("  \"" + version.words.note + "\"");
     for (const auto& difference : cases::compare_plans(plan, version.plan))
       context.say("  " + difference.in_words());
   }

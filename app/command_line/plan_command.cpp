@@ -41,8 +41,7 @@ struct PlanArguments {
   std::string type = "single", export_folder, markups;
   bool at_footprint = false, by_default = false, list = false, as_json = false, removes = false;
   bool names_type = false, names_diameter = false;  // whether the user said so
-  bool keeps = false, lists_versions = false;
-  int version = 0;  // that is to be taken; 0: none
+  VersionArguments versions;
 };
 
 // The tunnel that is placed or removed.
@@ -302,26 +301,18 @@ void add_plan_command(CLI::App& app, Context& context) {
                    ->excludes(direction)
                    ->excludes(by_default)
                    ->excludes(markups);
-  auto* take = sub->add_option("--take", arguments->version, "Take a kept version as the plan")
-                   ->check(above_zero())
-                   ->excludes(by_default)
-                   ->excludes(markups)
-                   ->excludes(direction)
-                   ->excludes(type)
-                   ->excludes(remove);
-  auto* keep = sub->add_flag("--keep", arguments->keeps,
-                             "Keep the plan as a version beside the one that is worked on");
-  auto* versions =
-      sub->add_flag("--versions", arguments->lists_versions, "List the kept versions and how each differs");
-  for (CLI::Option* other : {by_default, markups, direction, take, remove, keep, exports, list, json})
-    versions->excludes(other);
+  const auto [take, keep, versions, name_version] = add_version_options(*sub, arguments->versions);
+  for (CLI::Option* other : {by_default, markups, direction, type, remove}) take->excludes(other);
+  for (CLI::Option* looks : {versions, name_version})
+    for (CLI::Option* other : {by_default, markups, direction, take, remove, keep, exports, list, json})
+      looks->excludes(other);
   entry->needs(direction);
   footprint->needs(direction);
   sub->callback([arguments, entry, direction, type, diameter, &context] {
     arguments->names_type = type->count() > 0;
     arguments->names_diameter = diameter->count() > 0;
     const bool writes = direction->count() > 0 || arguments->by_default || !arguments->markups.empty() ||
-                        arguments->version > 0 || arguments->removes;
+                        arguments->versions.taken > 0 || arguments->removes;
     // What the parser cannot ask for.
     if (direction->count() > 0 && entry->count() == 0 && !arguments->at_footprint)
       throw CLI::RequiredError("beside --direction, --entry or --at-footprint");
@@ -331,7 +322,8 @@ void add_plan_command(CLI::App& app, Context& context) {
       throw CLI::RequiredError("beside --diameter-mm, --default or --direction");
     if (!arguments->export_folder.empty()) refuse_export(arguments->export_folder);
     cases::CaseLock lock;
-    if (writes || arguments->keeps) lock = cases::lock_or_refuse(arguments->case_folder);
+    refuse_words_of_nothing(arguments->versions);
+    if (writes || arguments->versions.writes()) lock = cases::lock_or_refuse(arguments->case_folder);
     if (!lock.notice().empty() && !arguments->as_json) context.say(lock.notice() + ".");
     auto knee = cases::load_case(arguments->case_folder);
     // Before anything is written: a file that cannot be read leaves the plan as it was.
@@ -342,10 +334,10 @@ void add_plan_command(CLI::App& app, Context& context) {
     const cases::Plan before = knee.plan;
     if (!arguments->markups.empty()) {
       take_markups(*arguments, knee, notes);
-    } else if (arguments->version > 0) {
+    } else if (arguments->versions.taken > 0) {
       std::vector<bones::BoneKind> asked_for{bones::BoneKind::Femur, bones::BoneKind::Tibia};
       std::erase_if(asked_for, [&](bones::BoneKind kind) { return !is_asked_for(*arguments, kind); });
-      take_version(arguments->case_folder, arguments->version, asked_for, knee.plan);
+      take_version(arguments->case_folder, arguments->versions.taken, asked_for, knee);
     } else if (arguments->removes) {
       remove_tunnel(*arguments, knee);
     } else if (writes) {
@@ -361,14 +353,17 @@ void add_plan_command(CLI::App& app, Context& context) {
       arguments->names_type = true;  // what was placed is shown
     }
     if (writes) {
-      verdict.kept_version = keep_replaced(arguments->case_folder, before, knee.plan, notes);
+      verdict.kept_version = keep_replaced(arguments->case_folder, before, knee, notes);
       cases::name_meshes(knee);
       knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
       if (arguments->by_default) cases::save_case(arguments->case_folder, knee);  // with its landmarks
     }
     if (!arguments->as_json)
       for (const std::string& note : notes) context.say(note);
-    if (arguments->lists_versions) return list_versions(arguments->case_folder, context, knee.plan);
+    if (arguments->versions.named > 0)
+      cases::say_of_version(arguments->case_folder, arguments->versions.named, arguments->versions.words);
+    if (arguments->versions.lists || arguments->versions.named > 0)
+      return list_versions(arguments->case_folder, context, knee.plan);
     // What the case lacks is proposed, as the window and the report have it, and not kept.
     // Seconds each: only of bones that are shown or lack a grid, and not again of the one just proposed.
     cases::Case shown = knee;
@@ -383,8 +378,9 @@ void add_plan_command(CLI::App& app, Context& context) {
     const plan_review::CaseReview review(shown, by_shape);
     if (arguments->by_default) verdict = judged(shown, review, key_of(*arguments), doubts, verdict);
     show(*arguments, context, shown, review, doubts, verdict);
-    if (arguments->keeps) {
-      const auto kept = cases::keep_plan_version(arguments->case_folder, knee.plan);
+    if (arguments->versions.keeps) {
+      const auto kept =
+          cases::keep_plan_version(arguments->case_folder, knee.plan, knee.side, arguments->versions.words);
       if (!arguments->as_json) context.say("Kept as version " + std::to_string(kept.number) + ".");
     }
     if (!arguments->export_folder.empty()) export_to(*arguments, context, knee, wrong_in_plan(review));

@@ -1,11 +1,14 @@
 #include "app/folders/folder_browser.h"
 
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <cstdlib>
 
+#include "app/folders/typed_path.h"
 #include "app/widgets/list_rows.h"
+#include "planning/library/folder_search.h"
 
 namespace arthronaut::folders {
 
@@ -42,7 +45,24 @@ void FolderBrowser::home() { look_into(home_folder()); }
 
 void FolderBrowser::up() { look_into(listing_.folder.parent_path()); }
 
+void FolderBrowser::type_path() {
+  const std::string here = listing_.folder.string();
+  typing_ = {true, true, here.ends_with('/') ? here : here + "/", ""};
+}
+
+std::optional<fs::path> FolderBrowser::go_to(const std::string& text) {
+  TypedPath typed = typed_path(text, listing_.folder);
+  typing_.problem = typed.problem;
+  if (!typed.problem.empty()) return std::nullopt;
+  typing_ = {};
+  std::error_code unknown;
+  if (!fs::is_directory(typed.path, unknown) || library::is_case_folder(typed.path)) return typed.path;
+  look_into(typed.path.has_filename() ? typed.path : typed.path.parent_path());
+  return std::nullopt;
+}
+
 void FolderBrowser::look_into(const fs::path& folder) {
+  typing_ = {};
   const fs::path from = listing_.folder;
   listing_ = list_folder(folder);
   selected_ = 0;
@@ -68,13 +88,43 @@ std::optional<fs::path> FolderBrowser::open_selected() {
 
 std::string FolderBrowser::selected() const { return has_rows() ? listing_.entries[selected_].name : ""; }
 
+std::optional<fs::path> FolderBrowser::draw_typing(const widgets::Ui& ui, const widgets::Rect& line) {
+  const auto complete = [](ImGuiInputTextCallbackData* data) {
+    const auto& from = *static_cast<const fs::path*>(data->UserData);
+    const std::string completed =
+        completed_path({data->Buf, static_cast<std::size_t>(data->BufTextLen)}, from);
+    data->DeleteChars(0, data->BufTextLen);
+    data->InsertChars(0, completed.c_str());
+    return 0;
+  };
+  ImGui::SetCursorScreenPos(line.min());
+  ImGui::SetNextItemWidth(line.width);
+  if (typing_.takes_focus) ImGui::SetKeyboardFocusHere();
+  typing_.takes_focus = false;
+  const bool is_entered = ImGui::InputText(
+      "##path", &typing_.text, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion,
+      complete, &listing_.folder);
+  ui.log.note(name_ + "_path", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  if (is_entered) {
+    auto found = go_to(typing_.text);
+    typing_.takes_focus = typing_.is_open;  // what is not there is typed on
+    return found;
+  }
+  if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) typing_ = {};
+  return std::nullopt;
+}
+
 std::optional<fs::path> FolderBrowser::draw(const widgets::Ui& ui, widgets::Rect area,
                                             const std::string& title, const std::string& take_folder) {
   const widgets::Rect head = area.cut_top(ui.theme.px(88));
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   widgets::draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, title);
-  widgets::draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
-                     widgets::fitting(ui.theme.body, listing_.folder.string(), head.width));
+  std::optional<fs::path> typed;
+  if (typing_.is_open)
+    typed = draw_typing(ui, {head.x, head.y + ui.theme.px(40), head.width, ui.theme.px(40)});
+  else
+    widgets::draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
+                       widgets::fitting(ui.theme.body, listing_.folder.string(), head.width));
   widgets::begin_panel(ui, name_.c_str(), area);
   bool opens = false;
   const float height = ui.theme.px(44);
@@ -100,6 +150,8 @@ std::optional<fs::path> FolderBrowser::draw(const widgets::Ui& ui, widgets::Rect
                        entry.detail);
   }
   scrolls_to_selected_ = false;
+  if (!typing_.problem.empty())
+    widgets::status_row(ui, widgets::Severity::Caution, "Not there", typing_.problem);
   if (!listing_.failure.empty())
     widgets::status_row(ui, widgets::Severity::Bad, "This folder cannot be looked into", listing_.failure);
   if (listing_.other_files > 0)
@@ -113,6 +165,9 @@ std::optional<fs::path> FolderBrowser::draw(const widgets::Ui& ui, widgets::Rect
         "This folder is empty, or all that is in it is hidden. Backspace goes to the one above.");
   widgets::end_panel();
   ui.log.note_state("selected", selected());
+  ui.log.note_state("typed_path", typing_.is_open ? typing_.text : "");
+  ui.log.note_state("typed_problem", typing_.problem);
+  if (typed) return typed;
   return opens ? open_selected() : std::nullopt;
 }
 

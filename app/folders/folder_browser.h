@@ -25,6 +25,15 @@ class FolderBrowser {
   // Goes into the selected folder; anything else is given to the caller.
   [[nodiscard]] std::optional<std::filesystem::path> open_selected();
 
+  // Opens a field for a path, in the place of the folder's name: Tab completes, Enter goes there, Esc does
+  // not.
+  void type_path();
+  [[nodiscard]] bool awaits_text() const { return typing_.takes_focus; }
+  // To what was typed: into a folder; anything else is given to the caller. Where there is none the field
+  // stays and typing_problem() says why.
+  [[nodiscard]] std::optional<std::filesystem::path> go_to(const std::string& text);
+  [[nodiscard]] const std::string& typing_problem() const { return typing_.problem; }
+
   [[nodiscard]] const std::filesystem::path& folder() const { return listing_.folder; }  // empty: not entered
   [[nodiscard]] bool has_rows() const { return !listing_.entries.empty(); }
   // The name of what is selected; empty: nothing is.
@@ -38,11 +47,18 @@ class FolderBrowser {
 
  private:
   void look_into(const std::filesystem::path& folder);
+  [[nodiscard]] std::optional<std::filesystem::path> draw_typing(const widgets::Ui& ui,
+                                                                 const widgets::Rect& line);
 
+  struct Typing {
+    bool is_open = false, takes_focus = false;
+    std::string text, problem;
+  };
   std::string name_;
   FolderListing listing_;
   std::size_t selected_ = 0;
   bool scrolls_to_selected_ = false;
+  Typing typing_;
 };
 
 }  // namespace arthronaut::folders

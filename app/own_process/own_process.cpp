@@ -116,19 +116,23 @@ CommandOutcome run_command(const fs::path& program, std::vector<std::string> arg
   std::error_code ignored;
   int status = 0;
   pid_t ended = 0;
+  bool was_killed = false;
   while ((ended = ::waitpid(process, &status, WNOHANG)) == 0 || (ended < 0 && errno == EINTR)) {
     if (stops()) {
       ::kill(process, SIGKILL);
-      ::waitpid(process, nullptr, 0);
-      fs::remove(log, ignored);
-      return {CommandOutcome::End::Stopped, "Stopped"};
+      while ((ended = ::waitpid(process, &status, 0)) < 0 && errno == EINTR) {
+      }
+      was_killed = true;
+      break;
     }
     if (progress) progress->follow(on_progress);
     std::this_thread::sleep_for(std::chrono::milliseconds(30));
   }
   const std::string words = words_of(log);
   fs::remove(log, ignored);
+  // It may have come to its end just before it was to be stopped: then what it wrote is there.
   const bool has_exited = ended == process && WIFEXITED(status);
+  if (was_killed && !has_exited) return {CommandOutcome::End::Stopped, "Stopped"};
   if (has_exited && WEXITSTATUS(status) == 0) return {CommandOutcome::End::Done, words};
   if (has_exited && WEXITSTATUS(status) == kUnreliableExit) return {CommandOutcome::End::Unreliable, words};
   return {CommandOutcome::End::Failed, words};

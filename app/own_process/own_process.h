@@ -20,7 +20,8 @@ struct CommandOutcome {
 // What goes on, and how much of the whole is done, 0 to 1.
 using OnProgress = std::function<void(const std::string& what, double share)>;
 
-// Blocks; `stops` is asked again and again, and true kills the process. log: a file for what it says, in a
+// Blocks; `stops` is asked again and again, and true kills the process: Stopped, unless
+// it had come to its end just then, which is told as it was. log: a file for what it says, in a
 // folder that is there; it is removed when the process has ended. on_progress: where it is given, the command
 // gets "--progress-fd 3" and writes lines there, see tell_progress(). Throws IoError where it cannot be
 // started.

@@ -269,48 +269,6 @@ void PlanView::add_view_actions(widgets::Actions& actions) {
                [this] { bones_.see_through(!bones_.is_see_through()); }});
 }
 
-void PlanView::add_slice_actions(widgets::Actions& actions) {
-  const auto has_slices = [this] { return state_.shows_slices && slices_.volume() != nullptr; };
-  actions.add(
-      {"plan.slices", "Slices",
-       "Three slices of the images beside the bones, linked by the cross-hair; needs a case with images",
-       GLFW_KEY_S, 0, false, [this] { return model_ != nullptr && slices_.has_images(); },
-       [this] { return state_.shows_slices; },
-       [this] {
-         state_.shows_slices = !state_.shows_slices;
-         slices_.use(MeasuringTool::None);
-       }});
-  actions.add({"plan.paint",
-               "Paint bones",
-               "Corrects the bones in the images, or grows them from painted strokes",
-               GLFW_KEY_I,
-               0,
-               false,
-               [this] {
-                 return model_ != nullptr &&
-                        std::ranges::any_of(model_->knee().images,
-                                            [](const auto& image) { return !image.is_label_map; });
-               },
-               {},
-               [this] { paint_(); }});
-  actions.add({"plan.window", "Window", kWindowTooltip, GLFW_KEY_W, 0, false, has_slices, {}, [this] {
-                 slices_.go_to_next_window();
-               }});
-  actions.add(
-      {"plan.fit", "Whole", "Shows the whole slices again", GLFW_KEY_F, 0, false, has_slices, {}, [this] {
-         slices_.fit();
-       }});
-  actions.add({"plan.cross_to_entry",
-               "To entry",
-               "The cross-hair goes to the tunnel's entry",
-               GLFW_KEY_E,
-               0,
-               false,
-               [this, has_slices] { return has_slices() && model_->tunnel(state_.key).has_value(); },
-               {},
-               [this] { slices_.set_cross(model_->tunnel(state_.key)->entry_mm); }});
-}
-
 void PlanView::add_volume_actions(widgets::Actions& actions) {
   actions.add(
       {"plan.volume", "Images in 3D",

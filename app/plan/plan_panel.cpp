@@ -203,7 +203,7 @@ std::optional<std::size_t> draw_steps(const widgets::Ui& ui, const open_case::Pl
   for (std::size_t i = 0; i <= history.step_count(); ++i) {
     const bool is_here = i == history.position(), is_undone = i > history.position();
     const float top = ImGui::GetCursorScreenPos().y;
-    const std::string text = i == 0 ? "As it was opened" : history.step_name(i - 1);
+    const std::string text = i == 0 ? "Before these steps" : history.step_name(i - 1);
     if (draw_row(ui,
                  {"step." + std::to_string(i), text + (is_undone ? "  (undone)" : ""), is_here, is_undone}))
       clicked = i;
@@ -213,10 +213,26 @@ std::optional<std::size_t> draw_steps(const widgets::Ui& ui, const open_case::Pl
   return clicked;
 }
 
+// A version's note, or that it has none; a click writes it, in the field that is then in its place.
+void draw_version_words(const widgets::Ui& ui, const PlanPanel& panel, std::size_t place,
+                        PanelClick& clicked) {
+  const cases::PlanVersion& version = panel.versions[place].version;
+  ImGui::PushID(version.number);
+  if (panel.version_field.is_of(version.number)) {
+    if (auto words = panel.version_field.draw(ui)) clicked.words = {version.number, std::move(*words)};
+  } else if (draw_row(ui, {"version_words." + std::to_string(version.number),
+                           !version.words.note.empty()   ? version.words.note
+                           : !version.words.name.empty() ? "Name and note..."
+                                                         : "No name: click here, or Shift+K for the newest",
+                           false, false})) {
+    clicked.named = place;
+  }
+  ImGui::PopID();
+}
+
 // What was kept, the newest first, each with how it differs from the plan that is worked on; a click takes
 // it.
-std::optional<std::size_t> draw_versions(const widgets::Ui& ui, const PlanPanel& panel, float room_below_px) {
-  std::optional<std::size_t> clicked;
+void draw_versions(const widgets::Ui& ui, const PlanPanel& panel, float room_below_px, PanelClick& clicked) {
   ImGui::Separator();
   button_pair(ui, "plan.keep", "plan.export");
   button_pair(ui, "plan.markups", "plan.side");
@@ -231,15 +247,17 @@ std::optional<std::size_t> draw_versions(const widgets::Ui& ui, const PlanPanel&
       return difference.kind == cases::TunnelDifference::Kind::Same;
     });
     if (draw_row(ui, {"version." + std::to_string(version.number),
-                      "Version " + std::to_string(version.number) + ", " +
-                          files::local_time_in_words(version.kept_utc),
+                      version.title() + ", " + files::local_time_in_words(version.kept_utc) +
+                          (cases::side_refusal(version, panel.model.knee().side).empty()
+                               ? ""
+                               : ", of a " + std::string(bones::to_text(*version.side)) + " knee"),
                       is_same, false}))
-      clicked = i;
+      clicked.version = i;
+    draw_version_words(ui, panel, i, clicked);
     for (const std::string& line : against_the_plan(panel.model, panel.versions[i]))
       widgets::text_in(ui.theme.body, widgets::kQuietText, line);
   }
   ImGui::EndChild();
-  return clicked;
 }
 
 }  // namespace
@@ -285,7 +303,7 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
     }
     case PanelPage::Steps:
       clicked.step = draw_steps(ui, panel.history, ui.theme.px(110) + more);
-      clicked.version = draw_versions(ui, panel, ui.theme.px(110) + more);
+      draw_versions(ui, panel, ui.theme.px(110) + more, clicked);
       break;
   }
   draw_saved(ui, panel.history.status());

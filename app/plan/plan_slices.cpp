@@ -1,4 +1,8 @@
 // The images with the plan drawn in them, beside the bones.
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+
 #include "app/plan/plan_view.h"
 #include "app/scene/solid_mesh.h"
 
@@ -23,6 +27,10 @@ void PlanView::draw_slices(const widgets::Ui& ui, const std::array<widgets::Rect
     widgets::text_centered(ui, all, ui.theme.title, widgets::kQuietText, slices_.reason());
     return;
   }
+  const auto tunnel = state_.along ? model_->tunnel(state_.key) : std::nullopt;
+  slices_.follow(tunnel ? std::optional(TunnelAxis{adjective(state_.key), tunnel->entry_mm, tunnel->direction,
+                                                   model_->axes(state_.key.bone).proximal})
+                        : std::nullopt);
   SliceContent content;
   content.revision = model_->revision();
   for (const bones::BoneKind kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
@@ -59,6 +67,73 @@ const geometry::TriangleMesh& PlanView::tunnel_mesh(const tunnels::TunnelKey& ke
   kept.mesh.triangles = solid.triangles;
   kept.revision = model_->revision();
   return kept.mesh;
+}
+
+void PlanView::add_slice_actions(widgets::Actions& actions) {
+  const auto has_slices = [this] { return state_.shows_slices && slices_.volume() != nullptr; };
+  actions.add(
+      {"plan.slices", "Slices",
+       "Three slices of the images beside the bones, linked by the cross-hair; needs a case with images",
+       GLFW_KEY_S, 0, false, [this] { return model_ != nullptr && slices_.has_images(); },
+       [this] { return state_.shows_slices; },
+       [this] {
+         state_.shows_slices = !state_.shows_slices;
+         slices_.use(MeasuringTool::None);
+       }});
+  actions.add({"plan.paint",
+               "Paint bones",
+               "Corrects the bones in the images, or grows them from painted strokes",
+               GLFW_KEY_I,
+               0,
+               false,
+               [this] {
+                 return model_ != nullptr &&
+                        std::ranges::any_of(model_->knee().images,
+                                            [](const auto& image) { return !image.is_label_map; });
+               },
+               {},
+               [this] { paint_(); }});
+  actions.add({"plan.window", "Window", kWindowTooltip, GLFW_KEY_W, 0, false, has_slices, {}, [this] {
+                 slices_.go_to_next_window();
+               }});
+  actions.add(
+      {"plan.fit", "Whole", "Shows the whole slices again", GLFW_KEY_F, 0, false, has_slices, {}, [this] {
+         slices_.fit();
+       }});
+  actions.add({"plan.cross_to_entry",
+               "To entry",
+               "The cross-hair goes to the tunnel's entry",
+               GLFW_KEY_E,
+               0,
+               false,
+               [this, has_slices] { return has_slices() && model_->tunnel(state_.key).has_value(); },
+               {},
+               [this] { slices_.set_cross(model_->tunnel(state_.key)->entry_mm); }});
+  const auto can_follow = [this, has_slices] {
+    return has_slices() && model_->tunnel(state_.key).has_value();
+  };
+  actions.add(
+      {"plan.along", "Along tunnel",
+       "The slices follow the tunnel: one across it, two that hold its axis. The wheel goes along it, and "
+       "turns the slices about it",
+       GLFW_KEY_0, 0, false, can_follow, [this] { return state_.along; },
+       [this] { state_.along = !state_.along; }});
+  struct Turn {
+    const char *id, *label;
+    int key;
+    double by_deg;
+  };
+  for (const Turn& turn : {Turn{"plan.turn_back", "Turn back", GLFW_KEY_LEFT, -5},
+                           Turn{"plan.turn_on", "Turn on", GLFW_KEY_RIGHT, 5}})
+    actions.add({turn.id,
+                 turn.label,
+                 "The slices along the tunnel turn about it by 5 degrees",
+                 turn.key,
+                 GLFW_MOD_CONTROL,
+                 true,
+                 [this, can_follow] { return can_follow() && state_.along; },
+                 {},
+                 [this, by = turn.by_deg] { slices_.turn(by); }});
 }
 
 }  // namespace arthronaut::plan

@@ -63,6 +63,7 @@ void PlanView::case_opened(const mode::OpenCase& opened) {
   tour_.case_opened(opened.read_only.empty() &&
                     std::filesystem::equivalent(opened.folder, open_case::built_in_case_folder(), error));
   state_ = {};
+  version_field_.close();
   tunnel_meshes_.clear();
   work_on(key_in(model_->has_bone(BoneKind::Femur) ? BoneKind::Femur : BoneKind::Tibia));
   bones_.open(model_);
@@ -127,7 +128,8 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (state_.shows_slices) {
     // A row of their own: beside the others they would run under the panel.
     ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(44), ui.theme.px(10)).min());
-    row({"plan.window", "plan.fit", "plan.cross_to_entry", "plan.distance", "plan.angle", "plan.unmeasure"});
+    row({"plan.along", "plan.window", "plan.fit", "plan.cross_to_entry", "plan.distance", "plan.angle",
+         "plan.unmeasure"});
   }
   if (volume_.is_on()) row({"plan.volume_less", "plan.volume_more"});
   follow_tour();
@@ -159,12 +161,14 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
                        plan_review::side_doubt(bone_doubts_),
                        doubt_count};
   const NextStep next = next_step(*model_, step);
-  const PanelClick clicked = draw_plan_panel(
-      ui, panel,
-      {*model_, history_, state_.key, state_.page, state_.landmark, versions_, bone_doubts_, next});
+  const PanelClick clicked = draw_plan_panel(ui, panel,
+                                             {*model_, history_, state_.key, state_.page, state_.landmark,
+                                              versions_, version_field_, bone_doubts_, next});
   if (clicked.step) history_.go_to(*clicked.step);
   if (clicked.landmark) select_landmark(*clicked.landmark);
   if (clicked.version) take_version(*clicked.version);
+  if (clicked.named) name_version(*clicked.named);
+  if (clicked.words) say_of_version(clicked.words->number, clicked.words->words);
   ui.log.note_state("landmark", state_.page == PanelPage::Landmarks ? landmark() : "");
   ui.log.note_state("landmarks", confirmed_in_words(landmark_rows(*model_, state_.key.bone)));
   ui.log.note_state("plan_next", next.text);

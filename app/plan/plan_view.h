@@ -22,6 +22,7 @@
 #include "app/plan/slice_panes.h"
 #include "app/plan/tour.h"
 #include "app/plan/tunnel_survey.h"
+#include "app/plan/version_field.h"
 #include "app/plan/version_words.h"
 #include "app/plan/volume_drawing.h"
 #include "planning/cases/bone_doubts.h"
@@ -59,6 +60,7 @@ class PlanView : public mode::Mode {
   [[nodiscard]] bool has_running_work() const override {
     return export_.is_running() || history_.status().save == open_case::PlanStatus::Save::Failed;
   }
+  [[nodiscard]] bool awaits_text() const override { return version_field_.awaits_text(); }
   [[nodiscard]] bool is_busy() const override {
     return history_.is_moving() || defaults_.is_running() || slices_.is_loading() || volume_.is_preparing() ||
            awaits_shape();
@@ -84,6 +86,8 @@ class PlanView : public mode::Mode {
   void load_bone_doubts();
   void keep_version();
   void take_version(std::size_t place);  // in versions_
+  void name_version(std::size_t place);  // opens its field
+  void say_of_version(int number, const cases::VersionWords& words);
   void export_plan();
 
   // side_actions.cpp
@@ -177,6 +181,7 @@ class PlanView : public mode::Mode {
     bool has_dragged = false;
     // Where the aim's handle is while it is held: under the mouse, wherever the tunnel ends.
     std::optional<Eigen::Vector3d> held_aim_mm = {};
+    bool along = false;  // the slices, of the tunnel that is worked on
     bool shows_slices = false, shows_lateral = false, shows_grid = true;
     bool shows_map = false, shows_aims = false;
     std::shared_ptr<const Survey> survey = nullptr;  // of what is planned now; null: none is there
@@ -209,6 +214,7 @@ class PlanView : public mode::Mode {
   Tour tour_{tour_file()};
   std::filesystem::path case_folder_;
   std::vector<KeptVersion> versions_;  // the oldest first
+  VersionField version_field_;
   cases::BoneDoubts bone_doubts_;
   std::map<tunnels::TunnelKey, TunnelMesh> tunnel_meshes_;
   ViewState state_;
@@ -222,6 +228,7 @@ struct PlanPanel {
   PanelPage page;
   std::size_t landmark;  // the row that is selected
   const std::vector<KeptVersion>& versions;
+  VersionField& version_field;
   const cases::BoneDoubts& doubts;
   NextStep next;
 };
@@ -229,6 +236,12 @@ struct PanelClick {
   std::optional<std::size_t> step;      // of the history, as a position for PlanHistory::go_to()
   std::optional<std::size_t> landmark;  // row
   std::optional<std::size_t> version;   // place in PlanPanel::versions
+  std::optional<std::size_t> named;     // likewise: it is to get a name
+  struct Words {
+    int number = 0;
+    cases::VersionWords words;
+  };
+  std::optional<Words> words;  // of a version, entered just now
 };
 [[nodiscard]] PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area,
                                          const PlanPanel& panel);

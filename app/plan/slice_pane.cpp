@@ -40,6 +40,12 @@ double scale_mm(double pane_mm) {
 SlicePane::SlicePane(std::string title, const Eigen::Vector3d& right, const Eigen::Vector3d& down)
     : title_(std::move(title)), right_(right), down_(down) {}
 
+void SlicePane::turn_to(std::string title, const Eigen::Vector3d& right, const Eigen::Vector3d& down) {
+  title_ = std::move(title);
+  right_ = right;
+  down_ = down;
+}
+
 void SlicePane::fit(const images::Volume& volume) {
   const Eigen::Vector3d last = (volume.size - Eigen::Vector3i::Ones()).cast<double>();
   center_mm_ = volume.lps_from_index * Eigen::Vector3d(0.5 * last);
@@ -285,7 +291,8 @@ void SlicePane::draw_frame(const widgets::Ui& ui, const widgets::Rect& rect,
            {to.x - ui.theme.body->CalcTextSizeA(ui.theme.body->FontSize, 1e9F, 0, text.c_str()).x,
             from.y - ui.theme.body->FontSize - ui.theme.px(4)},
            widgets::kText, text);
-  const std::string place = place_in_words(normal(), content.cross_mm);
+  const std::string place =
+      content.place.empty() ? place_in_words(normal(), content.cross_mm) : content.place;
   const float row = ui.theme.body->FontSize, lowest = rect.y + rect.height - edge - row;
   shadowed(draw, ui.theme.body, {rect.x + edge, lowest}, widgets::kQuietText, place);
   shadowed(draw, ui.theme.body, {rect.x + edge, lowest - row}, widgets::kQuietText,

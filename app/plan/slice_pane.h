@@ -67,6 +67,8 @@ struct SliceContent {
   std::vector<SliceLine> lines;
   Eigen::Vector3d cross_mm = Eigen::Vector3d::Zero();
   scene::GreyWindow window;
+  std::string place =
+      {};  // where the slice lies, in the pane's lower corner; empty: from the scanner's origin
   bool measures = false;  // a click sets a point instead of the cross-hair, a drag two
   const SliceLabels* labels = nullptr;
   std::optional<double> brush_mm =
@@ -96,6 +98,8 @@ class SlicePane {
   // right and down: of the picture, unit, LPS. title: "Axial".
   SlicePane(std::string title, const Eigen::Vector3d& right, const Eigen::Vector3d& down);
 
+  // Another plane; what stands in the middle stays there as far as it can.
+  void turn_to(std::string title, const Eigen::Vector3d& right, const Eigen::Vector3d& down);
   // All of the volume, centred; or so much about a point.
   void fit(const images::Volume& volume);
   void show(const Eigen::Vector3d& center_mm, double extent_mm);

@@ -4,6 +4,7 @@
 
 #include "planning/cases/case_image.h"
 #include "planning/cases/measurements.h"
+#include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::plan {
 
@@ -11,15 +12,31 @@ namespace {
 
 struct Stopped {};
 
-}  // namespace
+constexpr double kTurn_deg = 5;  // by a step of the wheel
 
+struct NamedPlane {
+  const char* title;
+  Eigen::Vector3d right, down;
+};
 // Seen as radiologists hang them: axial from the feet, coronal from the front, sagittal from the patient's
 // left.
+NamedPlane scanner_plane(std::size_t pane) {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(),
+                        z = Eigen::Vector3d::UnitZ();
+  return pane == 0   ? NamedPlane{"Axial", x, y}
+         : pane == 1 ? NamedPlane{"Coronal", x, -z}
+                     : NamedPlane{"Sagittal", y, -z};
+}
+
+SlicePane scanner_pane(std::size_t pane) {
+  const NamedPlane plane = scanner_plane(pane);
+  return {plane.title, plane.right, plane.down};
+}
+
+}  // namespace
+
 SlicePanes::SlicePanes(std::function<void()> wake)
-    : wake_(std::move(wake)),
-      panes_{SlicePane("Axial", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()),
-             SlicePane("Coronal", Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitZ()),
-             SlicePane("Sagittal", Eigen::Vector3d::UnitY(), -Eigen::Vector3d::UnitZ())} {}
+    : wake_(std::move(wake)), panes_{scanner_pane(0), scanner_pane(1), scanner_pane(2)} {}
 
 SlicePanes::~SlicePanes() { stop_loading(); }
 
@@ -40,6 +57,8 @@ void SlicePanes::open(const cases::Case& knee, const std::filesystem::path& fold
   failure_.clear();
   tool_ = MeasuringTool::None;
   points_mm_.clear();
+  follow(std::nullopt);
+  turned_deg_ = 0;
 }
 
 void SlicePanes::want() {
@@ -77,8 +96,52 @@ void SlicePanes::tick() {
   if (volume_ == nullptr) return;
   automatic_ = loaded.automatic;
   window_ = volume_->modality == "CT" ? scene::kBoneWindow : automatic_;
-  constexpr double kAround = 1.15;
-  for (SlicePane& pane : panes_) pane.show(joint_.center_mm(), kAround * joint_.size_mm().maxCoeff());
+  show_joint();
+}
+
+void SlicePanes::show_joint() {
+  constexpr double kAround = 1.15, kAlong_mm = 80, kMiddle_mm = 20;
+  for (SlicePane& pane : panes_) {
+    if (tunnel_)
+      pane.show(tunnel_->entry_mm + kMiddle_mm * tunnel_->direction, kAlong_mm);
+    else
+      pane.show(joint_.center_mm(), kAround * joint_.size_mm().maxCoeff());
+  }
+}
+
+void SlicePanes::follow(const std::optional<TunnelAxis>& tunnel) {
+  const bool is_another =
+      tunnel.has_value() != tunnel_.has_value() || (tunnel && tunnel->name != tunnel_->name);
+  tunnel_ = tunnel;
+  if (!is_another) return;
+  use(MeasuringTool::None);
+  if (tunnel_)
+    cross_mm_ = tunnel_->entry_mm;
+  else
+    for (std::size_t i = 0; i < panes_.size(); ++i) {
+      const NamedPlane plane = scanner_plane(i);
+      panes_[i].turn_to(plane.title, plane.right, plane.down);
+    }
+  show_joint();
+}
+
+void SlicePanes::lay_along(const TunnelAxis& tunnel) {
+  cross_mm_ = on_axis(tunnel, cross_mm_);
+  const TunnelPlanes planes = tunnel_planes(tunnel, geometry::rad_from_deg(turned_deg_));
+  panes_[0].turn_to("Across the " + tunnel.name + " tunnel", planes.across.right, planes.across.down);
+  panes_[1].turn_to("Along the " + tunnel.name + " tunnel", planes.along.right, planes.along.down);
+  panes_[2].turn_to("Along it, turned by 90\u00B0", planes.square.right, planes.square.down);
+}
+
+void SlicePanes::set_cross_in(std::size_t pane, const Eigen::Vector3d& point_mm) {
+  if (!tunnel_) {
+    cross_mm_ = point_mm;
+    return;
+  }
+  if (pane > 0)
+    turn(kTurn_deg *
+         std::round(panes_[pane].normal().dot(point_mm - cross_mm_) / panes_[pane].step_mm(*volume_)));
+  cross_mm_ = on_axis(*tunnel_, point_mm);
 }
 
 void SlicePanes::fit() {
@@ -110,6 +173,7 @@ std::optional<std::vector<Eigen::Vector3d>> SlicePanes::take_measured() {
 void SlicePanes::draw(const widgets::Ui& ui, const std::array<widgets::Rect, 3>& areas,
                       SliceContent content) {
   if (volume_ == nullptr) return;
+  if (tunnel_) lay_along(*tunnel_);
   content.volume = volume_.get();
   content.cross_mm = cross_mm_;
   content.window = window_;
@@ -125,8 +189,12 @@ void SlicePanes::draw(const widgets::Ui& ui, const std::array<widgets::Rect, 3>&
   constexpr std::array<const char*, 3> kNames{"plan.axial_slice", "plan.coronal_slice",
                                               "plan.sagittal_slice"};
   for (std::size_t i = 0; i < 3; ++i) {
+    if (tunnel_)
+      content.place = i == 0 ? widgets::fixed((cross_mm_ - tunnel_->entry_mm).dot(tunnel_->direction), 1) +
+                                   " mm from the entry"
+                             : "turned by " + widgets::fixed(turned_deg_, 0) + "\u00B0 from upright";
     const SliceEvent event = panes_[i].draw(ui, kNames[i], areas[i], content);
-    if (event.cross_mm) cross_mm_ = *event.cross_mm;
+    if (event.cross_mm) set_cross_in(i, *event.cross_mm);
     if (event.window) window_ = *event.window;
     // A drag that does not fit what was begun is a measurement of its own.
     if (points_mm_.size() + event.measured_mm.size() > points_asked()) points_mm_.clear();
@@ -143,6 +211,7 @@ void SlicePanes::draw(const widgets::Ui& ui, const std::array<widgets::Rect, 3>&
     }
   }
   const auto& w = window_;
+  ui.log.note_state("along", tunnel_ ? tunnel_->name + " " + widgets::fixed(turned_deg_, 0) : "");
   ui.log.note_state("window", widgets::fixed(w.level, 0) + " / " + widgets::fixed(w.width, 0));
   ui.log.note_state("cross", widgets::fixed(cross_mm_.x(), 1) + " " + widgets::fixed(cross_mm_.y(), 1) + " " +
                                  widgets::fixed(cross_mm_.z(), 1));

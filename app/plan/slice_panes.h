@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "app/plan/slice_pane.h"
+#include "app/plan/tunnel_planes.h"
 #include "navigation/worker/awaited.h"
 #include "planning/cases/case.h"
 
@@ -45,6 +47,13 @@ class SlicePanes {
   [[nodiscard]] const Eigen::Vector3d& cross_mm() const { return cross_mm_; }
   void fit();
 
+  // In place of axial, coronal and sagittal: across the tunnel at the cross-hair, which stays on its axis,
+  // and two slices that hold the axis, square to each other. The wheel goes along the one and turns the
+  // others. nullopt: axial, coronal, sagittal. To be told in every frame, the tunnel moves.
+  void follow(const std::optional<TunnelAxis>& tunnel);
+  void turn(double by_deg) { turned_deg_ = std::remainder(turned_deg_ + by_deg, 360); }
+  [[nodiscard]] double turned_deg() const { return turned_deg_; }
+
   void use(MeasuringTool tool);
   [[nodiscard]] MeasuringTool tool() const { return tool_; }
   // A measurement whose last point was just set; once.
@@ -61,6 +70,10 @@ class SlicePanes {
     std::string failure;
   };
   void stop_loading();
+  void show_joint();
+  void lay_along(const TunnelAxis& tunnel);
+  // Where the cross-hair is wanted in a slice: of one along the tunnel what is across it is a turn.
+  void set_cross_in(std::size_t pane, const Eigen::Vector3d& point_mm);
   [[nodiscard]] std::size_t points_asked() const { return tool_ == MeasuringTool::Angle ? 3 : 2; }
 
   std::function<void()> wake_;
@@ -77,6 +90,8 @@ class SlicePanes {
   MeasuringTool tool_ = MeasuringTool::None;
   std::vector<Eigen::Vector3d> points_mm_;    // of the measurement that is being made
   std::vector<Eigen::Vector3d> reaching_mm_;  // from there to the mouse
+  std::optional<TunnelAxis> tunnel_;
+  double turned_deg_ = 0;
   std::array<SlicePane, 3> panes_;
 };
 

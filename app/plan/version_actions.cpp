@@ -32,9 +32,11 @@ void PlanView::load_bone_doubts() {
 void PlanView::keep_version() {
   history_.settle_now();
   try {  // a full disk is a state of the screen
-    const cases::PlanVersion kept = cases::keep_plan_version(case_folder_, model_->knee().plan);
+    const cases::PlanVersion kept =
+        cases::keep_plan_version(case_folder_, model_->knee().plan, model_->knee().side);
     // Of the plan as it is: the next change is not in it.
-    state_.hint = {"Kept as version " + std::to_string(kept.number), true, model_->revision()};
+    state_.hint = {"Kept as version " + std::to_string(kept.number) + ". Shift+K gives it a name and a note",
+                   true, model_->revision()};
     load_versions();
   } catch (const std::runtime_error& error) {
     state_.hint = {error.what()};
@@ -43,7 +45,27 @@ void PlanView::keep_version() {
 
 void PlanView::take_version(std::size_t place) {
   const cases::PlanVersion& version = versions_.at(place).version;
+  if (const std::string refusal = cases::side_refusal(version, model_->knee().side); !refusal.empty()) {
+    state_.hint = {refusal + ": it is not taken"};
+    return;
+  }
   history_.apply_plan(version.plan, "Take version " + std::to_string(version.number));
+}
+
+void PlanView::name_version(std::size_t place) {
+  if (history_.is_read_only()) return;
+  show_page(PanelPage::Steps);
+  version_field_.open(versions_.at(place).version);
+}
+
+void PlanView::say_of_version(int number, const cases::VersionWords& words) {
+  try {  // as in keep_version()
+    cases::say_of_version(case_folder_, number, words);
+    version_field_.close();
+    load_versions();
+  } catch (const std::runtime_error& error) {
+    state_.hint = {error.what()};
+  }
 }
 
 // Into the case, which is its owner's alone to read; from there it goes wherever it is to go.
@@ -71,7 +93,7 @@ void PlanView::take_markups(const std::filesystem::path& file) {
     const auto [tunnels, note] = plan_export::read_tunnels(
         file, model_->knee().plan,
         [this](bones::BoneKind kind) { return model_->has_bone(kind) ? &model_->surface(kind) : nullptr; });
-    history_.apply_tunnels(tunnels, "Take the tunnels of " + file.filename().string());
+    history_.apply_tunnels(tunnels, "Take the tunnels of markups");
     std::string names;
     for (const auto& [key, tunnel] : tunnels) names += (names.empty() ? "" : ", ") + tunnels::name_of(key);
     state_.hint = {"Taken from " + file.filename().string() + ": " + names +
@@ -97,6 +119,17 @@ void PlanView::add_version_actions(widgets::Actions& actions) {
                has_plan,
                {},
                [this] { keep_version(); }});
+  actions.add(
+      {"plan.name_version",
+       "Name version",
+       "A name and a note for the version that was kept last; a click on the line below a version's row "
+       "gives them to that one",
+       GLFW_KEY_K,
+       GLFW_MOD_SHIFT,
+       false,
+       [this] { return model_ != nullptr && !versions_.empty() && !history_.is_read_only(); },
+       {},
+       [this] { name_version(versions_.size() - 1); }});
   actions.add(
       {"plan.export",
        "Export",

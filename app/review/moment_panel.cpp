@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "app/guidance_severity/guidance_severity.h"
+#include "app/review/ct_beside.h"
 #include "app/review/review_panels.h"
 
 namespace arthronaut::review {
@@ -42,7 +43,8 @@ void draw_difference(const widgets::Ui& ui, const char* name, const operation::T
                        widgets::fixed(d.angle_deg, 1) + "\u00B0");
 }
 
-void draw_achieved(const widgets::Ui& ui, const SessionReview& review) {
+void draw_achieved(const widgets::Ui& ui, const ReviewScreen& screen) {
+  const SessionReview& review = screen.review;
   widgets::text_in(ui.theme.title, widgets::kText, "Planned and achieved");
   if (!review.achieved_problem.empty())
     return widgets::status_row(ui, widgets::Severity::Bad, "Not readable", review.achieved_problem);
@@ -56,6 +58,15 @@ void draw_achieved(const widgets::Ui& ui, const SessionReview& review) {
     if (achieved.truth)
       draw_difference(ui, "As it truly is (simulated)",
                       operation::compare(achieved.planned, *achieved.truth));
+    if (screen.ct != nullptr && screen.ct->contains(achieved.planned.key())) {
+      const CtWords ct = ct_in_words(screen.ct->at(achieved.planned.key()), achieved.planned);
+      widgets::text_in(ui.theme.strong, widgets::kText, "As a CT after the operation shows it (P)");
+      if (ct.severity == widgets::Severity::Quiet)
+        widgets::text_in(ui.theme.body, widgets::kText, ct.text);
+      else
+        widgets::status_row(ui, ct.severity, "CT", ct.text);
+      ui.log.note_state("moment_ct", ct.text);
+    }
     widgets::text_in(
         ui.theme.body, widgets::kQuietText,
         achieved.depth_mm ? "Depth " + widgets::fixed(*achieved.depth_mm, 1) + " mm" : "Depth not known");
@@ -144,7 +155,7 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewS
   if (screen.today != nullptr) draw_today(ui, screen);
   if (screen.score != nullptr) draw_score(ui, *screen.score);
   ImGui::Separator();
-  draw_achieved(ui, review);
+  draw_achieved(ui, screen);
   for (const std::string& problem : review.problems)
     widgets::status_row(ui, widgets::Severity::Caution, "Not whole", problem);
   widgets::end_panel();

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <utility>
 
+#include "app/review/slice_letters.h"
 #include "app/widgets/list_rows.h"
 #include "navigation/worker/freed_memory.h"
 #include "planning/files/format.h"
@@ -370,6 +371,7 @@ void PostopPage::draw_slice(const widgets::Ui& ui, const widgets::Rect& area, in
   if (comparison->tunnel.is_found)
     draw_tunnel(comparison->tunnel.tunnel, comparison->tunnel.length_mm, IM_COL32(230, 159, 0, 255));
   draw.PopClipRect();
+  draw_side_letters(ui, at, plane);
   widgets::caption(
       ui, area, widgets::kText,
       std::string(quarter_turns == 0 ? "Along the planned axis" : "The same, turned by 90\u00B0") +

@@ -57,6 +57,8 @@ class PostopPage {
   void compare_with(const std::filesystem::path& source, const std::string& series = {});
   void stop();
   [[nodiscard]] bool is_running() const { return run_ != nullptr && !run_->has_ended(); }
+  // Of the case as it keeps them, or as they were compared since; empty: none.
+  [[nodiscard]] const Comparisons& comparisons() const { return shown_.comparisons; }
   [[nodiscard]] bool has_any() const { return !shown_.comparisons.empty(); }
   // Nothing of a CT is known yet, not even why what the case keeps cannot be read.
   [[nodiscard]] bool is_blank() const {

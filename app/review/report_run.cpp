@@ -7,11 +7,24 @@
 
 namespace arthronaut::review {
 
+namespace {
+
+// A report may have been read and told of: none is replaced without a word.
+std::filesystem::path free_file(const std::filesystem::path& folder, const std::string& name) {
+  std::error_code unknown;
+  std::filesystem::path file = folder / (name + ".pdf");
+  for (int number = 2; std::filesystem::exists(file, unknown); ++number)
+    file = folder / (name + "_" + std::to_string(number) + ".pdf");
+  return file;
+}
+
+}  // namespace
+
 ReportRun::ReportRun(const std::filesystem::path& case_folder, const cases::Plan& plan,
                      const std::string& session, std::function<void()> on_news,
                      const std::filesystem::path& program)
-    : file_(cases::export_folder(case_folder, plan) /
-            (session.empty() ? "report.pdf" : "report_" + session + ".pdf")),
+    : file_(free_file(cases::export_folder(case_folder, plan),
+                      session.empty() ? "report" : "report_" + session)),
       plan_sha256_(cases::plan_sha256(plan)),
       worker_(
           worker::Backlog::Lossless,

@@ -1,6 +1,7 @@
 // The report of one session, or of a case without any, written by `arthronaut report` in a process of its
 // own: report_SESSION.pdf or report.pdf in the plan's folder within "export" of the case
-// (cases::export_folder), which is its owner's alone to read. It names nobody.
+// (cases::export_folder), which is its owner's alone to read. It names nobody. One that is there stays: the
+// next is report_2.pdf, report_3.pdf.
 //
 // Threads: made and asked on the window's thread; one worker waits for the process. Its destructor ends it.
 #pragma once

@@ -1,6 +1,7 @@
 // The panels of Review. Each reads and draws; what the mouse asks for is given back.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "app/review/today_run.h"
 #include "app/widgets/controls.h"
 #include "navigation/training/score.h"
+#include "planning/postop/comparison.h"
 
 namespace arthronaut::review {
 
@@ -20,6 +22,8 @@ struct ReviewScreen {
   const Playback& playback;
   const TodayResult* today = nullptr;      // null: today's program was not run on it
   const training::Score* score = nullptr;  // of an exercise; null: it is none, or none was kept
+  // What a CT after the operation showed; null or empty: none was compared.
+  const std::map<tunnels::TunnelKey, postop::Comparison>* ct = nullptr;
 
   [[nodiscard]] const recording::SessionTimeline& timeline() const { return *review.timeline; }
   [[nodiscard]] const recording::RecordedFrame& frame() const {

@@ -170,9 +170,12 @@ bool ReviewView::is_busy() const {
 }
 
 ReviewScreen ReviewView::screen() const {
-  return {open_->review, open_->marks.marks(), open_->playback,
+  return {open_->review,
+          open_->marks.marks(),
+          open_->playback,
           open_->today ? open_->today->progress().result.get() : nullptr,
-          open_->score ? &*open_->score : nullptr};
+          open_->score ? &*open_->score : nullptr,
+          &postop_.comparisons()};
 }
 
 void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {

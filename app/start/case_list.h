@@ -19,6 +19,11 @@
 
 namespace arthronaut::start {
 
+// The third line of a case's row: whose knee it is, where that is known, and its note, else its folder.
+// patient: cases::Identity::in_words().
+[[nodiscard]] std::string whose_and_where(const library::CaseRecord& record, const std::string& patient,
+                                          bool is_found_by_patient);
+
 class CaseList {
  public:
   // open: opens a case; an empty path is the built-in knee, the last row of a list that nothing narrows.

@@ -222,6 +222,15 @@ void CaseList::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {
   if (opens) accept();
 }
 
+std::string whose_and_where(const CaseRecord& record, const std::string& patient, bool is_found_by_patient) {
+  const std::string whose = patient.empty()       ? ""
+                            : is_found_by_patient ? "Found by its patient: " + patient
+                                                  : patient;
+  return whose + (whose.empty() ? "" : "  \u2013  ") +
+         (record.note.empty() ? record.folder.string()
+                              : "\u201C" + record.note.substr(0, record.note.find('\n')) + "\u201D");
+}
+
 void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, const CaseRecord& record) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float picture = ui.theme.px(105), x = at.x + picture + ui.theme.px(27);
@@ -253,10 +262,10 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
                      severity == Severity::Good || severity == Severity::Quiet ? widgets::kText
                                                                                : widgets::color_of(severity),
                      widgets::fitting(ui.theme.body, what, wide + right - ui.theme.px(40)));
+  const auto whose = library_.identities().find(record.folder);
   const std::string third =
-      std::string(found_by_patient_.contains(record.folder) ? "Found by its patient  \u2013  " : "") +
-      (record.note.empty() ? record.folder.string()
-                           : "\u201C" + record.note.substr(0, record.note.find('\n')) + "\u201D");
+      whose_and_where(record, whose != library_.identities().end() ? whose->second.in_words() : "",
+                      found_by_patient_.contains(record.folder));
   widgets::draw_text(draw, ui.theme.body, x, at.y + ui.theme.px(64), widgets::kQuietText,
                      widgets::fitting(ui.theme.body, third, wide + right - ui.theme.px(12)));
 }

@@ -57,8 +57,9 @@ bool StartView::draw_page_row(const widgets::Ui& ui, const std::string& name, st
 
 void StartView::draw_browser(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
-  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-                        {"start.accept", "start.up", "start.home", "start.import_folder", "start.back"});
+  widgets::draw_buttons(
+      ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+      {"start.accept", "start.up", "start.home", "start.type_path", "start.import_folder", "start.back"});
   if (const auto found = browser_.draw(ui, rest, state_.browse_title, "Import this folder")) take(*found);
 }
 

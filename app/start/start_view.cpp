@@ -245,6 +245,15 @@ void StartView::add_page_actions(widgets::Actions& actions) {
                here(Page::Browse),
                {},
                [this] { browser_.home(); }});
+  actions.add({"start.type_path",
+               "Type a path",
+               "Goes to a folder or a file whose path is typed or pasted: Tab completes it",
+               GLFW_KEY_L,
+               GLFW_MOD_CONTROL,
+               false,
+               here(Page::Browse),
+               {},
+               [this] { browser_.type_path(); }});
   actions.add({"start.import_folder",
                "Import this folder",
                "Looks for image series in this folder and all that are in it",

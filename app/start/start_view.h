@@ -56,7 +56,8 @@ class StartView {
   // What is typed next is meant for a text field.
   [[nodiscard]] bool awaits_text() const {
     return (state_.page == Page::Cases && cases_.awaits_text()) ||
-           (state_.page == Page::Pacs && pacs_.awaits_text());
+           (state_.page == Page::Pacs && pacs_.awaits_text()) ||
+           (state_.page == Page::Browse && browser_.awaits_text());
   }
   [[nodiscard]] bool wants_to_close() const { return wants_to_close_; }
 

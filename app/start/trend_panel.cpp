@@ -29,6 +29,9 @@ struct Charted {
   bool begins_at_nought = true;
   int left_out = 0;  // checks in another medium, or with another ruler
 
+  [[nodiscard]] bool is_all_simulated() const {
+    return std::ranges::all_of(points, &TrendPoint::is_simulated);
+  }
   [[nodiscard]] std::string number(double value) const {
     return files::format("%.*f", decimals, value) + unit_text();
   }
@@ -105,14 +108,22 @@ void draw_limits(const widgets::Ui& ui, const Chart& chart, const Charted& chart
 void draw_points(const widgets::Ui& ui, const Chart& chart, const Charted& charted) {
   const std::vector<TrendPoint>& points = charted.points;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  for (std::size_t i = 1; i < points.size(); ++i)
-    draw.AddLine(chart.at(i - 1, points[i - 1].value), chart.at(i, points[i].value), widgets::kQuietText,
-                 ui.theme.px(1.5F));
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    // Each with the one before it of its own kind.
+    for (std::size_t before = i; before-- > 0;) {
+      if (!library::is_one_series(points[before], points[i])) continue;
+      draw.AddLine(chart.at(before, points[before].value), chart.at(i, points[i].value), widgets::kQuietText,
+                   ui.theme.px(1.5F));
+      break;
+    }
+  }
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const float radius = ui.theme.px(6);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ImVec2 at = chart.at(i, points[i].value);
-    if (charted.is_outside(points[i].value))  // by shape, too: a square
+    if (points[i].is_simulated)  // hollow: it is no operation, and within no limits of any
+      draw.AddCircle(at, radius, widgets::kAccent, 0, ui.theme.px(2));
+    else if (charted.is_outside(points[i].value))  // by shape, too: a square
       draw.AddRectFilled({at.x - radius, at.y - radius}, {at.x + radius, at.y + radius}, widgets::kBad);
     else if (points[i].bone == "tibia")
       draw.AddTriangleFilled({at.x, at.y - radius}, {at.x + radius, at.y + radius},
@@ -124,8 +135,8 @@ void draw_points(const widgets::Ui& ui, const Chart& chart, const Charted& chart
     const ImVec2 at = chart.at(i, points[i].value);
     if (std::hypot(at.x - mouse.x, at.y - mouse.y) > 2 * radius) continue;
     const std::string bone = points[i].bone.empty() ? "" : ", " + points[i].bone;
-    const std::string words = points[i].case_name + bone + ", " + files::local_day(points[i].when_utc) +
-                              ": " + charted.number(points[i].value);
+    const std::string words = points[i].case_name + bone + (points[i].is_simulated ? ", simulated, " : ", ") +
+                              files::local_day(points[i].when_utc) + ": " + charted.number(points[i].value);
     ImGui::SetTooltip("%s", words.c_str());
     break;
   }
@@ -136,9 +147,7 @@ Charted charted_trend(std::span<const library::CaseRecord> listed, Trend trend,
   Charted charted;
   charted.unit = library::unit_of(trend);
   charted.points = library::trend_of(listed, trend, options);
-  std::vector<double> values;
-  for (const TrendPoint& point : charted.points) values.push_back(point.value);
-  charted.limits = library::control_limits(values);
+  charted.limits = library::limits_of(charted.points);
   return charted;
 }
 
@@ -161,11 +170,15 @@ Charted charted_accuracy(std::span<const library::AccuracyCheck> checks,
 std::string limits_in_words(const Charted& charted, const std::string& fewer) {
   if (!charted.limits.is_known) return ".  Limits from " + fewer + " on";
   const auto outside =
-      std::count_if(charted.points.begin(), charted.points.end(),
-                    [&](const TrendPoint& point) { return charted.is_outside(point.value); });
-  return ".  Mean " + charted.number(charted.limits.center) + ", limits " +
-         charted.number(charted.limits.lower) + " to " + charted.number(charted.limits.upper) + ", " +
-         std::to_string(outside) + " outside";
+      std::count_if(charted.points.begin(), charted.points.end(), [&](const TrendPoint& point) {
+        return point.is_simulated == charted.is_all_simulated() && charted.is_outside(point.value);
+      });
+  const bool has_both = std::ranges::any_of(charted.points, &TrendPoint::is_simulated);
+  const std::string of = charted.is_all_simulated() ? ".  Of simulations: mean "
+                         : has_both                 ? ".  Of the operations alone: mean "
+                                                    : ".  Mean ";
+  return of + charted.number(charted.limits.center) + ", limits " + charted.number(charted.limits.lower) +
+         " to " + charted.number(charted.limits.upper) + ", " + std::to_string(outside) + " outside";
 }
 
 void draw_chart(const widgets::Ui& ui, const widgets::Rect& area, const Charted& charted) {

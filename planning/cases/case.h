@@ -6,6 +6,7 @@
 //   femur.ply, femur_cartilage.ply   bones, LPS, mm; what cartilage covers, where it was declared
 //   images/1.nrrd, painting/, bone_doubts.json  what the bones were made from, and what spoke against them
 //   sides.json                 what was put aside when it was said to be of the other side (case_sides.h)
+//   history.json               what was done to the plan, to be taken back (step_history.h)
 //   measurements.json          taken in the images; achieved.json what a CT after the operation showed
 //   camera.json, tools.json, fluid.json   what it is navigated with; the newest check in fluid
 //   sessions/ID/               one folder a session, exercises too (navigation/recording)

@@ -33,11 +33,14 @@ std::string Measurement::in_words() const {
 fs::path measurements_file(const fs::path& case_folder) { return case_folder / "measurements.json"; }
 
 std::vector<Measurement> load_measurements(const fs::path& case_folder) {
-  std::vector<Measurement> measurements;
   const fs::path file = measurements_file(case_folder);
-  if (!fs::exists(file)) return measurements;
-  for (const auto& node :
-       files::read_json(file, kMeasurementsFormat, kMeasurementsVersion).objects("measurements")) {
+  if (!fs::exists(file)) return {};
+  return measurements_from(files::read_json(file, kMeasurementsFormat, kMeasurementsVersion));
+}
+
+std::vector<Measurement> measurements_from(const files::JsonObject& root) {
+  std::vector<Measurement> measurements;
+  for (const auto& node : root.objects("measurements")) {
     Measurement measurement;
     for (const auto& point : node.objects("points")) measurement.points_mm.push_back(point.vector3("mm"));
     if (measurement.points_mm.size() != 2 && measurement.points_mm.size() != 3)
@@ -47,9 +50,7 @@ std::vector<Measurement> load_measurements(const fs::path& case_folder) {
   return measurements;
 }
 
-void save_measurements(const fs::path& case_folder, const std::vector<Measurement>& measurements) {
-  const fs::path file = measurements_file(case_folder);
-  if (measurements.empty()) return files::remove_file(file);
+nlohmann::ordered_json to_json(const std::vector<Measurement>& measurements) {
   auto nodes = nlohmann::ordered_json::array();
   for (const Measurement& measurement : measurements) {
     if (measurement.points_mm.size() != 2 && measurement.points_mm.size() != 3)
@@ -64,9 +65,15 @@ void save_measurements(const fs::path& case_folder, const std::vector<Measuremen
       node["distance_mm"] = measurement.distance_mm();
     nodes.push_back(std::move(node));
   }
-  files::write_json(file, {{"format", kMeasurementsFormat},
-                           {"version", kMeasurementsVersion},
-                           {"measurements", std::move(nodes)}});
+  return {{"measurements", std::move(nodes)}};
+}
+
+void save_measurements(const fs::path& case_folder, const std::vector<Measurement>& measurements) {
+  const fs::path file = measurements_file(case_folder);
+  if (measurements.empty()) return files::remove_file(file);
+  nlohmann::ordered_json document = {{"format", kMeasurementsFormat}, {"version", kMeasurementsVersion}};
+  document.update(to_json(measurements));
+  files::write_json(file, document);
 }
 
 }  // namespace arthronaut::cases

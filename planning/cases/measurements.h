@@ -4,8 +4,11 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
+
+#include "planning/files/json_document.h"
 
 namespace arthronaut::cases {
 
@@ -29,5 +32,8 @@ struct Measurement {
 // points.
 void save_measurements(const std::filesystem::path& case_folder,
                        const std::vector<Measurement>& measurements);
+// The same in another file of the case: an object with "measurements". Throw as above.
+[[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Measurement>& measurements);
+[[nodiscard]] std::vector<Measurement> measurements_from(const files::JsonObject& node);
 
 }  // namespace arthronaut::cases

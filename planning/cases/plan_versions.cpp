@@ -34,36 +34,81 @@ int number_of(const fs::path& file) {
   return is_number && file.extension() == ".json" ? number : 0;
 }
 
+fs::path version_file(const fs::path& case_folder, int number) {
+  return versions_folder(case_folder) / (std::to_string(number) + ".json");
+}
+
+PlanVersion version_from(const fs::path& file) {
+  const auto root = files::parse_json(files::read_text(file), file, kPlanFormat, kPlanFormatVersion);
+  PlanVersion version{number_of(file), root.text("kept_utc"), plan_from(root)};
+  if (root.has("name")) version.words.name = root.text("name");
+  if (root.has("note")) version.words.note = root.text("note");
+  if (root.has("side")) {
+    try {
+      version.side = bones::side_from_text(root.text("side"));
+    } catch (const InvalidInput&) {
+      root.fail("side", "must be left or right");
+    }
+  }
+  return version;
+}
+
+void write_version(const fs::path& case_folder, const PlanVersion& version) {
+  if (version.words.name.size() > kLongestVersionName || version.words.note.size() > kLongestVersionNote)
+    throw InvalidInput(case_folder, "plan_versions",
+                       files::format("a name is %zu bytes long at the most, a note %zu", kLongestVersionName,
+                                     kLongestVersionNote));
+  nlohmann::ordered_json node = to_json(version.plan);
+  node["kept_utc"] = version.kept_utc;
+  if (version.side) node["side"] = bones::to_text(*version.side);
+  if (!version.words.name.empty()) node["name"] = version.words.name;
+  if (!version.words.note.empty()) node["note"] = version.words.note;
+  files::write_json(version_file(case_folder, version.number), node);
+}
+
 }  // namespace
+
+std::string PlanVersion::title() const {
+  return "Version " + std::to_string(number) + (words.name.empty() ? "" : ", \"" + words.name + "\"");
+}
 
 std::vector<PlanVersion> load_plan_versions(const fs::path& case_folder) {
   std::vector<PlanVersion> versions;
   const fs::path folder = versions_folder(case_folder);
   if (!fs::exists(folder)) return versions;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const int number = number_of(entry.path());
-    if (number == 0) continue;
-    const std::string text = files::read_text(entry.path());
-    versions.push_back(
-        {number, files::parse_json(text, entry.path(), kPlanFormat, kPlanFormatVersion).text("kept_utc"),
-         plan_from(text, entry.path())});
-  }
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (number_of(entry.path()) != 0) versions.push_back(version_from(entry.path()));
   std::ranges::sort(versions, {}, &PlanVersion::number);
   return versions;
 }
 
-PlanVersion keep_plan_version(const fs::path& case_folder, const Plan& plan) {
+PlanVersion keep_plan_version(const fs::path& case_folder, const Plan& plan, std::optional<bones::Side> side,
+                              const VersionWords& words) {
   if (plan.tunnels.empty()) throw InvalidInput(case_folder, "plan", "has no tunnel to keep");
   int last = 0;
   const fs::path folder = versions_folder(case_folder);
   if (fs::exists(folder))
     for (const auto& entry : fs::directory_iterator(folder)) last = std::max(last, number_of(entry.path()));
-  PlanVersion kept{last + 1, files::utc_now(), plan};
+  PlanVersion kept{last + 1, files::utc_now(), plan, words, side};
   files::create_private_folder(folder);
-  nlohmann::ordered_json node = to_json(plan);
-  node["kept_utc"] = kept.kept_utc;
-  files::write_json(folder / (std::to_string(kept.number) + ".json"), node);
+  write_version(case_folder, kept);
   return kept;
+}
+
+void say_of_version(const fs::path& case_folder, int number, const VersionWords& words) {
+  const fs::path file = version_file(case_folder, number);
+  if (number < 1 || !fs::exists(file))
+    throw InvalidInput(case_folder, "plan_versions", "holds no version " + std::to_string(number));
+  PlanVersion version = version_from(file);
+  if (version.words == words) return;
+  version.words = words;
+  write_version(case_folder, version);
+}
+
+std::string side_refusal(const PlanVersion& version, bones::Side of_case) {
+  if (!version.side || *version.side == of_case) return "";
+  return version.title() + " was planned in a " + std::string(bones::to_text(*version.side)) +
+         " knee, the case is a " + std::string(bones::to_text(of_case)) + " one";
 }
 
 std::string TunnelDifference::in_words() const {

@@ -55,9 +55,11 @@ void add_comparisons(const CaseRecord& record, Trend trend, const TrendOptions& 
     const bool is_simulated = session != nullptr ? session->is_simulated() : record.is_simulated();
     if (is_simulated && !options.with_simulated) continue;
     if (session == nullptr)
-      points.push_back({record.created_utc, *value, record.name, "", record.folder, facts.bone});
+      points.push_back(
+          {record.created_utc, *value, record.name, "", record.folder, facts.bone, is_simulated});
     else
-      points.push_back({session->started_utc, *value, record.name, session->id, record.folder, facts.bone});
+      points.push_back(
+          {session->started_utc, *value, record.name, session->id, record.folder, facts.bone, is_simulated});
   }
 }
 
@@ -116,7 +118,8 @@ std::vector<TrendPoint> trend_of(std::span<const CaseRecord> records, Trend tren
       if (!options.bone.empty() && session.bone != options.bone) continue;
       const auto value = value_of(session, trend);
       if (value)
-        points.push_back({session.started_utc, *value, record.name, session.id, record.folder, session.bone});
+        points.push_back({session.started_utc, *value, record.name, session.id, record.folder, session.bone,
+                          session.is_simulated()});
     }
   }
   std::sort(points.begin(), points.end(), [](const TrendPoint& a, const TrendPoint& b) {
@@ -139,6 +142,19 @@ ControlLimits control_limits(std::span<const double> values) {
   limits.lower = std::max(limits.center - half, 0.0);
   limits.upper = limits.center + half;
   return limits;
+}
+
+ControlLimits limits_of(std::span<const TrendPoint> points) {
+  const bool has_real =
+      std::ranges::any_of(points, [](const TrendPoint& point) { return !point.is_simulated; });
+  std::vector<double> values;
+  for (const TrendPoint& point : points)
+    if (point.is_simulated != has_real) values.push_back(point.value);
+  return control_limits(values);
+}
+
+bool is_one_series(const TrendPoint& a, const TrendPoint& b) {
+  return a.is_simulated == b.is_simulated && a.bone == b.bone;
 }
 
 }  // namespace arthronaut::library

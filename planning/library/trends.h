@@ -32,6 +32,7 @@ struct TrendPoint {
   std::string case_name, session;
   std::filesystem::path case_folder;
   std::string bone = {};  // "femur", "tibia"; empty: of none (a check of accuracy), or not known
+  bool is_simulated = false;
 };
 
 struct TrendOptions {
@@ -61,5 +62,12 @@ struct ControlLimits {
 // Control, 7th ed., eq. 6.33). What is charted here is never below 0, and neither is the lower limit. In the
 // order of time, since the moving range is of neighbours.
 [[nodiscard]] ControlLimits control_limits(std::span<const double> values);
+
+// Those of the operations among the points; where there are none, those of the simulations. Of both together
+// they would be of neither.
+[[nodiscard]] ControlLimits limits_of(std::span<const TrendPoint> points);
+// Whether both points are of one series: what changes from one to the other is not that the one was
+// simulated, or of the other bone.
+[[nodiscard]] bool is_one_series(const TrendPoint& a, const TrendPoint& b);
 
 }  // namespace arthronaut::library

@@ -6,6 +6,7 @@
 #include "planning/cases/identity.h"
 #include "planning/cases/measurements.h"
 #include "planning/cases/plan_file.h"
+#include "planning/cases/step_history.h"
 #include "planning/cases/study.h"
 #include "planning/plan_export/markups_file.h"
 #include "tests/fuzzing/reader.h"
@@ -99,6 +100,20 @@ std::vector<Reader> case_readers() {
              (void)put(folder, "bone_doubts.json", bytes);
              (void)cases::load_bone_doubts(folder);
              return std::string();
+           }},
+          {"history", "history.json",
+           [](const fs::path& folder) {
+             const cases::Case knee = example();
+             cases::PlanState before{{}, {}, knee.landmarks, {}}, after = before;
+             after.plan = cases::plan_from(std::string(kPlan), "plan.json");
+             cases::save_step_history(folder, {{{"Plan", before, after}}, 1});
+             return std::map<std::string, std::string>{{"seed", taken(cases::step_history_file(folder))}};
+           },
+           [](const fs::path& folder, std::string_view bytes) {
+             (void)put(folder, "history.json", bytes);
+             const auto history = cases::load_step_history(folder);
+             return history.position <= history.steps.size() ? std::string()
+                                                             : std::string("beyond the steps");
            }},
           {"sides", "sides.json",
            [](const fs::path& folder) {

@@ -18,6 +18,7 @@
 #include "planning/cases/case_sides.h"
 #include "planning/cases/identity.h"
 #include "planning/cases/measurements.h"
+#include "planning/cases/step_history.h"
 #include "planning/cases/study.h"
 #include "planning/geometry/error.h"
 #include "planning/library/cohort.h"
@@ -197,6 +198,17 @@ TEST_F(Schemas, DescribeTheOtherSide) {
   json cut_off = read(cases::sides_file(folder_.path()));
   cut_off["changing_to"] = "right";
   EXPECT_EQ(test::undescribed(cut_off, "sides"), "");
+}
+
+TEST_F(Schemas, DescribeTheSteps) {
+  const cases::Case knee =
+      phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Knee of a test");
+  const cases::PlanState before{knee.plan, {}, knee.landmarks, knee.landmark_states};
+  cases::PlanState after = before;
+  after.measurements = {{{{1, 2, 3}, {4, 5, 6}}}};
+  cases::save_step_history(folder_.path(), {{{"Measure a distance", before, after}}, 1});
+  expect_described(cases::step_history_file(folder_.path()), "history",
+                   [&] { (void)cases::load_step_history(folder_.path()); });
 }
 
 TEST_F(Schemas, DescribeTheNote) {

@@ -1,9 +1,14 @@
 #include "app/case/plan_history.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <fstream>
 #include <random>
+#include <thread>
 
 #include "tests/app/case/plan_history_fixture.h"
 
@@ -64,6 +69,88 @@ TEST_F(PlanHistoryTest, TheStepsAreThereAgainAfterAnotherCase) {
   history_.open(&changed_model, folder_);
   EXPECT_FALSE(history_.can_undo());
   EXPECT_FALSE(history_.can_redo());
+}
+
+// The program is ended and started again: the list of steps is there, with what was undone, and all of it can
+// be taken back. What another program did since is none of the steps: then nothing can.
+TEST_F(PlanHistoryTest, TheStepsOutliveTheProgram) {
+  history_.apply(wider(1, false), 1.0);
+  history_.settle(2.0);
+  history_.apply_measurements({{{{1, 2, 3}, {4, 5, 6}}}}, "Measure a distance");
+  history_.apply(wider(0.5, false), 3.0);
+  history_.settle(4.0);
+  history_.undo();
+  {
+    PlanModel again(cases::load_case(folder_));
+    again.set_measurements(cases::load_measurements(folder_));
+    PlanHistory started_again;
+    started_again.open(&again, folder_);
+    ASSERT_EQ(started_again.step_count(), 3U);
+    EXPECT_EQ(started_again.position(), 2U);
+    EXPECT_EQ(started_again.step_name(1), "Measure a distance");
+    EXPECT_EQ(started_again.status().undo_what, "Measure a distance");
+    started_again.redo();
+    EXPECT_NEAR(again.tunnel(BoneKind::Femur)->diameter_mm, start_mm_ + 1.5, 1e-9);
+    started_again.go_to(0);
+    EXPECT_NEAR(saved_diameter_mm(), start_mm_, 1e-9);
+    EXPECT_TRUE(cases::load_measurements(folder_).empty());
+  }
+  cases::Case changed = cases::load_case(folder_);
+  changed.plan.tunnels.at(BoneKind::Femur).diameter_mm = 7.25;
+  cases::save_case(folder_, changed);
+  PlanModel other(changed);
+  PlanHistory after_another;
+  after_another.open(&other, folder_);
+  EXPECT_EQ(after_another.step_count(), 0U);
+}
+
+// A broken file costs the steps, not the case.
+TEST_F(PlanHistoryTest, StepsThatCannotBeReadAreSaid) {
+  history_.apply(wider(1, false), 1.0);
+  history_.settle(2.0);
+  std::ofstream(cases::step_history_file(folder_)) << "{ broken";
+  PlanModel again(cases::load_case(folder_));
+  PlanHistory started_again;
+  started_again.open(&again, folder_);
+  EXPECT_FALSE(started_again.can_undo());
+  EXPECT_NE(started_again.status().text.find("cannot be taken back"), std::string::npos);
+}
+
+// Killed at any moment of planning: the plan on the disk is one of the steps, and those before it can be
+// taken back to the first.
+TEST_F(PlanHistoryTest, TheStepsOutliveAKill) {
+  std::mt19937 random(20260104);
+  std::uniform_int_distribution<int> delay_us(20000, 120000);
+  for (int i = 0; i < 8; ++i) {
+    const double before_mm = saved_diameter_mm();
+    const pid_t child = ::fork();
+    if (child == 0) {
+      PlanModel model(cases::load_case(folder_));
+      PlanHistory history;
+      history.open(&model, folder_);
+      for (int step = 1;; ++step) {
+        tunnels::Tunnel tunnel = *model.tunnel(BoneKind::Femur);
+        tunnel.diameter_mm += 1e-4;
+        history.apply({BoneKind::Femur, tunnel, "Widen", false}, step);
+        history.settle_now();
+      }
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(delay_us(random)));
+    ::kill(child, SIGKILL);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    PlanModel again(cases::load_case(folder_));
+    PlanHistory started_again;
+    started_again.open(&again, folder_);
+    const double found_mm = saved_diameter_mm();
+    EXPECT_EQ(started_again.can_undo(), found_mm > before_mm || i > 0) << i;
+    if (!started_again.can_undo()) continue;
+    started_again.undo();
+    EXPECT_NEAR(saved_diameter_mm(), found_mm - 1e-4, 1e-9);
+    started_again.redo();
+    EXPECT_NEAR(saved_diameter_mm(), found_mm, 1e-9);
+  }
 }
 
 // Normalising a direction again on reading would change its last digit: the steps would be another case's.

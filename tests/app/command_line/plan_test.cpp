@@ -19,6 +19,7 @@ namespace arthronaut {
 namespace {
 
 using test::run_program;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -358,6 +359,13 @@ TEST_F(PlanCommand, VersionsAreKeptComparedAndTaken) {
   const auto listed = run({"plan", "--versions"});
   EXPECT_THAT(listed.output, HasSubstr("femur: the same"));
   EXPECT_THAT(listed.output, HasSubstr("tibia: turned by "));
+  EXPECT_EQ(
+      run({"plan", "--name-version", "1", "--name", "first", "--note", "before the resident"}).exit_code, 0);
+  EXPECT_THAT(run({"plan", "--versions"}).output,
+              AllOf(HasSubstr("Version 1, \"first\", kept "), HasSubstr("of a right knee"),
+                    HasSubstr("\"before the resident\"")));
+  EXPECT_EQ(run({"plan", "--name-version", "7", "--name", "x"}).exit_code, 3);
+  EXPECT_EQ(run({"plan", "--name", "x"}).exit_code, 2) << "of no version";
   const auto unknown = run({"plan", "--take", "7"});
   EXPECT_EQ(unknown.exit_code, 3);
   EXPECT_THAT(unknown.errors, HasSubstr("no version 7"));

@@ -28,6 +28,20 @@ class FolderBrowserTest : public ::testing::Test {
   FolderBrowser browser_{"test"};
 };
 
+// What is typed is gone to like what is clicked on; a slip is said, and changes nothing.
+TEST_F(FolderBrowserTest, GoesToWhatIsTyped) {
+  EXPECT_EQ(browser_.go_to((home_ / "femur.stl").string()), home_ / "femur.stl");
+  EXPECT_EQ(browser_.go_to("after/ct/"), std::nullopt);
+  EXPECT_EQ(browser_.folder(), home_ / "after/ct");
+  EXPECT_EQ(browser_.go_to("../mr"), std::nullopt);
+  EXPECT_EQ(browser_.folder(), home_ / "after/ct");
+  EXPECT_NE(browser_.typing_problem().find("There is no " + (home_ / "after/mr").string()),
+            std::string::npos);
+  EXPECT_EQ(browser_.go_to(".."), std::nullopt);
+  EXPECT_EQ(browser_.typing_problem(), "");
+  EXPECT_EQ(browser_.folder(), home_ / "after");
+}
+
 TEST_F(FolderBrowserTest, BeginsAtHomeAndComesBackToWhereItWas) {
   EXPECT_EQ(browser_.folder(), home_.path());
   EXPECT_EQ(browser_.selected(), "after");

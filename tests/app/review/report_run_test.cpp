@@ -65,6 +65,29 @@ TEST_F(ReportRunTest, AsksForTheCaseWhereThereIsNoSession) {
                        " --progress-fd 3");
 }
 
+// What was written before may have been read by somebody: it stays, and the next one has a number.
+TEST_F(ReportRunTest, AReportThatIsThereStays) {
+  for (const char* expected : {"report.pdf", "report_2.pdf", "report_3.pdf"}) {
+    EXPECT_EQ(problem_of(program("while [ \"$1\" != -o ]; do shift; done; echo new > \"$2\""), ""), "");
+    EXPECT_TRUE(fs::exists(of_plan() / expected)) << expected;
+  }
+}
+
+// Stopped in the moment in which it had ended: the report is there, and is not said to be missing.
+TEST_F(ReportRunTest, OneThatHadEndedWhenItWasStoppedIsThere) {
+  bool is_first = true;
+  const auto stops = [&] {  // asked after the process was looked at for the first time: it ends meanwhile
+    if (is_first) std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    is_first = false;
+    return true;
+  };
+  const auto outcome = own_process::run_command(program("exit 4"), {"report"}, folder_ / "log", stops);
+  EXPECT_EQ(outcome.end, own_process::CommandOutcome::End::Unreliable);
+  const auto stopped =
+      own_process::run_command(program("exec sleep 60"), {"report"}, folder_ / "log", [] { return true; });
+  EXPECT_EQ(stopped.end, own_process::CommandOutcome::End::Stopped);
+}
+
 // Two plans never share a folder, and whoever holds a report knows which plan it tells of. It lay beside
 // tables of another plan.
 TEST_F(ReportRunTest, LiesInThePlansOwnFolder) {

@@ -314,7 +314,7 @@ TEST_F(PlanWindow, AVersionIsKeptAndTakenAgain) {
   open(app);
   const double before_mm = saved_tunnel().diameter_mm;
   app.press("k");
-  ASSERT_TRUE(app.wait_for_state("hint", "Kept as version 1"));
+  ASSERT_TRUE(app.wait_for_state("hint", "Kept as version 1. Shift+K gives it a name and a note"));
   app.press("equal");
   ASSERT_TRUE(app.wait_for_state("diameter_mm", fixed(before_mm + 0.5)));
   app.press("h");

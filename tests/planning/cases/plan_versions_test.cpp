@@ -54,6 +54,30 @@ TEST_F(PlanVersions, ANumberIsNeverGivenTwice) {
   EXPECT_EQ(load_plan_versions(folder_.path()).back().number, 12);
 }
 
+// A name and a note come with it, are changed without touching the plan, and stand in no way of it.
+TEST_F(PlanVersions, HaveANameANoteAndASide) {
+  (void)keep_plan_version(folder_.path(), plan_);
+  (void)keep_plan_version(folder_.path(), plan_, bones::Side::Left, {"wider", "for a thick graft"});
+  auto versions = load_plan_versions(folder_.path());
+  EXPECT_EQ(versions[0].title(), "Version 1");
+  EXPECT_EQ(versions[1].title(), "Version 2, \"wider\"");
+  EXPECT_EQ(versions[1].words.note, "for a thick graft");
+  EXPECT_EQ(side_refusal(versions[1], bones::Side::Left), "");
+  EXPECT_EQ(side_refusal(versions[1], bones::Side::Right),
+            "Version 2, \"wider\" was planned in a left knee, the case is a right one");
+  EXPECT_EQ(side_refusal(versions[0], bones::Side::Right), "") << "nobody knows";
+  say_of_version(folder_.path(), 1, {"narrow \u00e4", ""});
+  say_of_version(folder_.path(), 2, {});
+  const auto said = load_plan_versions(folder_.path());
+  EXPECT_EQ(said[0].title(), "Version 1, \"narrow \u00e4\"");
+  EXPECT_EQ(said[0].kept_utc, versions[0].kept_utc);
+  EXPECT_EQ(said[1].words, VersionWords{});
+  EXPECT_EQ(said[1].side, bones::Side::Left);
+  for (const auto& difference : compare_plans(plan_, said[1].plan)) EXPECT_EQ(difference.kind, Kind::Same);
+  EXPECT_THROW(say_of_version(folder_.path(), 3, {}), InvalidInput);
+  EXPECT_THROW(say_of_version(folder_.path(), 1, {std::string(61, 'a'), ""}), InvalidInput);
+}
+
 TEST_F(PlanVersions, ArePrivateAsTheCaseIs) {
   (void)keep_plan_version(folder_.path(), plan_);
   EXPECT_TRUE(files::is_private(folder_ / "plan_versions"));

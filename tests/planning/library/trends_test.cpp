@@ -47,6 +47,26 @@ TEST(TrendTest, GoesThroughTheSessionsInTime) {
   EXPECT_TRUE(trend_of(records, Trend::Drilling).empty());
 }
 
+// What was simulated is drawn beside the operations, and widens or narrows no limits of theirs.
+TEST(TrendTest, LimitsAreOfTheOperationsAlone) {
+  std::vector<TrendPoint> real, mixed, simulated;
+  for (int i = 0; i < 10; ++i) {
+    const TrendPoint point{"2026-01-0" + std::to_string(i), 2 + 0.1 * (i % 3), "A", "", {}, "femur", false};
+    TrendPoint rehearsed = point;
+    rehearsed.value = 9 - i;
+    rehearsed.is_simulated = true;
+    real.push_back(point);
+    mixed.insert(mixed.end(), {point, rehearsed});
+    simulated.push_back(rehearsed);
+  }
+  EXPECT_TRUE(limits_of(real).is_known);
+  EXPECT_EQ(limits_of(mixed).center, limits_of(real).center);
+  EXPECT_EQ(limits_of(mixed).upper, limits_of(real).upper);
+  EXPECT_NEAR(limits_of(simulated).center, 4.5, 1e-12);
+  EXPECT_FALSE(is_one_series(mixed[0], mixed[1]));
+  EXPECT_TRUE(is_one_series(mixed[0], mixed[2]));
+}
+
 // Of a session whose header a newer program wrote nobody knows whether it was a simulation's.
 TEST(TrendTest, LeavesOutWhatMayBeASimulation) {
   std::vector<CaseRecord> records(1);

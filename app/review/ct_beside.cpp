@@ -1,0 +1,20 @@
+#include "app/review/ct_beside.h"
+
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::review {
+
+CtWords ct_in_words(const postop::Comparison& comparison, const tunnels::Tunnel& planned) {
+  using widgets::Severity;
+  const postop::AchievedTunnel& found = comparison.tunnel;
+  const auto& reasons = comparison.bone.reasons.empty() ? found.reasons : comparison.bone.reasons;
+  const std::string why = reasons.empty() ? "" : ": " + reasons.front();
+  if (!found.is_found) return {Severity::Caution, "the tunnel was not found" + why};
+  if (!postop::is_against(found, planned)) return {Severity::Quiet, "compared with another plan than this"};
+  const std::string text = "entry " + widgets::fixed(found.offset_mm, 1) + " mm, angle " +
+                           widgets::fixed(geometry::deg_from_rad(found.angle_rad), 1) + "\u00B0";
+  if (comparison.bone.reliable && found.reliable) return {Severity::Quiet, text};
+  return {Severity::Caution, text + "; not reliable" + why};
+}
+
+}  // namespace arthronaut::review
