@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kFullPx_s = 500;     // a mouse that is moved so fast pushes fully
 constexpr double kFullNotches_s = 6;  // a wheel likewise
-constexpr double kFine = 0.25;        // of the speed, with Alt held
+constexpr double kFine = 0.25;        // of the speed, with B held
 constexpr double kRest = 0.15;        // of a stick: nobody's thumb is still
 
 Vector3d without_rest(const Vector3d& axes) {
@@ -82,7 +82,7 @@ std::vector<mode::HeldKeys> keys_of_the_hands() {
       {"J L I K", "Its handle left, right, up and down; the mouse's right button does it, too"},
       {"U O", "Its handle nearer and away"},
       {"Shift", "Held beside them: the scope instead of the tool; the mouse's middle button does it, too"},
-      {"Alt", "Held beside them: a quarter of the speed, for the last millimetre"},
+      {"B", "Held beside them: a quarter of the speed, for the last millimetre"},
       {"Z X", "Turns the lens"},
       {"F", "Drills, while it is held"}};
 }
@@ -102,7 +102,8 @@ DeviceState HandDevices::read(float window_height_px) {
     state.keys_lens = between(down(GLFW_KEY_Z), down(GLFW_KEY_X));
     state.keys_scope = io.KeyShift;
     state.keys_drill = down(GLFW_KEY_F);
-    state.is_fine = io.KeyAlt;
+    // No modifier: Space and Enter are to be pressed beside it, and window managers take what Alt drags.
+    state.is_fine = down(GLFW_KEY_B);
     const double scale = 1080.0 / window_height_px;
     state.mouse_px = {scale * io.MouseDelta.x, scale * io.MouseDelta.y};
     state.wheel = io.MouseWheel;

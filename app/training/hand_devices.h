@@ -2,7 +2,7 @@
 // simulator::HandControl. The mapping is pure; the devices are read by the calls below alone.
 //
 //   keyboard  A D, W S, Q E: the tool left and right, up and down, nearer and away; J L, I K, U O: its handle
-//             likewise; Shift: the scope instead; Alt: finely; Z X: the lens; F: the drill
+//             likewise; Shift: the scope instead; B: finely; Z X: the lens; F: the drill
 //   mouse     left button: the tool; right button: its handle; middle button: the scope; the wheel: nearer
 //             and away, with the right button held: the lens
 //   gamepad   left stick, triggers: the tool; right stick, D-pad up and down: its handle; D-pad left and

@@ -145,7 +145,7 @@ void TrainingView::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {
           ? "Keys: A D W S Q E move the board, J L I K tilt it, U O roll it, Shift the scope "
             "instead, Z X turn the lens, Space takes the picture, Enter says done. Mouse: left "
             "button the board, right its tilt and with the wheel the lens, wheel nearer and away."
-          : "Keys: A D W S Q E move the tool, J L I K U O its handle, Shift the scope instead, Alt "
+          : "Keys: A D W S Q E move the tool, J L I K U O its handle, Shift the scope instead, B "
             "finely, Z X the lens, F the drill, G takes the other tool, Space is the pedal, Enter says done. "
             "Mouse: left button the tool, right its handle, middle the scope, wheel nearer and "
             "away.");
@@ -229,7 +229,7 @@ void TrainingView::draw_strip(const widgets::Ui& ui, const widgets::Rect& area) 
             : area.x + ui.theme.px(14);
   put(ui.theme.strong, end_x, first_y, widgets::kText, words);
   put(ui.theme.body, area.x + ui.theme.px(14), area.y + ui.theme.px(46), widgets::kQuietText,
-      "Tool: A D W S, Q nearer, E away   Handle: J L I K, U nearer, O away   Held: Alt finely, Shift the "
+      "Tool: A D W S, Q nearer, E away   Handle: J L I K, U nearer, O away   Held: B finely, Shift the "
       "scope "
       "instead   Z X lens   F drill   G other tool   Space pedal   Enter done   hold Esc stop");
   ui.log.note("train.strip", area.min(), area.max());
