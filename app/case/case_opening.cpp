@@ -80,6 +80,13 @@ bool CaseOpening::take_when_free() {
   return true;
 }
 
+bool CaseOpening::take_over() {
+  cases::CaseLock lock(open_.folder, cases::LockTaking::FromOtherHost);
+  open_.lock = std::move(lock);
+  locked_at_ = Clock::now();
+  return open_.lock.is_held();
+}
+
 CaseOpening::CaseOpening(CaseOpening& before, std::function<void()> on_end) {
   open_.lock = std::move(before.open_.lock);
   locked_at_ = before.locked_at_;

@@ -58,6 +58,11 @@ class CaseOpening {
   // The lock is taken then, and whoever asks opens the case anew with it. Asks the disk.
   [[nodiscard]] bool take_when_free();
 
+  // Of a case that is read-only because a program of another machine has it: somebody says that that one is
+  // gone. As take_when_free(); false where it is not to be had after all, and read_only_reason() says why.
+  [[nodiscard]] bool take_over();
+  [[nodiscard]] bool is_of_other_host() const { return open_.lock.is_of_other_host(); }
+
   // Nothing is written any more: whoever opens the case next has it, though this one takes a while to go.
   void release_lock() { open_.lock = {}; }
 

@@ -23,7 +23,7 @@ using library::CaseRecord;
 struct CasesArguments {
   std::string add, forget, note;
   std::string note_text;
-  std::string set_side, to_side;
+  std::string set_side, to_side, take_over;
   std::string side, state, order = "newest";
   std::string search;
   bool as_json = false, as_csv = false, with_identity = false;
@@ -113,6 +113,13 @@ void list_cases(const Context& context, const CasesArguments& arguments) {
     say_done(context, arguments,
              (arguments.note_text.empty() ? "Took the note off " : "Noted with ") + arguments.note + ".");
   }
+  if (!arguments.take_over.empty()) {
+    const cases::CaseLock lock(arguments.take_over, cases::LockTaking::FromOtherHost);
+    if (!lock.is_held()) throw InvalidInput(arguments.take_over, "", lock.refusal());
+    say_done(
+        context, arguments,
+        lock.notice().empty() ? "No other machine has " + arguments.take_over + "." : lock.notice() + ".");
+  }
   if (!arguments.set_side.empty()) {
     const cases::CaseLock lock = cases::lock_or_refuse(arguments.set_side);
     if (!lock.notice().empty()) say_done(context, arguments, lock.notice() + ".");
@@ -121,8 +128,8 @@ void list_cases(const Context& context, const CasesArguments& arguments) {
     for (const std::string& line : said.lines)
       say_done(context, arguments, (&line == said.lines.data() ? arguments.set_side + ": " : "    ") + line);
   }
-  const bool only_changes =
-      !arguments.forget.empty() || !arguments.note.empty() || !arguments.set_side.empty();
+  const bool only_changes = !arguments.forget.empty() || !arguments.note.empty() ||
+                            !arguments.set_side.empty() || !arguments.take_over.empty();
   if (only_changes && !arguments.as_json && !arguments.as_csv) return;
   const std::vector<CaseRecord> all = looked_at(known);
   // All of them only where words may find one: each is a file to be read.
@@ -170,6 +177,11 @@ void add_cases_command(CLI::App& app, Context& context) {
       sub->add_option("--to", arguments->to_side, "left or right")->check(CLI::IsMember({"left", "right"}));
   set_side->needs(to_side);
   to_side->needs(set_side);
+  sub->add_option(
+         "--take-over", arguments->take_over,
+         "Case folder that a program of another machine has open which is gone, or that is a copy of "
+         "such a case: it can be opened and written from then on. Never one that is open on this machine")
+      ->check(CLI::ExistingDirectory);
   sub->add_option(
       "--search", arguments->search,
       "Words that must all stand in name, note, side, dates, state or outcome; with --with-identity "

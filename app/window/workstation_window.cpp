@@ -75,6 +75,23 @@ void WorkstationWindow::add_actions() {
                   start_.enter(case_->folder());
                 }});
   add_markups_action();
+  actions_.add(
+      {"app.take_over",
+       "Take over",
+       "The case is this program's to write from then on: only where the program of the other machine "
+       "that has it is gone, or this folder is a copy of its case",
+       GLFW_KEY_T,
+       GLFW_MOD_CONTROL,
+       false,
+       [this] {
+         return case_ != nullptr && case_->is_of_other_host() && opening_ == nullptr && !has_running_work() &&
+                !shows_start();
+       },
+       {},
+       [this] {
+         if (case_->take_over()) reopen();
+       },
+       {"take the case over from the other machine"}});
   actions_.add({"app.stop_opening",
                 "Stop opening",
                 "The case stays closed; one that was open stays so",

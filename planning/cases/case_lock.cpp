@@ -146,7 +146,9 @@ std::string obstacle(const LockFile& lock, const fs::path& file, bool kernel_loc
   if (lock.holder.process == 0) return "";  // broken: nobody can be asked
   if (lock.holder.host != host_name()) {
     return "is open elsewhere: " + lock.holder.in_words() +
-           ". If that program is gone, or this folder is a copy of its case, delete " + file.string();
+           ". If that program is gone, or this folder is a copy of its case, take it over: Ctrl+T in the "
+           "window, or \"arthronaut cases --take-over " +
+           file.parent_path().string() + "\"";
   }
   // Where the kernel locks no folders, as on some mounts, neither are the folders' numbers to be relied on.
   if (kernel_locks && is_of_a_copy(lock, file)) return "";
@@ -229,7 +231,7 @@ struct CaseLock::State {
   LockFile lock;
 };
 
-CaseLock::CaseLock(const fs::path& case_folder) {
+CaseLock::CaseLock(const fs::path& case_folder, LockTaking taking) {
   const fs::path file = lock_file(case_folder);
   const FolderLock kernel = lock_folder(case_folder);
   if (kernel.descriptor < 0) {
@@ -249,7 +251,9 @@ CaseLock::CaseLock(const fs::path& case_folder) {
   if (!kernel.is_known) turn.emplace(fs::path(file) += ".taking");
   try {
     const auto before = read_lock(file);
-    if (before) refusal_ = obstacle(*before, file, kernel.is_known);
+    is_of_other_host_ = before && before->holder.process != 0 && before->holder.host != host_name();
+    const bool is_taken_over = is_of_other_host_ && taking == LockTaking::FromOtherHost;
+    if (before && !is_taken_over) refusal_ = obstacle(*before, file, kernel.is_known);
     if (refusal_.empty() && turn) refusal_ = turn->refusal();
     if (refusal_.empty()) {
       make_case_private(case_folder);
@@ -263,8 +267,11 @@ CaseLock::CaseLock(const fs::path& case_folder) {
         auto state = std::make_unique<State>(case_folder, kernel.descriptor, std::move(mine));
         if (!(refusal_ = cut_off_remains(case_folder)).empty()) return;
         state_ = std::move(state);
+        is_of_other_host_ = false;
         if (before && is_of_a_copy(*before, file) && lives_here(*before)) {
           notice_ = "A copy of a case that was open: " + before->holder.in_words();
+        } else if (is_taken_over) {
+          notice_ = "Taken over from " + before->holder.in_words() + ", as somebody said that it is gone";
         } else if (before) {
           dead_since_utc_ = before->holder.since_utc;
           notice_ = before->holder.process > 0

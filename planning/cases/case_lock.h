@@ -12,7 +12,9 @@
 //   somebody holds the kernel's lock                                   -> refused
 //
 // That the process is gone is told by its number and the time of its start, since numbers come again. A lock
-// of another host is never taken over: nobody here can know. Its message says what to do.
+// of another host is taken over only where somebody says that its program is gone
+// (LockTaking::FromOtherHost): nobody here can know. A living process of this host never loses its case so,
+// nor one that holds the kernel's lock, wherever it runs.
 //
 // Where the kernel cannot lock folders (some network file systems) case.lock alone counts, and who wants to
 // look at it and write it makes case.lock.taking first, which one of several can: the others are refused. It
@@ -36,13 +38,15 @@ struct LockHolder {
   [[nodiscard]] std::string in_words() const;
 };
 
+enum class LockTaking { Free, FromOtherHost };
+
 class CaseLock {
  public:
   CaseLock();  // holds nothing, of no case
   // Takes the case, or says why not: look at is_held(). The folder exists. Mends the folder's privacy
   // (files/private_folder.h) when it is taken and when it is let go, and ends a change of side that was cut
   // off (case_sides.h) when it is taken. Does not throw for what it finds there.
-  explicit CaseLock(const std::filesystem::path& case_folder);
+  explicit CaseLock(const std::filesystem::path& case_folder, LockTaking taking = LockTaking::Free);
   ~CaseLock();  // lets go
   CaseLock(CaseLock&&) noexcept;
   CaseLock& operator=(CaseLock&&) noexcept;
@@ -50,6 +54,9 @@ class CaseLock {
   [[nodiscard]] bool is_held() const { return state_ != nullptr; }
   // Why it is not held, as a sentence for the user; empty when it is.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
+  // It is not held for a program of another host, of which nobody here can know whether it lives: it may be
+  // taken over.
+  [[nodiscard]] bool is_of_other_host() const { return is_of_other_host_; }
   // It is not held, and another program is why: it may become free.
   [[nodiscard]] bool is_held_elsewhere() const { return is_held_elsewhere_; }
   // What the user should know although it is held: that it was taken over, and from whom, or that it is a
@@ -62,7 +69,7 @@ class CaseLock {
   struct State;
   std::unique_ptr<State> state_;
   std::string refusal_, notice_, dead_since_utc_;
-  bool is_held_elsewhere_ = false;
+  bool is_held_elsewhere_ = false, is_of_other_host_ = false;
 };
 
 // For a program that must write or do nothing. Throws InvalidInput with the refusal.

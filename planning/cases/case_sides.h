@@ -19,10 +19,11 @@ namespace arthronaut::cases {
 
 // What a case holds that is of one side.
 struct SideContents {
-  std::map<bones::BoneKind, landmarks::Landmarks> landmarks;
-  std::map<bones::BoneKind, landmarks::LandmarkStates> landmark_states;
-  Plan plan;
-  BoneDoubts doubts;  // as load_side() gives them, an entry for each bone that they are of, if an empty one
+  std::map<bones::BoneKind, landmarks::Landmarks> landmarks = {};
+  std::map<bones::BoneKind, landmarks::LandmarkStates> landmark_states = {};
+  Plan plan = {};
+  BoneDoubts doubts =
+      {};  // as load_side() gives them, an entry for each bone that they are of, if an empty one
 };
 
 [[nodiscard]] std::filesystem::path sides_file(const std::filesystem::path& case_folder);

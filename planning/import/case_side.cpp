@@ -95,7 +95,8 @@ SaidSide say_side_of_case(const fs::path& case_folder, Side side) {
   contents->doubts.merge(doubts_as(knee, std::move(doubts), side));
   cases::change_side(case_folder, side, *contents);
   said.is_changed = true;
-  said.lines.push_back("it is a " + knee_of(side) + " now; it was a " + knee_of(knee.side));
+  said.lines.push_back("it is a " + knee_of(side) + " now; it was a " +
+                       std::string(bones::to_text(knee.side)) + " one");
   if (!knee.plan.tunnels.empty())
     said.lines.push_back("the plan of the " + knee_of(knee.side) +
                          " is put aside, and is back when that is said again");

@@ -93,6 +93,23 @@ TEST_F(CasesCommand, SetsTheSideOfACase) {
   EXPECT_EQ(cases({"--set-side", made, "--to", "both"}).exit_code, 2);
 }
 
+// A case that was copied from a machine on which it was open is this machine's where somebody says so.
+TEST_F(CasesCommand, TakesACaseOverFromAnotherMachine) {
+  files::write_atomically(
+      cases::lock_file(a_),
+      R"({"format": "arthronaut.lock", "version": 1, "host": "theatre-2", "process": 4711, "user": "anna",
+          "since_utc": "2026-01-31T12:00:00Z"})");
+  const auto refused = cases({"--note", a_, "--text", "x"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.errors, HasSubstr("arthronaut cases --take-over " + a_.string()));
+  const auto taken = cases({"--take-over", a_});
+  EXPECT_EQ(taken.exit_code, 0) << taken.errors;
+  EXPECT_THAT(taken.output, HasSubstr("Taken over from anna on theatre-2 (process 4711)"));
+  EXPECT_EQ(cases({"--note", a_, "--text", "x"}).exit_code, 0);
+  const cases::CaseLock lock(a_);
+  EXPECT_EQ(cases({"--take-over", a_}).exit_code, 3);
+}
+
 TEST_F(CasesCommand, KeepsNotesInTheCase) {
   know_both();
   EXPECT_EQ(cases({"--note", a_, "--text", "look again\n#study"}).exit_code, 0);

@@ -259,11 +259,34 @@ TEST_F(CaseLockTest, Hazard15AnotherMachinesLockIsNeverTakenOver) {
     const CaseLock lock(folder_);
     EXPECT_FALSE(lock.is_held());
     EXPECT_THAT(lock.refusal(), HasSubstr("anna on theatre-2 (process 4711) since 2026-01-31 12:00:00"));
-    EXPECT_THAT(lock.refusal(), HasSubstr("delete"));
+    EXPECT_THAT(lock.refusal(), HasSubstr("arthronaut cases --take-over"));
   }
   EXPECT_TRUE(std::filesystem::exists(lock_file(folder_)));
   std::filesystem::remove(lock_file(folder_));
   EXPECT_TRUE(CaseLock(folder_).is_held());
+}
+
+// A case that was copied from a machine on which it was open, or whose machine died, is taken over where
+// somebody says so; never one that a living process of this machine has, nor one that the kernel knows to be
+// held.
+TEST_F(CaseLockTest, Hazard15AnotherMachinesLockIsTakenOverWhereSomebodySaysSo) {
+  write_lock("theatre-2", 4711, "");
+  EXPECT_TRUE(CaseLock(folder_).is_of_other_host());
+  {
+    const CaseLock lock(folder_, LockTaking::FromOtherHost);
+    ASSERT_TRUE(lock.is_held()) << lock.refusal();
+    EXPECT_FALSE(lock.is_of_other_host());
+    EXPECT_THAT(lock.notice(), HasSubstr("Taken over from anna on theatre-2 (process 4711)"));
+    EXPECT_FALSE(CaseLock(folder_, LockTaking::FromOtherHost).is_held()) << "it is ours now";
+  }
+  EXPECT_TRUE(CaseLock(folder_).is_held());
+  write_lock(this_host(), ::getppid(), "");
+  EXPECT_FALSE(CaseLock(folder_, LockTaking::FromOtherHost).is_held());
+  EXPECT_FALSE(CaseLock(folder_).is_of_other_host());
+  std::filesystem::remove(lock_file(folder_));
+  const OtherProcess other(taking());
+  ASSERT_TRUE(other.result());
+  EXPECT_FALSE(CaseLock(folder_, LockTaking::FromOtherHost).is_held());
 }
 
 TEST_F(CaseLockTest, ABrokenFileDoesNotLockForEver) {

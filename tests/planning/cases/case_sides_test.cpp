@@ -87,9 +87,8 @@ TEST(CaseSides, LandmarksOfAnotherMeshAreNotBroughtBack) {
   const auto kept = load_side(folder.path(), other, Side::Right);
   ASSERT_TRUE(kept);
   EXPECT_TRUE(kept->landmarks.empty());
-  EXPECT_FALSE(
-      plan_fit({.name = "", .bones = other.bones, .landmarks = {}, .plan = kept->plan}, BoneKind::Femur)
-          .is_valid());
+  other.plan = kept->plan;
+  EXPECT_FALSE(plan_fits(other, BoneKind::Femur));
 }
 
 // A process that is killed while it changes the side: nobody who reads the case finds the plan or the
