@@ -97,8 +97,8 @@ void train(Context& context, const Arguments& arguments) {
   const simulator::Hand hand = hand_of(arguments, *exercise);
   training::ExerciseSetup setup{
       .exercise = *exercise, .level = level, .knee = {}, .plan = {}, .seed = arguments.seed};
-  std::string knee =
-      is_operation ? "built-in knee " + std::to_string(arguments.seed) : std::string(training::kBoardAlone);
+  std::string knee = std::string case_created_utc;
+  is_operation ? "built-in knee " + std::to_string(arguments.seed) : std::string(training::kBoardAlone);
   theatre::RecordOptions record;
   cases::CaseLock lock;
   const Interruption interruption;  // from before there is a session
@@ -115,6 +115,7 @@ void train(Context& context, const Arguments& arguments) {
     setup.knee = phantom::knee_of(opened);
     setup.plan = planned->second;
     knee = opened.name;
+    case_created_utc = opened.created_utc;
     lock = cases::lock_or_refuse(arguments.case_folder);
     if (const std::string refusal = open_case::refusal_to_train(arguments.case_folder); !refusal.empty())
       throw InvalidInput(arguments.case_folder, "", refusal);
@@ -139,6 +140,7 @@ void train(Context& context, const Arguments& arguments) {
   Score& score = outcome.score;
   score.when_utc = files::utc_now();
   score.knee = knee;
+  score.case_created_utc = case_created_utc;
   score.trainee = arguments.hand == "careful" || arguments.hand == "hasty"
                       ? "simulated trainee, " + arguments.hand
                       : "hand of " + fs::path(arguments.hand).filename().string();

@@ -323,6 +323,7 @@ void TrainingView::keep_score(const training::ExerciseFacts& facts, const std::s
   score.when_utc = files::utc_now();
   score.knee = knee;
   score.session = session;
+  if (!session.empty()) score.case_created_utc = opened_->model->knee().created_utc;
   score.trainee = training::kByHand;
   if (!failure.empty())
     notice_ = failure;

@@ -287,6 +287,13 @@ double cost_of(const ScorePart& part, const std::vector<ScorePart>& parts) {
 
 }  // namespace
 
+bool is_of_session(const Score& score, const std::string& session, const std::string& case_name,
+                   const std::string& case_created_utc) {
+  if (score.session.empty() || score.session != session) return false;
+  const bool is_known = !score.case_created_utc.empty() && !case_created_utc.empty();
+  return is_known ? score.case_created_utc == case_created_utc : score.knee == case_name;
+}
+
 bool is_by_earlier_rule(const Score& score) {
   const Exercise* const exercise = find_exercise(score.exercise);
   return exercise != nullptr && score.rule != exercise->rule;

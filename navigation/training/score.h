@@ -34,7 +34,14 @@ struct Score {
   // Where it comes from; filled in by whoever ran it.
   std::uint64_t seed = 0;
   std::string knee, when_utc, session, trainee;
+  // When the case was made that holds the session (cases::Case::created_utc): its name may be another one's,
+  // and may change. Empty: of an older version, or no case.
+  std::string case_created_utc = {};
 };
+
+// Whether it is the score of that session of that case.
+[[nodiscard]] bool is_of_session(const Score& score, const std::string& session, const std::string& case_name,
+                                 const std::string& case_created_utc);
 
 // It was scored by other marks than those of now: it says nothing of how well the exercise is done by these.
 [[nodiscard]] bool is_by_earlier_rule(const Score& score);

@@ -26,6 +26,7 @@ ordered_json json_of(const Score& score) {
   node["knee"] = score.knee;
   node["seed"] = score.seed;
   node["session"] = score.session;
+  if (!score.case_created_utc.empty()) node["case_created_utc"] = score.case_created_utc;
   node["is_done"] = score.is_done;
   node["points"] = score.points;
   node["rule"] = score.rule;
@@ -70,6 +71,7 @@ Score score_from(const files::JsonObject& node) {
   score.trainee = node.text("trainee");
   score.knee = node.text("knee");
   score.session = node.text("session");
+  if (node.has("case_created_utc")) score.case_created_utc = node.text("case_created_utc");
   const std::int64_t seed = node.integer("seed");
   if (seed < 0) node.fail("seed", "must not be below 0");
   score.seed = static_cast<std::uint64_t>(seed);

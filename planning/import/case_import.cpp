@@ -222,6 +222,11 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
   cases::BoneDoubts doubts = cases::load_bone_doubts(folder);
   cases::Studies studies = cases::load_studies(folder);
   cases::ImageStudies of_images = cases::load_image_studies(folder);
+  // A case of an older version says it of its bones alone: once it says it of an image, the others have none.
+  if (of_images.empty())
+    for (const cases::CaseImage& there : target.images)
+      if (auto origin = cases::study_of_image(folder, there.file); !origin.is_empty())
+        of_images[there.file] = std::move(origin);
   const bool is_other_knee = replaces_images(target, import, studies);
   const auto image = store_new_image(folder, target, import);
   try {

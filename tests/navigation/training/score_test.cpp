@@ -288,5 +288,23 @@ TEST(Score, AVerifiedRegistrationCountsWithoutATunnel) {
   EXPECT_NE(part_of(score, Measure::Time).reason.find("where something was reached"), std::string::npos);
 }
 
+// Two cases of one name hold sessions of one name: the score is of the case that it was made in, whatever it
+// is called by now. One of an older version knows the name alone.
+TEST(Score, IsOfItsSessionInItsCase) {
+  Score score;
+  score.knee = "Knee";
+  score.session = "0001-20260131-120000";
+  score.case_created_utc = "2026-01-30T08:00:00Z";
+  EXPECT_TRUE(is_of_session(score, score.session, "Knee", score.case_created_utc));
+  EXPECT_TRUE(is_of_session(score, score.session, "Renamed", score.case_created_utc));
+  EXPECT_FALSE(is_of_session(score, score.session, "Knee", "2026-01-30T09:00:00Z"));
+  EXPECT_FALSE(is_of_session(score, "0002-20260131-120000", "Knee", score.case_created_utc));
+  score.case_created_utc.clear();
+  EXPECT_TRUE(is_of_session(score, score.session, "Knee", "2026-01-30T09:00:00Z"));
+  EXPECT_FALSE(is_of_session(score, score.session, "Other", "2026-01-30T09:00:00Z"));
+  score.session.clear();
+  EXPECT_FALSE(is_of_session(score, "", "Knee", ""));
+}
+
 }  // namespace
 }  // namespace arthronaut::training

@@ -323,6 +323,26 @@ void add_image(BoneImport& import, const TemporaryFolder& folder, float value) {
   import.image = import_bones(folder / "ct.nrrd", options).image;
 }
 
+// A case of an older version says of its bones alone of which study they are; its image is of that study also
+// after another one has come.
+TEST(CaseImport, AnImageOfAnOlderVersionKeepsItsStudy) {
+  const TemporaryFolder folder;
+  BoneImport femur = imported(BoneKind::Femur);
+  add_image(femur, folder, 100);
+  femur.origin.study_uid = "1.2.3";
+  femur.origin.frame_of_reference_uid = "1.2.3.1";
+  add_to_case(folder / "a", femur, "", "bone.stl");
+  cases::save_studies(folder / "a", cases::load_studies(folder / "a"));  // as it was then
+  ASSERT_EQ(cases::study_of_image(folder / "a", "images/1.nrrd").study_uid, "1.2.3");
+  BoneImport tibia = imported(BoneKind::Tibia);
+  add_image(tibia, folder, 200);
+  tibia.origin.study_uid = "4.5.6";
+  tibia.origin.frame_of_reference_uid = "4.5.6.1";
+  add_to_case(folder / "a", tibia, "", "bone.stl");
+  EXPECT_EQ(cases::study_of_image(folder / "a", "images/1.nrrd").study_uid, "1.2.3");
+  EXPECT_EQ(cases::study_of_image(folder / "a", "images/2.nrrd").study_uid, "4.5.6");
+}
+
 // Another knee's CT takes the place of a case's bones: it is said, and the image before is not shown with
 // bones that are not of it.
 TEST(CaseImport, AnotherKneeLeavesNoImageOfTheOneBefore) {
