@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/navigate/touched_picture.h"
 #include "app/scene/scene_content.h"
 #include "app/widgets/theme.h"
 
@@ -39,7 +40,8 @@ LineStyle style_of(const OverlayLine& line, const OverlayLook& look) {
       return {widgets::color_of(scene::kPlanColor, (0.08F + 0.45F * edge * edge * edge) * look.opacity), 0};
     }
     case OverlayLine::Kind::Curve:
-      return {widgets::color_of(scene::kCurveColor, 0.9F * seen * look.stroke_opacity), 3.0F * look.scale};
+      // As what was drawn: whether it lies on the bone is the 3D view's to say, where green means that.
+      return {widgets::color_of(kDrawnColor, 0.9F * seen * look.stroke_opacity), 3.0F * look.scale};
   }
   return {widgets::kText, look.scale};
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/navigate/touched_picture.h"
 #include "app/scene/tool_clearance.h"
 #include "tests/app/scope.h"
 #include "tests/planning/geometry/shapes.h"
@@ -206,6 +207,26 @@ TEST(OverlayLines, StrokesStepBackWhileAiming) {
   Opacity full = drawn(both, 1), aiming = drawn(both, 1, 0.3F);
   EXPECT_LT(aiming.at(400, 400), 0.4F * full.at(400, 400));
   EXPECT_EQ(aiming.at(400, 600), full.at(400, 600));
+}
+
+// Green is what is surely on the bone, in the 3D view: over the picture a stroke is what was drawn, no more.
+TEST(OverlayLines, StrokesClaimNothingOverThePicture) {
+  ImGui::CreateContext();
+  {
+    ImDrawList draw(ImGui::GetDrawListSharedData());
+    draw._ResetForNewFrame();
+    draw.PushClipRectFullScreen();
+    draw.Flags = ImDrawListFlags_AntiAliasedLines;
+    const widgets::Rect all{0, 0, kWidth_px, kHeight_px};
+    draw_overlay_lines(draw, widgets::PicturePlacement(all, all),
+                       {{scene::OverlayLine::Kind::Curve, false, {{100, 400}, {700, 400}}}}, {1, 1, 1});
+    constexpr ImU32 kRgb = 0x00FFFFFF;
+    ASSERT_GT(draw.VtxBuffer.Size, 0);
+    for (const ImDrawVert& vertex : draw.VtxBuffer)
+      EXPECT_EQ(vertex.col & kRgb, widgets::color_of(kDrawnColor) & kRgb);
+    EXPECT_NE(widgets::color_of(kDrawnColor) & kRgb, widgets::color_of(scene::kCurveColor) & kRgb);
+  }
+  ImGui::DestroyContext();
 }
 
 // No line of the plan to be seen has a reason, in words.
