@@ -97,8 +97,9 @@ void train(Context& context, const Arguments& arguments) {
   const simulator::Hand hand = hand_of(arguments, *exercise);
   training::ExerciseSetup setup{
       .exercise = *exercise, .level = level, .knee = {}, .plan = {}, .seed = arguments.seed};
-  std::string knee = std::string case_created_utc;
-  is_operation ? "built-in knee " + std::to_string(arguments.seed) : std::string(training::kBoardAlone);
+  std::string knee =
+      is_operation ? "built-in knee " + std::to_string(arguments.seed) : std::string(training::kBoardAlone);
+  std::string case_created_utc;
   theatre::RecordOptions record;
   cases::CaseLock lock;
   const Interruption interruption;  // from before there is a session
