@@ -26,7 +26,8 @@ class DefaultActions : public ::testing::Test {
   void SetUp() override {
     unsetenv("DISPLAY");
     context_.emplace();
-    view_.emplace([this] { context_->make_current(); }, [] {}, [] {});
+    view_.emplace([this] { context_->make_current(); }, [] {}, [] {},
+                  [](bones::Side) { return std::vector<std::string>{}; });
     view_->add_actions(actions_);
     cases::save_case(folder_.path(), model_.knee());
     view_->case_opened({&model_, folder_.path(), ""});
