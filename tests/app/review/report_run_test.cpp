@@ -81,7 +81,8 @@ TEST_F(ReportRunTest, OneThatHadEndedWhenItWasStoppedIsThere) {
     is_first = false;
     return true;
   };
-  const auto outcome = own_process::run_command(program("exit 4"), {"report"}, folder_ / "log", stops);
+  const auto outcome =
+      own_process::run_command(program("sleep 0.1; exit 4"), {"report"}, folder_ / "log", stops);
   EXPECT_EQ(outcome.end, own_process::CommandOutcome::End::Unreliable);
   const auto stopped =
       own_process::run_command(program("exec sleep 60"), {"report"}, folder_ / "log", [] { return true; });
