@@ -199,7 +199,10 @@ std::optional<std::size_t> draw_steps(const widgets::Ui& ui, const open_case::Pl
                                       float room_below_px) {
   std::optional<std::size_t> clicked;
   widgets::text_in(ui.theme.body, widgets::kQuietText, "Click on a step to go back or forward to it.");
-  ImGui::BeginChild("steps", {0, 0.55F * (ImGui::GetContentRegionAvail().y - room_below_px)});
+  // No more than its rows need: the versions are below.
+  const float rows =
+      static_cast<float>(history.step_count() + 1) * (ui.theme.px(36) + ImGui::GetStyle().ItemSpacing.y);
+  ImGui::BeginChild("steps", {0, std::min(rows, 0.55F * (ImGui::GetContentRegionAvail().y - room_below_px))});
   for (std::size_t i = 0; i <= history.step_count(); ++i) {
     const bool is_here = i == history.position(), is_undone = i > history.position();
     const float top = ImGui::GetCursorScreenPos().y;

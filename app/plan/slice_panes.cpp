@@ -190,9 +190,12 @@ void SlicePanes::draw(const widgets::Ui& ui, const std::array<widgets::Rect, 3>&
                                               "plan.sagittal_slice"};
   for (std::size_t i = 0; i < 3; ++i) {
     if (tunnel_)
-      content.place = i == 0 ? widgets::fixed((cross_mm_ - tunnel_->entry_mm).dot(tunnel_->direction), 1) +
-                                   " mm from the entry"
-                             : "turned by " + widgets::fixed(turned_deg_, 0) + "\u00B0 from upright";
+      content.place =
+          i == 0 ? widgets::fixed((cross_mm_ - tunnel_->entry_mm).dot(tunnel_->direction), 1) +
+                       " mm from the entry"
+                 : "turned by " +
+                       widgets::fixed(i == 1 ? turned_deg_ : std::remainder(turned_deg_ + 90, 360), 0) +
+                       "\u00B0 from upright";
     const SliceEvent event = panes_[i].draw(ui, kNames[i], areas[i], content);
     if (event.cross_mm) set_cross_in(i, *event.cross_mm);
     if (event.window) window_ = *event.window;
