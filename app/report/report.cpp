@@ -312,12 +312,7 @@ void Report::navigate_page() {
   std::vector<std::vector<std::string>> rows{
       {"Session", content_.session_name},
       {"Started", content_.started_utc.empty() ? kNotTold : files::utc_in_words(content_.started_utc)},
-      {"Bone",
-       std::string(bones::to_text(header.bone)) +
-           (header.side == content_.knee.side
-                ? ""
-                : ", recorded as of a " + std::string(bones::to_text(header.side)) + " knee: THE CASE IS A " +
-                      (content_.knee.side == bones::Side::Left ? "LEFT" : "RIGHT") + " ONE NOW")},
+      {"Bone", bone_in_words(header, content_.knee.side)},
       {"Source", kind_in_words(header)},
       {"Video", content_.identity ? header.source : neutral_source(header)},
       {"Medium", camera::medium_to_text(header.refractive_index)},

@@ -23,6 +23,14 @@ std::string neutral_source(const recording::SessionHeader& header) {
   return is_type ? "recording (" + extension.substr(1) + ")" : "recording";
 }
 
+std::string bone_in_words(const recording::SessionHeader& header, bones::Side of_case) {
+  std::string words(bones::to_text(header.bone));
+  if (header.side != of_case)
+    words += ", recorded as of a " + std::string(bones::to_text(header.side)) + " knee: THE CASE IS A " +
+             (of_case == bones::Side::Left ? "LEFT" : "RIGHT") + " ONE NOW";
+  return words;
+}
+
 std::string kind_in_words(const recording::SessionHeader& header) {
   const auto kind = sources::source_kind_from_text(header.source_kind);
   if (!kind) return "not recorded";

@@ -16,6 +16,8 @@ namespace arthronaut::report {
 [[nodiscard]] std::string neutral_source(const recording::SessionHeader& header);
 // "live: a camera, as it came"; "not recorded".
 [[nodiscard]] std::string kind_in_words(const recording::SessionHeader& header);
+// "femur"; where it was recorded as of the other side than the case has now, that too.
+[[nodiscard]] std::string bone_in_words(const recording::SessionHeader& header, bones::Side of_case);
 // Which tunnels of bundles the session guided to, in the order of time: "femur AM, femur PL"; empty where a
 // bone's single one was.
 [[nodiscard]] std::string guided_bundles(const recording::RecordedSession& session);

@@ -33,6 +33,15 @@ TEST(SessionRows, Hazard19ARecordingsFileIsNotNamed) {
     EXPECT_EQ(neutral("live", source), source);
 }
 
+// The side of a case may be set right after an operation was recorded: its pages say as which it was.
+TEST(SessionRows, SaysOfWhichSideItWasRecorded) {
+  recording::SessionHeader header;
+  header.side = bones::Side::Left;
+  EXPECT_EQ(bone_in_words(header, bones::Side::Left), "femur");
+  EXPECT_EQ(bone_in_words(header, bones::Side::Right),
+            "femur, recorded as of a left knee: THE CASE IS A RIGHT ONE NOW");
+}
+
 // The marker is taken out at the end of every operation: what was drilled before rests on what stood then.
 TEST(SessionRows, ATunnelIsToldOfByTheRegistrationThatItWasDrilledBy) {
   const test::TemporaryFolder folder;

@@ -59,8 +59,8 @@ TEST(HandDevices, BMovesFinely) {
   EXPECT_DOUBLE_EQ(input.tilt.y(), -0.25);
 }
 
-// Pedal and Enter are pressed while one moves finely: with a modifier held they would be other keys, and what Alt
-// drags is the window manager's. Shift alone is held for the scope.
+// Pedal and Enter are pressed while one moves finely: with a modifier held they would be other keys, and what
+// Alt drags is the window manager's. Shift alone is held for the scope.
 TEST(HandDevices, NoModifierIsHeldForFineMoves) {
   bool says_fine = false;
   for (const mode::HeldKeys& held : keys_of_the_hands()) {

@@ -13,11 +13,11 @@ namespace {
 
 using bones::Side;
 
-// J asks, 8 and 9 answer: the case is opened anew as the other knee, without the plan of the first, which is back
-// with it. What spoke for the other side leads there.
+// J asks, 8 and 9 answer: the case is opened anew as the other knee, without the plan of the first, which is
+// back with it. What spoke for the other side leads there.
 TEST_F(PlanWindow, Hazard52TheSideIsChangedAndBack) {
-  cases::save_bone_doubts(case_folder(), {{bones::BoneKind::Femur,
-                                           {importing::other_side_by_fibula(Side::Left, Side::Right)}}});
+  cases::save_bone_doubts(
+      case_folder(), {{bones::BoneKind::Femur, {importing::other_side_by_fibula(Side::Left, Side::Right)}}});
   const tunnels::Tunnel planned = saved_tunnel();
   const VirtualDisplay display(1600, 900);
   RunningWorkstation app(display, folder_.path());
@@ -37,7 +37,8 @@ TEST_F(PlanWindow, Hazard52TheSideIsChangedAndBack) {
   ASSERT_TRUE(app.wait_for_state("case", "open", 240));
   for (int i = 0; i < 200 && app.state("hint").empty(); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  EXPECT_TRUE(app.state("hint").starts_with("It is a left knee now; it was a right one")) << app.state("hint");
+  EXPECT_TRUE(app.state("hint").starts_with("It is a left knee now; it was a right one"))
+      << app.state("hint");
   EXPECT_FALSE(app.state("plan_next").starts_with("Check the side"));
   const cases::Case left = cases::load_case(case_folder());
   EXPECT_EQ(left.side, Side::Left);
