@@ -146,7 +146,8 @@ std::string obstacle(const LockFile& lock, const fs::path& file, bool kernel_loc
   if (lock.holder.process == 0) return "";  // broken: nobody can be asked
   if (lock.holder.host != host_name()) {
     return "is open elsewhere: " + lock.holder.in_words() +
-           ". If that program is gone, or this folder is a copy of its case, take it over: Ctrl+T in the "
+           ". If that program is gone, or this folder is a copy of its case, take it over: hold Ctrl+T in "
+           "the "
            "window, or \"arthronaut cases --take-over " +
            file.parent_path().string() + "\"";
   }

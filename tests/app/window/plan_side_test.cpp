@@ -1,10 +1,13 @@
-// Which knee the case is, said in Plan as a hand says it; and steps that outlive the program.
+// Which knee the case is, said in Plan as a hand says it; steps that outlive the program, versions with a
+// name, slices along the tunnel, and a case that another machine had.
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <thread>
 
 #include "planning/cases/bone_doubts.h"
+#include "planning/cases/case_image.h"
+#include "planning/cases/plan_versions.h"
 #include "planning/import/import_side.h"
 #include "tests/app/window/plan_window.h"
 
@@ -76,6 +79,61 @@ TEST_F(PlanWindow, StepsOutliveTheProgram) {
   ASSERT_TRUE(app.wait_for_state("redo", "Change the diameter of the femoral tunnel"));
   ASSERT_TRUE(app.wait_for_state("plan", "saved"));
   EXPECT_EQ(saved_tunnel().diameter_mm, start_mm);
+}
+
+// Shift+K, a name, Enter: typed letters are no keys meanwhile.
+TEST_F(PlanWindow, AVersionGetsAName) {
+  const VirtualDisplay display(1600, 900);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  app.press("k");
+  ASSERT_TRUE(app.wait_for_state("hint", "Kept as version 1. Shift+K gives it a name and a note"));
+  app.press("shift+k");
+  ASSERT_TRUE(app.wait_for_widget("plan.version_name"));
+  app.type("sniper");
+  app.press("Return");
+  for (int i = 0; i < 200 && cases::load_plan_versions(case_folder()).front().words.name.empty(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(cases::load_plan_versions(case_folder()).front().words.name, "sniper");
+  EXPECT_EQ(app.state("undo"), "");
+}
+
+// The slices go with the tunnel, and turn about it.
+TEST_F(PlanWindow, SlicesFollowTheTunnel) {
+  cases::Case knee = cases::load_case(case_folder());
+  images::Volume volume;
+  volume.size = {60, 60, 60};
+  volume.modality = "CT";
+  volume.lps_from_index.linear() *= 2.5;
+  volume.lps_from_index.translation() = Eigen::Vector3d(-75, -75, -75);
+  for (int i = 0; i < 60 * 60 * 60; ++i) volume.values.push_back(static_cast<float>(i % 60 * 20));
+  knee.images.push_back({.file = "",
+                         .modality = volume.modality,
+                         .source = "NRRD",
+                         .size = volume.size,
+                         .spacing_mm = volume.spacing_mm()});
+  cases::store_image(case_folder(), 1, images::encoded(volume), knee.images.back());
+  cases::save_case(case_folder(), knee);
+  const VirtualDisplay display(1600, 900);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  app.press("s");
+  ASSERT_TRUE(app.wait_for_state("slices", "shown"));
+  EXPECT_EQ(app.state("along"), "");
+  app.press("0");
+  ASSERT_TRUE(app.wait_for_state("along", "femoral 0"));
+  app.press("ctrl+Right");
+  EXPECT_TRUE(app.wait_for_state("along", "femoral 5"));
+  const std::string at_entry = app.state("cross");
+  app.scroll_up("plan.sagittal_slice");
+  EXPECT_TRUE(app.wait_for_state("along", "femoral 10") || app.wait_for_state("along", "femoral 0"));
+  EXPECT_EQ(app.state("cross"), at_entry) << "a turn leaves the place on the axis";
+  app.scroll_up("plan.axial_slice");
+  for (int i = 0; i < 100 && app.state("cross") == at_entry; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_NE(app.state("cross"), at_entry) << "across it the wheel goes along it";
+  app.press("0");
+  EXPECT_TRUE(app.wait_for_state("along", ""));
 }
 
 }  // namespace
