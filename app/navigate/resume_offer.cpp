@@ -1,9 +1,11 @@
 #include "app/navigate/resume_offer.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "app/case/case_calibration.h"
 #include "navigation/recording/declined_resume.h"
+#include "navigation/recording/recording_lock.h"
 #include "navigation/registration/provenance.h"
 #include "navigation/worker/freed_memory.h"
 #include "planning/bones/mesh_hash.h"
@@ -27,12 +29,25 @@ bool has_sessions(const std::filesystem::path& case_folder) {
 }  // namespace
 
 ResumeOffer::ResumeOffer(std::function<void()> wake)
-    : worker_(
-          worker::Backlog::NewestWins,
-          [](Worker::Inbox& inbox) {
-            while (const auto asked = inbox.next()) inbox.publish(search(*asked));
-          },
-          std::move(wake)) {}
+    : worker_(worker::Backlog::NewestWins, work, std::move(wake)) {}
+
+void ResumeOffer::work(Worker::Inbox& inbox) {
+  constexpr std::chrono::milliseconds kLookEvery{500};
+  while (const auto asked = inbox.next()) {
+    auto found = std::make_shared<const Found>(search(*asked));
+    inbox.publish(found);
+    const auto is_recorded = [](const auto& left) { return left.second.found.is_being_recorded; };
+    const auto has_ended = [&](const auto& left) {
+      return is_recorded(left) && !recording::is_being_recorded(left.second.found.folder);
+    };
+    while (!inbox.stops() && !inbox.has_message() && std::ranges::any_of(found->left, is_recorded)) {
+      inbox.wait_until(Worker::Clock::now() + kLookEvery);
+      if (inbox.stops() || inbox.has_message() || std::ranges::none_of(found->left, has_ended)) continue;
+      found = std::make_shared<const Found>(look_at_ended(*asked, *found));
+      inbox.publish(found);
+    }
+  }
+}
 
 void ResumeOffer::open(const open_case::PlanModel& model, const std::filesystem::path& case_folder,
                        bool is_read_only, const std::string& crashed_since) {
@@ -47,38 +62,58 @@ void ResumeOffer::open(const open_case::PlanModel& model, const std::filesystem:
   worker_.post(std::move(wanted));
 }
 
+std::optional<LeftBehind> ResumeOffer::search_bone(const Search& search, bones::BoneKind kind,
+                                                   const geometry::TriangleMesh& mesh) {
+  try {  // without it the operation begins afresh: no reason to end anything
+    recording::ResumeSearch found =
+        recording::find_resumable(search.case_folder, kind, bones::mesh_sha256(mesh), search.plan.of(kind));
+    if (!found.left) {
+      for (const std::string& broken : found.passed_over) log::error("nothing can be resumed: " + broken);
+      return std::nullopt;
+    }
+    LeftBehind left{std::move(*found.left), std::move(found.passed_over)};
+    const registration::Provenance& of = left.found.operation.of;
+    const bool is_simulated = of.source == sources::SourceKind::Simulation;
+    const auto camera = open_case::camera_of(is_simulated, search.case_folder);
+    const auto tools = open_case::tools_of(is_simulated, search.case_folder);
+    left.has_same_camera = registration::camera_identity(camera) == of.camera;
+    left.has_same_tools = registration::tools_identity(tools, kind, left.found.header.probe_name) == of.tools;
+    return left;
+  } catch (const std::runtime_error& error) {
+    log::error(std::string("nothing can be resumed: ") + error.what());
+    return std::nullopt;
+  }
+}
+
 ResumeOffer::Found ResumeOffer::search(const Search& search) {
   Found all{search.number, {}};
-  for (const auto& [kind, mesh] : search.meshes) {
-    try {  // without it the operation begins afresh: no reason to end anything
-      recording::ResumeSearch found =
-          recording::find_resumable(search.case_folder, kind, bones::mesh_sha256(mesh), search.plan.of(kind));
-      if (!found.left) {
-        for (const std::string& broken : found.passed_over) log::error("nothing can be resumed: " + broken);
-        continue;
-      }
-      LeftBehind left{std::move(*found.left), std::move(found.passed_over)};
-      const registration::Provenance& of = left.found.operation.of;
-      const bool is_simulated = of.source == sources::SourceKind::Simulation;
-      const auto camera = open_case::camera_of(is_simulated, search.case_folder);
-      const auto tools = open_case::tools_of(is_simulated, search.case_folder);
-      left.has_same_camera = registration::camera_identity(camera) == of.camera;
-      left.has_same_tools =
-          registration::tools_identity(tools, kind, left.found.header.probe_name) == of.tools;
-      all.left.emplace(kind, std::move(left));
-    } catch (const std::runtime_error& error) {
-      log::error(std::string("nothing can be resumed: ") + error.what());
-    }
-  }
+  for (const auto& [kind, mesh] : search.meshes)
+    if (auto left = search_bone(search, kind, mesh)) all.left.emplace(kind, std::move(*left));
   worker::give_freed_memory_back();  // whole sessions were read
   return all;
 }
 
+ResumeOffer::Found ResumeOffer::look_at_ended(const Search& search, Found found) {
+  for (const auto& [kind, mesh] : search.meshes) {
+    const auto before = found.left.find(kind);
+    if (before == found.left.end() || !before->second.found.is_being_recorded ||
+        recording::is_being_recorded(before->second.found.folder))
+      continue;
+    auto left = search_bone(search, kind, mesh);
+    // Another one that was begun since, here or elsewhere, is not what was left.
+    const bool is_same = left && left->found.folder == before->second.found.folder;
+    found.left.erase(before);
+    if (is_same) found.left.emplace(kind, std::move(*left));
+  }
+  worker::give_freed_memory_back();
+  return found;
+}
+
 void ResumeOffer::follow() {
-  if (!is_looking_) return;
   const auto newest = worker_.latest();
   if (worker_.has_ended()) is_looking_ = false;
-  if (newest == nullptr || newest->number != number_) return;
+  if (newest == nullptr || newest == followed_ || newest->number != number_) return;
+  followed_ = newest;
   is_looking_ = false;
   left_ = newest->left;
   for (const auto& [bone, left] : left_)

@@ -1,5 +1,7 @@
 // Looks through the sessions of a case for an operation that was left in the middle, beside the screen, and
-// keeps what was found until the surgeon has answered.
+// keeps what was found until the surgeon has answered. A program that was killed lets go of its record no
+// sooner than of its memory, on a busy machine many seconds later: what is found as being recorded is looked
+// at again once it is not.
 //
 // One thread, the window's; nothing here waits but the destructor, for the search at hand.
 #pragma once
@@ -8,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -61,12 +64,18 @@ class ResumeOffer {
     std::map<bones::BoneKind, LeftBehind> left;
   };
   using Worker = worker::Worker<Search, Found>;
+  static void work(Worker::Inbox& inbox);
   static Found search(const Search& search);
+  static std::optional<LeftBehind> search_bone(const Search& search, bones::BoneKind kind,
+                                               const geometry::TriangleMesh& mesh);
+  // Of what is not being recorded any more since, as it was left.
+  static Found look_at_ended(const Search& search, Found found);
   void follow();
 
   int number_ = 0;  // of the newest search
   bool is_looking_ = false;
   std::string crashed_since_;
+  std::shared_ptr<const Found> followed_;
   std::map<bones::BoneKind, LeftBehind> left_;
   std::set<bones::BoneKind> answered_;
   Worker worker_;

@@ -95,7 +95,8 @@ void WorkstationWindow::take_opened_case() {
   start_.leave();  // it may have begun a picture since, and Plan draws from here on
   shows_start_ = shows_paint_ = false;
   if (case_->is_read_only() && !shown().works_read_only()) shown_ = 0;
-  looks_for_cut_off_ = all_know && !is_same_folder && !is_unpainted();
+  // Opened once more, as when the program that died has let go of it, it is still looked for.
+  looks_for_cut_off_ = all_know && (looks_for_cut_off_ || !is_same_folder) && !is_unpainted();
   if (!is_unpainted()) shown().enter();
 }
 

@@ -4,8 +4,10 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
 
+#include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session.h"
 #include "tests/app/window/theatre.h"
 #include "tests/resources/described.h"
@@ -169,6 +171,35 @@ TEST_F(Theatre, Hazard12AKilledOperationIsResumedAndGuidesAfterOneTouch) {
   EXPECT_NE(header.str().find("\"continues\": \"" + left + "\""), std::string::npos) << header.str();
   const auto [exit_code, output] = replay(next);
   EXPECT_EQ(exit_code, 0) << output;
+}
+
+// The dying program still holds the case and its record while the next one opens: they are this one's as soon
+// as it lets go, and what was left comes to the front then.
+TEST_F(Theatre, Hazard12AnOperationThatIsHeldByADyingProgramIsOfferedOnceItLetsGo) {
+  const VirtualDisplay display(1280, 720);
+  std::string left;
+  {
+    RunningWorkstation app(display, folder_.path());
+    start_simulation(app);
+    ASSERT_TRUE(becomes([&] { return !app.state("strokes").empty() && app.state("strokes") != "0"; }, 240));
+    left = app.state("journal");
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // the strokes are committed by then
+    app.kill();
+  }
+  // As the kernel has it until the memory of the one that was killed is gone.
+  std::optional<recording::RecordingLock> case_held(case_folder()),
+      record_held(case_folder() / "sessions" / left);
+  RunningWorkstation app(display, folder_.path());
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  EXPECT_NE(app.state("access"), "own");
+  std::this_thread::sleep_for(std::chrono::seconds(4));  // longer than anybody waits for it
+  EXPECT_NE(app.state("mode"), "navigate");
+  case_held.reset();
+  ASSERT_TRUE(app.wait_for_state("access", "own", 120));
+  record_held.reset();
+  EXPECT_TRUE(app.wait_for_state("mode", "navigate", 120));
+  EXPECT_TRUE(app.wait_for_state("resume", left, 60));
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
 }
 
 // Declined, the operation begins afresh, and nothing of the old one is there.
