@@ -185,6 +185,8 @@ std::string why_no_touch(const operation::OperationState& state) {
       return state.touch_is_of_guide ? "the guide moves" : "the probe moves";
     case operation::TouchRefusal::MarkerIsSeen:
       return "";  // no touch was asked for
+    case operation::TouchRefusal::TimeOutDue:
+      return "the time-out comes first";
   }
   return "";
 }

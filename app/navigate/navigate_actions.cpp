@@ -99,7 +99,8 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                {"choose a camera instead", [this] { return is_running() && !cameras_.is_open(); }}});
   actions.add({"navigate.digitise", "Probe draws",
                "While on, where the probe's tip goes is kept for the registration", GLFW_KEY_D, 0, false,
-               running, [this] { return is_running() && live_->operation->draws; },
+               [this] { return is_running() && !holds_for_time_out(*live_->operation); },
+               [this] { return is_running() && live_->operation->draws; },
                [this] { ask(operation::Draw{!live_->operation->draws}); }});
   actions.add({"navigate.register",
                "Register",

@@ -35,6 +35,8 @@ void tell(NavigateDisplay& display, const Trouble& trouble) {
 // Why there is no guidance: as the frame says it, and where it was taken back since, as it is known by now.
 GuidanceState cause_of(const operation::OperationState& state) {
   const GuidanceState said = state.frame.guidance.state;
+  // Nor can anything be registered before: what is asked first is said first.
+  if (said == GuidanceState::NoRegistration && holds_for_time_out(state)) return GuidanceState::NotConfirmed;
   if (said != GuidanceState::Valid && said != GuidanceState::Stale) return said;
   if (state.time_out == operation::TimeOut::Due) return GuidanceState::NotConfirmed;
   switch (state.registration->in_force.standing) {

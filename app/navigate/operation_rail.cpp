@@ -128,7 +128,10 @@ Missing condition_of(Step step, const Known& known) {
       return missing_of_camera(known);
     case Step::Digitise: {
       const Missing probe = known.probe_is_known() ? Missing::Nothing : Missing::ProbeTip;
-      return first_of({missing_of_camera(known), missing_of_marker(known), probe});
+      // No stroke is taken before it; those of before are there.
+      const Missing time_out =
+          holds_for_time_out(state) && !known.stands() ? Missing::TimeOut : Missing::Nothing;
+      return first_of({missing_of_camera(known), time_out, missing_of_marker(known), probe});
     }
     case Step::Register:
       return state.registration->point_count > 0 || known.stands() ? Missing::Nothing : Missing::Strokes;
@@ -302,6 +305,7 @@ std::string words_of(Missing missing) {
 }
 
 Repeat repeat_of(Step step, const OperationState& state, bool is_said_drilled) {
+  const bool may_touch = state.has_source && !holds_for_time_out(state);
   switch (step) {
     case Step::Plan:
       return Repeat::ShowPlan;
@@ -309,15 +313,15 @@ Repeat repeat_of(Step step, const OperationState& state, bool is_said_drilled) {
     case Step::Tools:
       return Repeat::ShowSetUp;
     case Step::WorldMarker:
-      return state.has_source && state.registration->touches.has_control_point() ? Repeat::TouchControl
-                                                                                 : Repeat::NothingNow;
+      return may_touch && state.registration->touches.has_control_point() ? Repeat::TouchControl
+                                                                          : Repeat::NothingNow;
     case Step::Digitise:
-      return state.has_source && !state.draws ? Repeat::Draw : Repeat::NothingNow;
+      return may_touch && !state.draws ? Repeat::Draw : Repeat::NothingNow;
     case Step::Register:
       return state.registration->point_count > 0 && !state.registration->is_fitting ? Repeat::RegisterAnew
                                                                                     : Repeat::NothingNow;
     case Step::Verify:
-      return state.has_source ? Repeat::Touch : Repeat::NothingNow;
+      return may_touch ? Repeat::Touch : Repeat::NothingNow;
     case Step::Guide:
       return is_said_drilled || state.drilled.outcome != operation::DrilledState::Outcome::NotSaid
                  ? Repeat::NotDrilled

@@ -281,6 +281,9 @@ RegistrationWords words_of(const theatre::LiveState& live) {
   else if (waits_for_time_out(*live.operation))
     words.state = {Severity::Caution, "Waits for the time-out",
                    "What was drawn counts once patient, knee and plan are confirmed."};
+  else if (holds_for_time_out(*live.operation) && words.state.severity != Severity::Bad)
+    words.state = {Severity::Caution, "Waits for the time-out",
+                   "Nothing is drawn or touched before patient, knee and plan are confirmed."};
   else if (live.operation->marker_is_out)
     words.state = {Severity::Quiet, "The marker is out", "What was registered by it has done its work."};
   else if (nothing_is_drawn && state.bone_trouble.empty())  // nothing collects, whatever it had come to

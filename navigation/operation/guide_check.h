@@ -28,6 +28,7 @@ enum class TouchRefusal {
   TipMoves,
   NoControlPoint,
   MarkerIsSeen,  // said to be out
+  TimeOutDue,    // see SourceSetup::time_out_first
 };
 [[nodiscard]] TouchRefusal refusal_of(SteadyTip::Reason reason);
 

@@ -195,7 +195,7 @@ OperationStatePtr Operation::state() {
   state->frame_count = p.frame_count;
   state->frame = p.frame;
   state->timing = p.timing;
-  state->draws = p.draws;
+  state->draws = p.draws && !p.holds_for_time_out();
   state->registration = p.registration_state();
   p.changed = false;
   state->verification = p.verification();

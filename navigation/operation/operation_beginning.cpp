@@ -39,6 +39,10 @@ void Operation::Parts::apply(const ConfirmTimeOut& time_out_of) {
 // Held against the control point by the one guide that this source has; what it shows guides from the next
 // frame on, or no more from this one.
 void Operation::Parts::apply(const CheckGuide&) {
+  if (holds_for_time_out() && guide_check.state().standing != GuideStanding::NotAsked) {
+    touch = {TouchRefusal::TimeOutDue, true, frame.timestamp_ns};
+    return;
+  }
   draws = false;
   if (guide_check.state().standing == GuideStanding::NotAsked) return;
   touch = {TouchRefusal::NoSource, true, frame.timestamp_ns};

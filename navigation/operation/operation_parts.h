@@ -36,7 +36,7 @@
 //   the time-out's confirmation       | . x . . . . . . . . .
 //   the check of a nominal guide      | . x . . . . . . . x .
 //   why no touch was taken            | x x . . . . . . . . .
-//   that the probe draws              | x . x . . . . . . . .
+//   that the probe draws              | x x x . . . . . . . .
 //
 // Without a control point nothing of before can tell whether a marker that nobody saw sits where it sat; with
 // one, it is to be touched (place_doubt.h).
@@ -130,6 +130,9 @@ struct Operation::Parts {
   void look_for_end_of_loss();
   [[nodiscard]] Verification verification() const;
   [[nodiscard]] TimeOut time_out() const { return confirmed.standing(source.get(), ledger.now(), plan); }
+  [[nodiscard]] bool holds_for_time_out() const {
+    return has_source && source->time_out_first && time_out() == TimeOut::Due;
+  }
   [[nodiscard]] bool is_live() const { return has_source && source->kind == sources::SourceKind::Live; }
   void hide_guidance(guidance::GuidanceState reason);
   void hide_guide();

@@ -122,7 +122,7 @@ void Operation::Parts::take_frame() {
 }
 
 void Operation::Parts::draw_tip() {
-  if (!draws || !frame.tip_is_valid) return;
+  if (!draws || !frame.tip_is_valid || holds_for_time_out()) return;
   if (strokes.points().empty()) strokes_of = ledger.now();
   const double time_s = static_cast<double>(frame.timestamp_ns) * 1e-9;
   const strokes::CurvePoint* const before = strokes.points().empty() ? nullptr : &strokes.points().back();
@@ -241,6 +241,10 @@ void Operation::Parts::find_anew(std::string why) {
 }
 
 void Operation::Parts::take_touch(bool is_control_point) {
+  if (holds_for_time_out()) {
+    touch = {TouchRefusal::TimeOutDue, false, frame.timestamp_ns};
+    return;
+  }
   draws = false;
   touch = {TouchRefusal::None, false, frame.timestamp_ns};
   const auto tip_mm = tip.position_mm();

@@ -180,6 +180,8 @@ NextAction next_action_of(const OperationState& state) {
   const RegistrationState& registration = *state.registration;
   const RegistrationInForce& in_force = registration.in_force;
   if (!state.plan) return NextAction::PlanTunnel;
+  // What ends an alarm is a touch, which is not taken before.
+  if (registration.alarm && holds_for_time_out(state)) return NextAction::ConfirmTimeOut;
   if (registration.alarm) return NextAction::CheckWorldMarker;
   const bool is_drilled = state.drilled.outcome == DrilledState::Outcome::Recorded;
   if (is_drilled && !state.plan_was_edited) return NextAction::Finish;

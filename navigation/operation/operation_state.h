@@ -31,6 +31,10 @@ struct SourceSetup {
   pipeline::PipelineOptions pipeline;
   bool camera_is_simulated = false;  // its calibration is of the simulated arthroscope
   bool draws = true;  // the probe draws from the first frame, unless something reliable guides already
+  // Where a time-out is asked, no stroke and no touch is taken before it is confirmed: they would be of a
+  // knee that nobody has said is the right one. Records of before there was this took them, and run again as
+  // they ran.
+  bool time_out_first = true;
 };
 
 // What a real scope shows is measured by a calibration of the simulated one: no number of it is right.
@@ -139,7 +143,7 @@ struct OperationState {
   // The newest picture and everything known about it; meaningful when frame_count > 0.
   pipeline::FrameResult frame;
   PictureTiming timing = PictureTiming::InTime;  // of that picture; what follows from it is in its guidance
-  bool draws = false;
+  bool draws = false;                            // not while holds_for_time_out()
   RegistrationStatePtr registration = std::make_shared<const RegistrationState>();  // never null
   Verification verification = Verification::NotYet;
   TimeOut time_out = TimeOut::NotAsked;
@@ -169,6 +173,12 @@ using OperationStatePtr = std::shared_ptr<const OperationState>;
 // Places are asked for, where no control point can tell.
 [[nodiscard]] inline bool asks_for_places(ControlPointDue due) {
   return due == ControlPointDue::CannotCheckLooks || due == ControlPointDue::CannotCheckLoss;
+}
+
+// Neither strokes nor touches are taken: the time-out comes first.
+[[nodiscard]] inline bool holds_for_time_out(const OperationState& state) {
+  return state.has_source && state.time_out == TimeOut::Due && state.source != nullptr &&
+         state.source->time_out_first;
 }
 
 // Which step an operation has come to, and what is to be done next; pure, from the rest of the state.

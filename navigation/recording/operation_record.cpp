@@ -29,6 +29,7 @@ SessionHeader header_of(const std::filesystem::path& folder, const operation::Op
   header.source = info.name;
   header.source_kind = sources::to_text(source.kind);
   header.probe_drew_at_start = source.draws;
+  header.time_out_first = source.time_out_first;
   header.mesh_sha256 = setup.mesh_sha256;
   header.continues = continues;
   header.registers_after_mm = setup.registers_after_mm.value_or(0);

@@ -99,6 +99,7 @@ void Rerun::start(const RecordedSession& session) {
   operation::SourceSetup source;
   source.kind = sources::source_kind_from_text(header.source_kind).value_or(sources::SourceKind::Recording);
   source.draws = header.probe_drew_at_start;
+  source.time_out_first = header.time_out_first;
   source.title = header.source;
   source.pipeline = pipeline_;
   operation_.start_source(source);

@@ -51,8 +51,9 @@ struct SessionHeader {
   std::string source_kind;          // "live", "recording", "simulation"
   std::string mesh_sha256;          // of the bone's mesh
   bool probe_drew_at_start = true;  // SourceSetup::draws
-  std::string continues;            // id of the session before it in the same operation
-  double registers_after_mm = 0;    // OperationSetup::registers_after_mm; 0: somebody was at the pedal
+  bool time_out_first = false;    // SourceSetup::time_out_first; records of before there was this say nothing
+  std::string continues;          // id of the session before it in the same operation
+  double registers_after_mm = 0;  // OperationSetup::registers_after_mm; 0: somebody was at the pedal
   std::string program_version;
   std::string build;  // build_identity() of the program that recorded it
 };

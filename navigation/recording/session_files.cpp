@@ -85,6 +85,7 @@ void write_session_header(const std::filesystem::path& folder, const SessionHead
                                    {"held_back", part.held_back}});
   if (!header.source_kind.empty()) json["source_kind"] = header.source_kind;
   if (!header.source_kind.empty()) json["probe_drew_at_start"] = header.probe_drew_at_start;
+  if (!header.source_kind.empty()) json["time_out_first"] = header.time_out_first;
   if (!header.mesh_sha256.empty()) json["mesh_sha256"] = header.mesh_sha256;
   if (!header.continues.empty()) json["continues"] = header.continues;
   if (header.registers_after_mm > 0) json["registers_after_mm"] = header.registers_after_mm;
@@ -115,6 +116,7 @@ SessionHeader read_session_header(const std::filesystem::path& folder, pipeline:
   if (json.has("build")) header.build = json.text("build");
   if (json.has("source_kind")) header.source_kind = json.text("source_kind");
   if (json.has("probe_drew_at_start")) header.probe_drew_at_start = json.boolean("probe_drew_at_start");
+  if (json.has("time_out_first")) header.time_out_first = json.boolean("time_out_first");
   if (json.has("mesh_sha256")) header.mesh_sha256 = json.text("mesh_sha256");
   if (json.has("continues")) header.continues = json.text("continues");
   if (json.has("registers_after_mm")) header.registers_after_mm = json.positive_number("registers_after_mm");

@@ -263,6 +263,12 @@ TEST(NavigateDisplay, Hazard20NothingIsShownBeforeTheTimeOut) {
   shown.operation.frame.guidance.state = GuidanceState::NotConfirmed;
   EXPECT_FALSE(shown.display().guidance_is_valid);
   EXPECT_EQ(shown.display().headline, "Time-out not confirmed");
+  // No stroke is taken before it: nobody is told to touch the bone.
+  shown.operation.has_source = true;
+  shown.stand(Standing::None, {});
+  shown.operation.frame.guidance.state = GuidanceState::NoRegistration;
+  EXPECT_EQ(shown.display().headline, "Time-out not confirmed");
+  shown.stand(Standing::Stands, {});
   shown.operation.time_out = operation::TimeOut::Confirmed;
   shown.operation.frame.guidance.state = GuidanceState::Valid;
   EXPECT_TRUE(shown.display().guidance_is_valid);

@@ -260,6 +260,13 @@ TEST(OperationRail, NamesWhatIsMissing) {
     EXPECT_EQ(missing_of(due.rail(), step), Missing::TimeOut);
     EXPECT_NE(state_of(due.rail(), step), StepState::Done);
   }
+  Course unconfirmed;  // nothing is drawn or touched before
+  unconfirmed.see_marker();
+  unconfirmed.state.time_out = operation::TimeOut::Due;
+  EXPECT_EQ(missing_of(unconfirmed.rail(), Step::Digitise), Missing::TimeOut);
+  unconfirmed.state.draws = false;
+  for (const Step step : {Step::Digitise, Step::Verify})
+    EXPECT_EQ(repeat_of(step, unconfirmed.state, false), Repeat::NothingNow);
 
   Course bumped;
   bumped.verify();

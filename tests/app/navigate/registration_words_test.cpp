@@ -68,7 +68,7 @@ struct Known {
     registration.in_force.registration = summary;
     registration.entry_in_force = 0;
   }
-  bool marker_is_out = false;
+  bool marker_is_out = false, has_source = false;
   [[nodiscard]] RegistrationWords words() const { return words_of(whole()); }
   [[nodiscard]] theatre::LiveState whole() const {
     operation::RegistrationState known = registration;
@@ -78,6 +78,7 @@ struct Known {
     operation->registration = std::make_shared<const operation::RegistrationState>(known);
     operation->time_out = time_out;
     operation->marker_is_out = marker_is_out;
+    operation->has_source = has_source;
     theatre::LiveState whole = live;
     whole.operation = operation;
     return whole;

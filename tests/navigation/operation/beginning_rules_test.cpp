@@ -75,6 +75,63 @@ TEST(TimeOut, Hazard20NoDrillIsShownOrRememberedBeforeItIsConfirmed) {
   EXPECT_TRUE(run.state()->drilled.has_evidence);
 }
 
+// A stroke or a touch before it would be of a knee that nobody has said is the right one: none is taken, and
+// a touch says why. They are from the moment on in which it is confirmed.
+TEST(TimeOut, Hazard20NothingIsDrawnOrTouchedBeforeItIsConfirmed) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source(SourceKind::Live);
+  run.start_unconfirmed(source);
+  const strokes::Curves strokes(trial().curves.begin(), trial().curves.begin() + 200);
+  run.draw(strokes);
+  EXPECT_FALSE(run.state()->draws);
+  EXPECT_EQ(run.state()->registration->point_count, 0U);
+  run.touch(test::on_bone(trial(), 0));
+  EXPECT_EQ(run.state()->touch_refusal, TouchRefusal::TimeOutDue);
+  run.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+  EXPECT_EQ(run.state()->touch_refusal, TouchRefusal::TimeOutDue);
+  EXPECT_EQ(run.state()->registration->touches.count(), 0U);
+  EXPECT_FALSE(run.state()->registration->touches.has_control_point());
+  run.apply(ConfirmTimeOut{true});
+  EXPECT_TRUE(run.state()->draws) << "what was refused took nothing away";
+  run.draw(strokes);
+  EXPECT_EQ(run.state()->registration->point_count, strokes.size());
+  run.touch(test::on_bone(trial(), 0));
+  EXPECT_EQ(run.state()->touch_refusal, TouchRefusal::None);
+  EXPECT_EQ(run.state()->registration->touches.count(), 1U);
+}
+
+// What takes an alarm away is a touch: where none is taken, the time-out is what is to be done, or nothing
+// went on.
+TEST(TimeOut, Hazard20ComesBeforeTheTouchThatAnAlarmAsksFor) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source(SourceKind::Live);
+  run.start(source);
+  run.apply(given(run, source));
+  run.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+  const Eigen::Vector3d bumped_mm(0, 0, 3);
+  for (int i = 0; i < 2; ++i) run.touch(test::on_bone(trial(), 2) + bumped_mm, TouchControlPoint{});
+  ASSERT_EQ(run.state()->next_action, NextAction::CheckWorldMarker);
+  SourceSetup other_guide = source;
+  other_guide.pipeline.tools.tools.back().axis->point_mm.y() -= 20;
+  run.start_unconfirmed(other_guide);
+  ASSERT_EQ(run.state()->time_out, TimeOut::Due);
+  EXPECT_EQ(run.state()->next_action, NextAction::ConfirmTimeOut);
+  run.apply(ConfirmTimeOut{});
+  EXPECT_EQ(run.state()->next_action, NextAction::CheckWorldMarker);
+}
+
+// Records of before there was this run again as they ran.
+TEST(TimeOut, OfAnOldRecordTakesWhatWasTaken) {
+  PhantomOperation run;
+  SourceSetup source = test::scripted_source(SourceKind::Live);
+  source.time_out_first = false;
+  run.start_unconfirmed(source);
+  run.draw({trial().curves.begin(), trial().curves.begin() + 200});
+  run.touch(test::on_bone(trial(), 0));
+  EXPECT_EQ(run.state()->registration->point_count, 200U);
+  EXPECT_EQ(run.state()->registration->touches.count(), 1U);
+}
+
 // Of two tunnels in a bone the record says which one was confirmed.
 TEST(TimeOut, Hazard38TheRecordNamesTheTunnel) {
   PhantomOperation run;
