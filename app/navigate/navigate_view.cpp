@@ -271,7 +271,7 @@ void NavigateView::follow_reached(const NavigateDisplay& display, double now_s) 
   const bool has_plan =
       model_ != nullptr && model_->has_bone(choices_.bone) && live_->operation->plan.has_value();
   if (display.guidance_is_valid && has_plan)
-    choices_.reached.follow(display.guidance, now_s);
+    choices_.reached.follow(display.grades, now_s);
   else
     choices_.reached = {};
 }

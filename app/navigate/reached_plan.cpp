@@ -1,14 +1,10 @@
 #include "app/navigate/reached_plan.h"
 
-#include "app/guidance_severity/guidance_severity.h"
-
 namespace arthronaut::navigate {
 
-void ReachedPlan::follow(const guidance::GuidanceNumbers& guidance, double now_s) {
-  using widgets::Severity;
-  const bool is_good = guidance_severity::severity_of_offset(guidance) == Severity::Good &&
-                       guidance_severity::severity_of_angle(guidance) == Severity::Good;
-  if (is_good) {
+void ReachedPlan::follow(const operation::GuidanceGrades& grades, double now_s) {
+  using operation::Grade;
+  if (grades.offset == Grade::Good && grades.angle == Grade::Good) {
     off_s_.reset();
     if (!good_s_) good_s_ = now_s;
     if (!reached_s_ && now_s - *good_s_ >= kSettles_s) reached_s_ = now_s;
