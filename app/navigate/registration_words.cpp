@@ -104,6 +104,8 @@ SeverityText state_of(const operation::RegistrationState& state) {
                              state.online->state < OnlineState::Confirmed;
   if (!trouble.empty() && !is_drawn_anew) return {Severity::Bad, trouble.headline, trouble.advice + "."};
   if (is_verified(state)) return {Severity::Good, "Verified", "The touches lie on the bone."};
+  // What stands need not be what was drawn here: it was given, or brought back.
+  if (standing == Standing::Stands) return {Severity::Good, "Confirmed", words_of_touches(state.touches)};
   if (state.online == nullptr)
     return {Severity::Quiet, "Collecting",
             state.drawn->empty() ? "Draw strokes on the bone with the probe."
@@ -115,18 +117,19 @@ SeverityText state_of(const operation::RegistrationState& state) {
     case OnlineState::Candidate:
       return {Severity::Caution, "Candidate, not confirmed yet", advice};
     case OnlineState::Confirmed:
-      if (standing != Standing::Stands) return {Severity::Caution, "Candidate, not in force", advice};
-      return {Severity::Good, "Confirmed", words_of_touches(state.touches)};
+      return {Severity::Caution, "Candidate, not in force", advice};
   }
   return {};
 }
 
 double progress_of(const operation::RegistrationState& state) {
+  if (state.in_force.standing == Standing::Stands) return 1;
   if (state.alarm || state.online == nullptr) return 0;
   return std::clamp(state.online->coach.progress, 0.0, 1.0);
 }
 
 std::string missing_of(const operation::RegistrationState& state) {
+  if (state.in_force.standing == Standing::Stands) return "";
   if (state.online == nullptr || state.online->state >= OnlineState::Confirmed) return "";
   std::string text;
   for (const std::string& item : state.online->coach.missing)

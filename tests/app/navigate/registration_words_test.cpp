@@ -268,6 +268,33 @@ TEST(RegistrationWords, Hazard20NothingIsGoodBeforeTheTimeOut) {
   EXPECT_NE(known.words().state.name, "Waits for the time-out") << "that alone would not bring it back";
 }
 
+// What guides need not have been drawn here: brought back after a crash, or given, it stands, and is to be
+// verified as the steps say, whatever is drawn beside it.
+TEST(RegistrationWords, WhatStandsWithoutStrokesIsNotCollected) {
+  for (const bool is_drawn : {false, true}) {
+    Known known;
+    known.registration.in_force.is_verified = false;
+    if (!is_drawn) known.registration.online = nullptr;
+    const RegistrationWords words = known.words();
+    EXPECT_EQ(words.state.name, "Confirmed");
+    EXPECT_EQ(words.state.text, "Touch 3 places that you know, to verify.");
+    EXPECT_EQ(words.missing, "");
+    EXPECT_EQ(words.progress, 1);
+  }
+}
+
+// Nothing is collected before the time-out, and nobody is told to draw.
+TEST(RegistrationWords, Hazard20NothingIsCollectedBeforeTheTimeOut) {
+  Known known;
+  known.registration = operation::RegistrationState();
+  known.time_out = operation::TimeOut::Due;
+  known.has_source = true;
+  const RegistrationWords words = known.words();
+  EXPECT_EQ(words.state.name, "Waits for the time-out");
+  EXPECT_EQ(words.state.text, "Nothing is drawn or touched before patient, knee and plan are confirmed.");
+  EXPECT_EQ(words.progress, 0);
+}
+
 // The steps and these words read the same: what the step of verifying lacks is not called verified here.
 TEST(RegistrationWords, AreNotVerifiedBeforeTheWholeStepIs) {
   Known known;
