@@ -262,9 +262,10 @@ Trouble trouble_of(const operation::GuideCheckState& guide, const std::string& n
 Trouble trouble_of_end(const operation::OperationState& state) {
   const bool may_be_drilled = state.registration->in_force.standing == Standing::Stands && state.plan &&
                               state.drilled.outcome == operation::DrilledState::Outcome::NotSaid;
-  // What the pedal asks for is not asked for a second time by another key.
+  // What the pedal asks for is not asked for a second time by another key; the other case is a step back.
   if (may_be_drilled && state.next_action == NextAction::RecordDrilled)
-    return {"The pictures have ended", "Nothing guides. Not drilled yet: go on with other pictures"};
+    return {"The pictures have ended",
+            "Nothing guides. If it is not drilled: a step back (Page up), then other pictures"};
   // What was drilled in no picture of a simulation was not drilled.
   const bool is_simulated = state.source != nullptr && state.source->kind == sources::SourceKind::Simulation;
   return {"The pictures have ended",

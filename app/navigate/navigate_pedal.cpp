@@ -17,31 +17,6 @@ constexpr double kReadable_s = 1.5;  // of what a press would say for the surgeo
 constexpr const char* kWrongMedium = "wrong medium: hold Esc, then M for the other one, then start again";
 }  // namespace
 
-bool NavigateView::can_simulate() const {
-  if (model_ == nullptr) return false;
-  const auto key = bones_.guided(choices_.bone);
-  return key && missing_for_simulation(*model_, *key).empty();
-}
-
-void NavigateView::start_same_kind() {
-  if (!started_.kind()) {
-    // Nothing was chosen yet. The built-in knee has nothing but its simulation; a real case never starts one.
-    if (simulates()) return start_simulation(SimulatedPart::Scratch);
-    if (!choices_.videos.empty()) return start_video();
-    return choose_camera();
-  }
-  switch (*started_.kind()) {
-    case sources::SourceKind::Live:
-      return choose_camera();
-    case sources::SourceKind::Recording:
-      return start_video();
-    case sources::SourceKind::Simulation:
-      return start_simulation(registration().in_force.standing == operation::Standing::Stands
-                                  ? SimulatedPart::Drill
-                                  : SimulatedPart::Scratch);
-  }
-}
-
 const LeftBehind* NavigateView::left_behind() {
   const bool has_begun = live_->phase != Phase::NoSource || live_->operation->resumed != nullptr;
   return has_begun ? nullptr : resume_.of(choices_.bone);
@@ -163,13 +138,6 @@ std::string NavigateView::missing_now(const Rail& rail) {
   return words.empty() && source != nullptr && operation::has_camera_of_simulator(*source)
              ? navigate::words_of(Missing::CameraOfScope)
              : words;
-}
-
-std::string NavigateView::words_of_start() const {
-  const bool stands = registration().in_force.standing == operation::Standing::Stands;
-  if (simulates()) return stands ? "drill (simulation)" : "start the simulated operation";
-  if (started_.kind() == sources::SourceKind::Live) return "open the camera again";
-  return started_.kind() || !choices_.videos.empty() ? "open the next video" : "choose a camera";
 }
 
 // What is confirmed, recorded or said to be out stands in the record for good. It has to have been asked on
@@ -331,17 +299,14 @@ void NavigateView::repeat_step(operation::Step step) {
     case Repeat::ShowGuide:
       choices_.layout = NavigateLayout::Guide;
       return;
+    case Repeat::OtherPictures:
+      return start_same_kind();
     case Repeat::NotDrilled:
       return ask(operation::TakeBackDrilled{});
     case Repeat::ShowFinish:
     case Repeat::NothingNow:
       return;
   }
-}
-
-bool NavigateView::simulates() const {
-  return started_.kind() ? *started_.kind() == sources::SourceKind::Simulation
-                         : can_simulate() && !choices_.has_real_scope;
 }
 
 // Nothing that is asked in it, the time-out with it, can be answered.
@@ -353,12 +318,6 @@ std::string NavigateView::words_without_pictures() const {
   const NextAction action = live_->operation->next_action;
   const bool needs_none = action == NextAction::CheckWorldMarker && registration().must_be_found_anew();
   return is_running() && !needs_none ? navigate::words_without_pictures(live_->trouble, action) : "";
-}
-
-// The scripted surgeon holds the probe: the guide is taken by starting the other part of the script.
-bool NavigateView::takes_guide_in_simulation() const {
-  return live_->operation->next_action == NextAction::BringGuide &&
-         started_.is_simulated(SimulatedPart::Scratch) && live_->phase == Phase::Running && can_simulate();
 }
 
 bool NavigateView::must_set_up() const {

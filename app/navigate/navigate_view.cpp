@@ -45,13 +45,6 @@ mode::ModeTitle NavigateView::title() const {
   return {"navigate", "mode.navigate", "Navigate", "In theatre", GLFW_KEY_F2};
 }
 
-std::optional<sources::SourceKind> NavigateView::source_kind() const {
-  if (live_->phase == Phase::NoSource) return std::nullopt;
-  // Before its first picture, or where it gives none, the operation knows of the source before it alone.
-  if (live_->picture == nullptr) return started_.kind_of(choices_.bone);
-  return live_->operation->source->kind;
-}
-
 void NavigateView::case_opened(const mode::OpenCase& opened) {
   bones_.open(opened.model, opened.folder, opened.read_only);
   live_ = TheatreBones::nothing();

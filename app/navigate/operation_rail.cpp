@@ -197,7 +197,7 @@ Step now_of(const Known& known) {
   if (state.source == nullptr && missing_of_tools(known) != Missing::Nothing) return Step::Tools;
   // Other pictures are wanted for what is left to do; the marker was found already.
   if (state.next_action == NextAction::StartSource && known.have_ended() && known.stands())
-    return Step::Guide;
+    return state.verification == operation::Verification::NotYet ? Step::Verify : Step::Guide;
   // An operation that was not told yet of the plan that is there starts with its pictures.
   const Step now = operation::step_of(state.next_action);
   return now == Step::Plan ? Step::WorldMarker : now;
@@ -325,7 +325,8 @@ Repeat repeat_of(Step step, const OperationState& state, bool is_said_drilled) {
     case Step::Guide:
       return is_said_drilled || state.drilled.outcome != operation::DrilledState::Outcome::NotSaid
                  ? Repeat::NotDrilled
-                 : Repeat::ShowGuide;
+             : !state.has_source && state.next_action == NextAction::RecordDrilled ? Repeat::OtherPictures
+                                                                                   : Repeat::ShowGuide;
     case Step::Finish:
       return Repeat::ShowFinish;
   }
@@ -348,6 +349,8 @@ std::string words_of(Repeat repeat, Step step) {
       return "touch one more place that you know";
     case Repeat::ShowGuide:
       return "show the way to the plan";
+    case Repeat::OtherPictures:
+      return "not drilled yet: go on with other pictures";
     case Repeat::NotDrilled:
       return "not drilled yet: take that back";
     case Repeat::ShowFinish:

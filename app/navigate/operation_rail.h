@@ -87,16 +87,17 @@ struct RailContext {
 
 // What the pedal does when the surgeon has gone back to a step that is not the one of now.
 enum class Repeat {
-  ShowPlan,      // in its own screen
-  ShowSetUp,     // likewise
-  TouchControl,  // tells whether the marker sits where it sat
-  Draw,          // more strokes
-  RegisterAnew,  // all strokes
-  Touch,         // one more that verifies
-  ShowGuide,     // bullseye and numbers
-  NotDrilled,    // it was said to be drilled, too early: takes that back
-  ShowFinish,    // the check list
-  NothingNow,    // what it needs is not there
+  ShowPlan,       // in its own screen
+  ShowSetUp,      // likewise
+  TouchControl,   // tells whether the marker sits where it sat
+  Draw,           // more strokes
+  RegisterAnew,   // all strokes
+  Touch,          // one more that verifies
+  ShowGuide,      // bullseye and numbers
+  OtherPictures,  // those so far have ended, and the tunnel is not drilled
+  NotDrilled,     // it was said to be drilled, too early: takes that back
+  ShowFinish,     // the check list
+  NothingNow,     // what it needs is not there
 };
 // is_said_drilled: of the plan in force, maybe while another source ran.
 [[nodiscard]] Repeat repeat_of(operation::Step step, const operation::OperationState& state,

@@ -12,6 +12,14 @@
 
 namespace arthronaut::navigate {
 
+// Which part of the simulated surgeon's script an operation goes on with: the probe, until what it registered
+// is verified by touches, or that step was passed over.
+[[nodiscard]] inline SimulatedPart next_part(const operation::OperationState& state) {
+  const bool stands = state.registration->in_force.standing == operation::Standing::Stands;
+  return stands && state.verification != operation::Verification::NotYet ? SimulatedPart::Drill
+                                                                         : SimulatedPart::Scratch;
+}
+
 class StartedSource {
  public:
   void on_start(bones::BoneKind bone, sources::SourceKind kind) {

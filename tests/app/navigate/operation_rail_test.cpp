@@ -341,6 +341,22 @@ TEST(OperationRail, NothingBlocksTheWayBack) {
       << "there is no control point";
 }
 
+// The pictures have ended before what stands was verified: that is what is left, and the way on leads by it.
+// In those of a drill that have ended the pedal asks whether it is drilled; a step back has other pictures.
+TEST(OperationRail, WhatEndedPicturesLeaveOpenIsTheStepOfNow) {
+  Course course;
+  course.stand();
+  course.state.source = std::make_shared<const operation::SourceSetup>();  // of the simulation
+  course.state.has_source = false;
+  EXPECT_EQ(step_of_now(course.rail()), Step::Verify);
+  course.state.verification = operation::Verification::Skipped;
+  EXPECT_EQ(step_of_now(course.rail()), Step::Guide);
+  course.state.registration = std::make_shared<const operation::RegistrationState>(course.registration);
+  EXPECT_EQ(repeat_of(Step::Guide, course.state, false), Repeat::ShowGuide);
+  course.state.next_action = operation::NextAction::RecordDrilled;
+  EXPECT_EQ(repeat_of(Step::Guide, course.state, false), Repeat::OtherPictures);
+}
+
 // A press too early says that it is drilled: the way back takes that back, however it was recorded.
 TEST(OperationRail, WhatWasSaidTooEarlyIsTakenBack) {
   using Outcome = operation::DrilledState::Outcome;

@@ -94,7 +94,7 @@ TEST(NavigateDisplay, AfterASimulatedScratchNothingIsSaidToBeDrilled) {
   EXPECT_EQ(display.detail, "This is the last one: nothing guides");
 }
 
-// One word, one key: what the pedal asks for then is offered by no other.
+// One word, one key: what the pedal asks for then is offered by no other, and nothing says the contrary.
 TEST(NavigateDisplay, WhatThePedalAsksForAtTheEndIsOfferedByNoOtherKey) {
   const NavigateDisplay display = display_after([](Shown& shown) {
     shown.live.phase = Phase::Ended;
@@ -103,7 +103,8 @@ TEST(NavigateDisplay, WhatThePedalAsksForAtTheEndIsOfferedByNoOtherKey) {
     shown.operation.next_action = operation::NextAction::RecordDrilled;
     shown.stand(Standing::Stands, {});
   });
-  EXPECT_EQ(display.detail, "Nothing guides. Not drilled yet: go on with other pictures");
+  EXPECT_EQ(display.detail,
+            "Nothing guides. If it is not drilled: a step back (Page up), then other pictures");
 }
 
 // Numbers that another registration has just taken back were no old poses, and both markers are in view: what

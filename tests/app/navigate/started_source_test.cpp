@@ -32,6 +32,20 @@ TEST(StartedSource, WhatIsSimulatedIsOfOneSourceAndOneBone) {
   EXPECT_FALSE(is_drilled());
 }
 
+// The probe's pictures have ended and the touches that verify are still to come: more of them come first.
+TEST(StartedSource, TheSimulationGoesOnWithTheProbeUntilItIsVerified) {
+  operation::OperationState state;
+  EXPECT_EQ(next_part(state), SimulatedPart::Scratch);
+  auto stands = std::make_shared<operation::RegistrationState>();
+  stands->in_force.standing = operation::Standing::Stands;
+  state.registration = stands;
+  EXPECT_EQ(next_part(state), SimulatedPart::Scratch);
+  for (const auto verification : {operation::Verification::ByTouches, operation::Verification::Skipped}) {
+    state.verification = verification;
+    EXPECT_EQ(next_part(state), SimulatedPart::Drill);
+  }
+}
+
 TEST(StartedSource, EachBoneHasItsOwnKind) {
   StartedSource started;
   started.on_start(BoneKind::Femur, SourceKind::Simulation);
