@@ -90,6 +90,9 @@ class Mode {
   [[nodiscard]] virtual bool awaits_text() const { return false; }
   // The kind of the source whose pictures are shown or waited for; nullopt: none.
   [[nodiscard]] virtual std::optional<sources::SourceKind> source_kind() const { return std::nullopt; }
+  // Whether what is shown of a live source is what it sees now: not the last picture of one that has ended,
+  // has failed, or gives none.
+  [[nodiscard]] virtual bool pictures_are_of_now() const { return true; }
   // One line for the status bar; empty when there is nothing to say.
   [[nodiscard]] virtual std::string notice() const { return {}; }
 };

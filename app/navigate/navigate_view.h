@@ -57,6 +57,7 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] bool has_running_work() const override { return is_running(); }
   [[nodiscard]] bool pictures_are_late() const override { return navigate::pictures_are_late(*live_); }
   [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
+  [[nodiscard]] bool pictures_are_of_now() const override;
   [[nodiscard]] std::string notice() const override;
   [[nodiscard]] bool awaits_text() const override { return depth_.wants_focus() || cameras_.wants_text(); }
 

@@ -13,6 +13,10 @@ std::optional<sources::SourceKind> NavigateView::source_kind() const {
   return live_->operation->source->kind;
 }
 
+bool NavigateView::pictures_are_of_now() const {
+  return display_of(live_.get(), theatre::LiveOperation::now_s()).is_live;
+}
+
 bool NavigateView::can_simulate() const {
   if (model_ == nullptr) return false;
   const auto key = bones_.guided(choices_.bone);

@@ -41,10 +41,10 @@ void draw_side(ImDrawList& draw, const Rect& side, const Dash& dash, ImU32 color
 
 }  // namespace
 
-std::string_view banner_word(sources::SourceKind kind) {
+std::string_view banner_word(sources::SourceKind kind, bool is_of_now) {
   switch (kind) {
     case sources::SourceKind::Live:
-      return "LIVE";
+      return is_of_now ? "LIVE" : "NOT LIVE";
     case sources::SourceKind::Recording:
       return "RECORDING";
     case sources::SourceKind::Simulation:
@@ -54,10 +54,10 @@ std::string_view banner_word(sources::SourceKind kind) {
 }
 
 // Apart for every kind of colour vision, and none of them the colour of a verdict.
-ImU32 banner_color(sources::SourceKind kind) {
+ImU32 banner_color(sources::SourceKind kind, bool is_of_now) {
   switch (kind) {
     case sources::SourceKind::Live:
-      return IM_COL32(235, 238, 242, 255);
+      return is_of_now ? IM_COL32(235, 238, 242, 255) : IM_COL32(120, 130, 140, 255);
     case sources::SourceKind::Recording:
       return IM_COL32(230, 159, 0, 255);
     case sources::SourceKind::Simulation:
@@ -66,7 +66,8 @@ ImU32 banner_color(sources::SourceKind kind) {
   return kText;
 }
 
-void draw_source_frame(const Ui& ui, const Rect& window, sources::SourceKind kind) {
+void draw_source_frame(const Ui& ui, const Rect& window, sources::SourceKind kind, bool is_of_now) {
+  if (kind == sources::SourceKind::Live && !is_of_now) return;
   ImDrawList& draw = *ImGui::GetForegroundDrawList();
   const float width = ui.theme.px(kFrame_px);
   Dash dash = dash_of(kind);
@@ -74,17 +75,17 @@ void draw_source_frame(const Ui& ui, const Rect& window, sources::SourceKind kin
   Rect rest = window;
   for (const Rect& side :
        {rest.cut_top(width), rest.cut_bottom(width), rest.cut_left(width), rest.cut_right(width)})
-    draw_side(draw, side, dash, banner_color(kind));
+    draw_side(draw, side, dash, banner_color(kind, is_of_now));
 }
 
-float draw_source_word(const Ui& ui, const Rect& area, sources::SourceKind kind) {
+float draw_source_word(const Ui& ui, const Rect& area, sources::SourceKind kind, bool is_of_now) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   ImFont* const font = ui.theme.afar;
-  const std::string word(banner_word(kind));
+  const std::string word(banner_word(kind, is_of_now));
   const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0, word.c_str());
   const float margin = ui.theme.px(14);
   const Rect plate{area.x, area.y, size.x + 2 * margin, area.height};
-  draw.AddRectFilled(plate.min(), plate.max(), banner_color(kind), ui.theme.px(6));
+  draw.AddRectFilled(plate.min(), plate.max(), banner_color(kind, is_of_now), ui.theme.px(6));
   draw.AddText(font, font->FontSize, {plate.x + margin, plate.center().y - size.y / 2}, kBackground,
                word.c_str());
   ui.log.note("app.source", plate.min(), plate.max());

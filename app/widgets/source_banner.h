@@ -9,15 +9,16 @@
 
 namespace arthronaut::widgets {
 
-// "LIVE", "RECORDING", "SIMULATION".
-[[nodiscard]] std::string_view banner_word(sources::SourceKind kind);
-[[nodiscard]] ImU32 banner_color(sources::SourceKind kind);
+// is_of_now: of a live source the picture is of this moment; nothing else is called so.
+// "LIVE", "NOT LIVE", "RECORDING", "SIMULATION".
+[[nodiscard]] std::string_view banner_word(sources::SourceKind kind, bool is_of_now);
+[[nodiscard]] ImU32 banner_color(sources::SourceKind kind, bool is_of_now);
 
 // About the whole window and over everything: whole for Live, in long dashes for Recording, in short ones for
-// Simulation.
-void draw_source_frame(const Ui& ui, const Rect& window, sources::SourceKind kind);
+// Simulation. None for what is not live any more.
+void draw_source_frame(const Ui& ui, const Rect& window, sources::SourceKind kind, bool is_of_now);
 
 // The word on its colour, as wide as it needs; readable from afar (theme.h). Returns the width.
-float draw_source_word(const Ui& ui, const Rect& area, sources::SourceKind kind);
+float draw_source_word(const Ui& ui, const Rect& area, sources::SourceKind kind, bool is_of_now);
 
 }  // namespace arthronaut::widgets

@@ -22,6 +22,13 @@ std::string in_one_line(std::string words) {
 
 }  // namespace
 
+std::string WorkstationWindow::name_or_live_mode() const {
+  for (const auto& mode : modes_)
+    if (mode->source_kind() == sources::SourceKind::Live && mode->pictures_are_of_now())
+      return "Live in " + std::string(mode->title().label);
+  return "Arthronaut";
+}
+
 void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(area.min(), area.max(), widgets::kPanel);
@@ -35,10 +42,10 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   const widgets::Rect name{heart.x + heart.width + ui.theme.px(10), middle - ui.theme.px(29),
                            ui.theme.px(330), ui.theme.px(58)};
   if (const auto kind = shows_start() || shows_paint() ? std::nullopt : shown().source_kind())
-    widgets::draw_source_word(ui, name, *kind);
+    widgets::draw_source_word(ui, name, *kind, shown().pictures_are_of_now());
   else
     draw.AddText(title, title->FontSize, {name.x, middle - title->FontSize / 2}, widgets::kText,
-                 "Arthronaut");
+                 name_or_live_mode().c_str());
   float x = name.x + name.width + ui.theme.px(12);
   for (const auto& mode : modes_) {
     ImGui::SetCursorScreenPos({x, middle - height / 2});
@@ -116,7 +123,8 @@ void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& 
   widgets::draw_heartbeat(ui, {rest.x, rest.center().y - side / 2, side, side}, heartbeat_);
   (void)rest.cut_left(side, ui.theme.px(10));
   if (const auto kind = shown().source_kind())
-    (void)rest.cut_left(widgets::draw_source_word(ui, rest, *kind), ui.theme.px(14));
+    (void)rest.cut_left(widgets::draw_source_word(ui, rest, *kind, shown().pictures_are_of_now()),
+                        ui.theme.px(14));
   ImFont* const font = ui.theme.body;
   const auto [text, warns] = status_words();
   const auto width_of = [&](const std::string& words) {

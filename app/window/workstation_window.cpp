@@ -370,7 +370,7 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
     if (draw_key_list(ui, key_rows(actions_, action_prefixes(), held))) shows_keys_ = false;
   }
   const auto kind = shows_start() || shows_paint() ? std::nullopt : shown().source_kind();
-  if (kind) widgets::draw_source_frame(ui, {0, 0, size.x, size.y}, *kind);
+  if (kind) widgets::draw_source_frame(ui, {0, 0, size.x, size.y}, *kind, shown().pictures_are_of_now());
   widgets::draw_hold_hint(ui, {0, 0, size.x, size.y}, header);
   ImGui::PopFont();
   ImGui::End();

@@ -79,6 +79,8 @@ class WorkstationWindow {
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const;
   void show(std::size_t mode);
   void draw_screen(const widgets::Ui& ui);
+  // "Live in Navigate" where pictures of now come that this screen does not show; else the program's name.
+  [[nodiscard]] std::string name_or_live_mode() const;
   void draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area);
   // The same in one place, of a mode that has the whole window.
   void draw_header(const widgets::Ui& ui, const widgets::Rect& area);
