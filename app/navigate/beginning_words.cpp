@@ -20,6 +20,15 @@ std::string plan_in_words(const std::optional<operation::PlannedTunnel>& plan) {
   return which + files::format("%.1f mm wide, %.1f mm long", plan->tunnel.diameter_mm, plan->length_mm);
 }
 
+Severity severity_of(const plan_review::TunnelVerdict& verdict) {
+  return verdict.is_wrong() ? Severity::Bad : verdict.is_fine() ? Severity::Quiet : Severity::Caution;
+}
+
+// Behind the plan's own words.
+std::string in_words(const plan_review::TunnelVerdict& verdict) {
+  return verdict.is_fine() ? "" : (verdict.is_wrong() ? "; WRONG: " : "; look: ") + verdict.in_short();
+}
+
 std::string count_of(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : what == "touch" ? "es" : "s");
 }
@@ -65,20 +74,15 @@ std::vector<CardLine> time_out_lines(const operation::OperationState& state, con
                                      const plan_review::TunnelVerdict& verdict) {
   const operation::SourceSetup& source = *state.source;
   using Topic = CardLine::Topic;
-  return {
-      {patient.empty() ? Severity::Caution : Severity::Quiet, "Patient",
-       patient.empty() ? "not known: the case names none" : patient, Topic::Patient},
-      {Severity::Quiet, "Knee",
-       std::string(bones::to_text(source.pipeline.side)) + ", " + std::string(bones::to_text(state.bone)),
-       Topic::Knee},
-      {!state.plan || !verdict.is_fine() ? (verdict.is_wrong() ? Severity::Bad : Severity::Caution)
-                                         : Severity::Quiet,
-       "Plan",
-       plan_in_words(state.plan) +
-           (verdict.is_fine() ? "" : (verdict.is_wrong() ? "; WRONG: " : "; look: ") + verdict.in_short()),
-       Topic::Plan},
-      {Severity::Quiet, "Camera and tools", source.calibration, Topic::CameraAndTools},
-      medium_line(state)};
+  return {{patient.empty() ? Severity::Caution : Severity::Quiet, "Patient",
+           patient.empty() ? "not known: the case names none" : patient, Topic::Patient},
+          {Severity::Quiet, "Knee",
+           std::string(bones::to_text(source.pipeline.side)) + ", " + std::string(bones::to_text(state.bone)),
+           Topic::Knee},
+          {state.plan || !verdict.is_fine() ? severity_of(verdict) : Severity::Caution, "Plan",
+           plan_in_words(state.plan) + in_words(verdict), Topic::Plan},
+          {Severity::Quiet, "Camera and tools", source.calibration, Topic::CameraAndTools},
+          medium_line(state)};
 }
 
 // What is asked, and how it is answered, stands above it as the next step.
@@ -94,7 +98,7 @@ Card time_out_card(const operation::OperationState& state, const std::string& pa
 }
 
 Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedTunnel>& plan,
-                 std::chrono::system_clock::time_point now) {
+                 const plan_review::TunnelVerdict& verdict, std::chrono::system_clock::time_point now) {
   const recording::Resumable& found = left.found;
   const operation::ResumeOperation& was = found.operation;
   Card card{"navigate.resume", "", {}, "Page up or Esc: begin afresh"};
@@ -110,8 +114,8 @@ Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedT
                             (was.control_point_mm ? ", the control point" : "")});
   const bool is_same_plan = was.plan == plan;
   card.lines.push_back(
-      {is_same_plan ? Severity::Quiet : Severity::Caution, "Plan",
-       plan_in_words(was.plan) +
+      {is_same_plan || !verdict.is_fine() ? severity_of(verdict) : Severity::Caution, "Plan",
+       plan_in_words(was.plan) + in_words(verdict) +
            (is_same_plan ? "" : "; the case's is another one by now and waits to be taken over")});
   for (const tunnels::TunnelKey& key : found.drilled) {
     const bool is_in_force = was.plan && was.plan->tunnel.key() == key;

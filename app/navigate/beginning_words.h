@@ -36,8 +36,9 @@ struct Card {
 [[nodiscard]] Card time_out_card(const operation::OperationState& state, const std::string& patient,
                                  const plan_review::TunnelVerdict& verdict);
 
-// `plan`: the case's, as an operation that begins afresh would have it.
+// `plan`: the case's, as an operation that begins afresh would have it. verdict: of the one that was left.
 [[nodiscard]] Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedTunnel>& plan,
+                               const plan_review::TunnelVerdict& verdict,
                                std::chrono::system_clock::time_point now);
 
 // What is typed as the depth stop's reading: millimetres, with a point or a comma. Empty when it is no number

@@ -29,6 +29,7 @@ struct NavigateScreen {
   bool undistorts = false;     // shows the picture without the lens' distortion
   std::string next_step = "";  // "register what was touched"
   std::string missing = "";    // what it waits for: "the probe is covered"; empty: nothing
+  bool is_wrong = false;       // ... and that is wrong, not only doubtful
   bool pedal_acts = false;     // it is done by the pedal
   bool is_exercise = false;    // it is an exercise's own, and no step of the operation
   Rail rail = {};

@@ -38,6 +38,14 @@ Question NavigateView::question() {
   return finishes() && looks_at_finish && !depth_.is_open() ? Question::Finish : Question::None;
 }
 
+// By which it is guided, would be after resuming, or is when an operation begins.
+std::optional<operation::PlannedTunnel> NavigateView::plan_in_question() {
+  if (const auto& in_force = live_->operation->plan) return in_force;
+  if (const LeftBehind* const left = left_behind(); left != nullptr && left->found.operation.plan)
+    return left->found.operation.plan;
+  return bones_.plan_of(choices_.bone);
+}
+
 bool NavigateView::draw_questions(const widgets::Ui& ui, const TheatreLayout& layout) {
   const widgets::Rect& area = layout.block;
   switch (choices_.asked) {
@@ -48,7 +56,7 @@ bool NavigateView::draw_questions(const widgets::Ui& ui, const TheatreLayout& la
       const LeftBehind& left = *left_behind();
       const auto& was = left.found.operation.plan;
       const auto plan = was ? bones_.planned(was->tunnel.key()) : bones_.plan_of(choices_.bone);
-      draw_card(ui, area, resume_card(left, plan, std::chrono::system_clock::now()));
+      draw_card(ui, area, resume_card(left, plan, judged_.verdict(), std::chrono::system_clock::now()));
       break;
     }
     case Question::TimeOut:

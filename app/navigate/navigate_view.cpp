@@ -301,6 +301,7 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
   const std::string& missing = choices_.missing.follow(missing_now(screen.rail), now_s);
   screen.missing = refusal_notice(*live_, now_s);
   if (screen.missing.empty()) screen.missing = missing;
+  screen.is_wrong = judged_.verdict().is_wrong() && screen.missing == words_of_verdict();
   screen.patient = patient_;
   screen.verdict = &judged_.verdict();
   follow_reached(display, now_s);
@@ -349,8 +350,7 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   // The bone is made ready for registration as soon as this mode is looked at.
   if (model_ != nullptr && model_->has_bone(choices_.bone)) (void)bones_.operation(choices_.bone);
   read_live();
-  const auto& in_force = live_->operation->plan;
-  if (model_ != nullptr) judged_.judge(*model_, in_force ? in_force : bones_.plan_of(choices_.bone));
+  if (model_ != nullptr) judged_.judge(*model_, plan_in_question());
   drawn_.live = live_;
   const double now = drawn_.since_s = theatre::LiveOperation::now_s();
   NavigateDisplay display = display_of(live_.get(), now);

@@ -135,6 +135,7 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] std::string next_step();
   // What that waits for; empty: nothing, or next_step() says it.
   [[nodiscard]] std::string missing_now(const Rail& rail);
+  [[nodiscard]] std::optional<operation::PlannedTunnel> plan_in_question();
   [[nodiscard]] std::string words_of_verdict() const;  // of the plan; empty: nothing speaks against it
   [[nodiscard]] std::string lent_step() const { return lent_ && lent_->next_step ? lent_->next_step() : ""; }
   [[nodiscard]] bool can_simulate() const;

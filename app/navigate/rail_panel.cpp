@@ -111,9 +111,10 @@ void draw_words(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
     const std::string lines = widgets::wrapped(font, missing, inner.width - sign);
     const float height = font->CalcTextSizeA(font->FontSize, 1e9F, 0, lines.c_str()).y;
     widgets::Rect foot = inner.cut_bottom(std::max(std::min(height, most), sign));
-    widgets::draw_sign(draw, {foot.x + sign * 0.4F, foot.y + sign / 2}, sign * 0.36F, Severity::Caution);
+    const Severity severity = screen.is_wrong ? Severity::Bad : Severity::Caution;
+    widgets::draw_sign(draw, {foot.x + sign * 0.4F, foot.y + sign / 2}, sign * 0.36F, severity);
     (void)foot.cut_left(sign);
-    widgets::draw_afar(ui, foot, widgets::kCaution, missing);
+    widgets::draw_afar(ui, foot, widgets::color_of(severity), missing);
   }
   widgets::draw_afar(ui, inner, widgets::kText, sentence(screen.next_step));
 }

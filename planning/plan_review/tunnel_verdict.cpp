@@ -12,8 +12,11 @@ Verdict TunnelVerdict::worst() const {
 
 std::string TunnelVerdict::in_short() const {
   if (is_fine()) return "";
-  const std::size_t more = wrong.size() + look.size() - 1;
-  return (is_wrong() ? wrong : look).front() + (more > 0 ? " (and " + std::to_string(more) + " more)" : "");
+  const std::size_t more = (is_wrong() ? wrong : look).size() - 1;
+  std::string others = more > 0 ? std::to_string(more) + (is_wrong() ? " more wrong" : " more") : "";
+  if (is_wrong() && !look.empty())
+    others += (others.empty() ? "" : ", ") + std::to_string(look.size()) + " to look at";
+  return (is_wrong() ? wrong : look).front() + (others.empty() ? "" : " (and " + others + ")");
 }
 
 TunnelVerdict verdict_of(const std::vector<tunnels::PlanCheck>& checks,

@@ -20,7 +20,8 @@ struct TunnelVerdict {
   // Nothing speaks against it. What was not checked has not failed.
   [[nodiscard]] bool is_fine() const { return wrong.empty() && look.empty(); }
   [[nodiscard]] tunnels::PlanCheck::Verdict worst() const;  // Wrong, Look or Fine
-  // The first of the worst, and how many more there are; empty where it is fine.
+  // The first of the worst, how many more of them there are, and beside what is wrong how much is to be
+  // looked at: "Wall: ... (and 1 more wrong, 2 to look at)". Empty where it is fine.
   [[nodiscard]] std::string in_short() const;
 };
 

@@ -87,7 +87,20 @@ LeftBehind left_behind() {
 }
 
 Card card_of(const LeftBehind& left, std::chrono::seconds later = std::chrono::seconds(245)) {
-  return resume_card(left, plan(), left.found.last_written + later);
+  return resume_card(left, plan(), {}, left.found.last_written + later);
+}
+
+// A plan that is wrong is as wrong where an operation is gone on with as where one begins.
+TEST(ResumeCard, SaysWhatSpeaksAgainstThePlan) {
+  const LeftBehind left = left_behind();
+  const auto line = [&](const plan_review::TunnelVerdict& verdict) {
+    return line_of(resume_card(left, plan(), verdict, left.found.last_written), "Plan");
+  };
+  EXPECT_EQ(line({}).severity, Severity::Quiet);
+  EXPECT_EQ(line({.look = {"Bone: check the side"}}).severity, Severity::Caution);
+  const CardLine wrong = line({.wrong = {"Wall: -3.5 mm"}, .look = {"Bone: check the side"}});
+  EXPECT_EQ(wrong.severity, Severity::Bad);
+  EXPECT_TRUE(wrong.text.ends_with("; WRONG: Wall: -3.5 mm (and 1 to look at)")) << wrong.text;
 }
 
 // Which of two bundles' tunnels is there already: said, and in doubt where it is the one that would guide

@@ -18,7 +18,11 @@ TEST(TunnelVerdict, IsThatOfTheWorstCheck) {
   EXPECT_EQ(verdict_of({fine, look}, {}, "").in_short(), "Diameter: 7.0 mm: small");
   const TunnelVerdict both = verdict_of({look, fine, wrong}, {"check the side"}, "");
   EXPECT_EQ(both.worst(), Verdict::Wrong);
-  EXPECT_EQ(both.in_short(), "Wall: -3.5 mm (and 2 more)");
+  EXPECT_EQ(both.in_short(), "Wall: -3.5 mm (and 2 to look at)") << "none of them is as bad";
+  EXPECT_EQ(verdict_of({look, wrong, wrong}, {}, "").in_short(),
+            "Wall: -3.5 mm (and 1 more wrong, 1 to look at)");
+  EXPECT_EQ(verdict_of({wrong, wrong}, {}, "").in_short(), "Wall: -3.5 mm (and 1 more wrong)");
+  EXPECT_EQ(verdict_of({look, look}, {}, "").in_short(), "Diameter: 7.0 mm: small (and 1 more)");
   EXPECT_EQ(both.look.front(), "Bone: check the side");
   EXPECT_EQ(verdict_of({}, {}, "landmarks missing: a").in_short(), "Grid: landmarks missing: a");
 }
