@@ -40,8 +40,8 @@
 //
 // Without a control point nothing of before can tell whether a marker that nobody saw sits where it sat; with
 // one, it is to be touched (place_doubt.h).
-// The probe draws again by itself where the source that begins says so and no registration stands. Another
-// registration is verified at once where the touches lie on the bone by it, too.
+// The probe draws again by itself where the source that begins says so and no registration stands, once its
+// time-out is confirmed. Another registration is verified at once where touches lie on the bone by it, too.
 // The word that the marker is out stands without a registration: it ends with S, O and M, where a live source
 // shows the marker, and where the tunnel is said not to be drilled (marker_out_test.cpp).
 // Of what a registration is of (another mesh, camera, probe, kind of source: as O), see
