@@ -57,17 +57,21 @@ void say_guidance(const Context& context, const theatre::NavigationSummary& summ
                        g.drill->depth_mm, g.drill->remaining_mm, g.drill->to_exit_mm, g.drill->sigma_mm));
 }
 
+std::string times_more(std::size_t count) {
+  return "and " + std::to_string(count) + (count == 1 ? " time more" : " times more");
+}
+
 // Of a live source: what was wrong with it, and how old guidance was.
 void say_source(const Context& context, const theatre::NavigationSummary& summary) {
   constexpr std::size_t kMostTold = 5;
   for (std::size_t i = 0; i < std::min(kMostTold, summary.troubles.size()); ++i)
     context.say("source: " + summary.troubles[i]);
   if (summary.troubles.size() > kMostTold)
-    context.say(format("source: and %zu times more", summary.troubles.size() - kMostTold));
+    context.say("source: " + times_more(summary.troubles.size() - kMostTold));
   for (std::size_t i = 0; i < std::min(kMostTold, summary.tracker_troubles.size()); ++i)
     context.say("tracker: " + summary.tracker_troubles[i]);
   if (summary.tracker_troubles.size() > kMostTold)
-    context.say(format("tracker: and %zu times more", summary.tracker_troubles.size() - kMostTold));
+    context.say("tracker: " + times_more(summary.tracker_troubles.size() - kMostTold));
   const theatre::StageLatency& all = theatre::of(summary.latency, theatre::Stage::ToGuidance);
   if (all.count == 0) return;
   context.say(format(

@@ -1,5 +1,7 @@
 #include "app/navigate/beginning_words.h"
 
+#include <algorithm>
+#include <array>
 #include <regex>
 
 #include "navigation/camera/medium.h"
@@ -68,6 +70,14 @@ CardLine registration_line(const recording::Resumable& left) {
               (left.was_verified ? ", was verified" : "") + "; guides after one touch on the bone"};
 }
 
+// Of those that register and guide, one that nobody measured.
+bool has_nominal_tool(const pipeline::PipelineOptions& of) {
+  return std::ranges::any_of(std::array{of.probe_name, of.guide_name}, [&](const std::string& name) {
+    const tools::Tool* const tool = of.tools.find_tool(name);
+    return tool != nullptr && tool->provenance.origin == provenance::Origin::Nominal;
+  });
+}
+
 }  // namespace
 
 std::vector<CardLine> time_out_lines(const operation::OperationState& state, const std::string& patient,
@@ -81,7 +91,8 @@ std::vector<CardLine> time_out_lines(const operation::OperationState& state, con
            Topic::Knee},
           {state.plan || !verdict.is_fine() ? severity_of(verdict) : Severity::Caution, "Plan",
            plan_in_words(state.plan) + in_words(verdict), Topic::Plan},
-          {Severity::Quiet, "Camera and tools", source.calibration, Topic::CameraAndTools},
+          {has_nominal_tool(source.pipeline) ? Severity::Caution : Severity::Quiet, "Camera and tools",
+           source.calibration, Topic::CameraAndTools},
           medium_line(state)};
 }
 

@@ -270,7 +270,7 @@ Trouble trouble_of_end(const operation::OperationState& state) {
   const bool is_simulated = state.source != nullptr && state.source->kind == sources::SourceKind::Simulation;
   return {"The pictures have ended",
           may_be_drilled && !is_simulated
-              ? "Nothing guides. Go on with others; is the tunnel drilled already, say so (hold J)"
+              ? "Nothing guides. Go on with others; if the tunnel is drilled already, say so (hold J)"
               : "This is the last one: nothing guides"};
 }
 

@@ -50,7 +50,7 @@ struct NavigateChoices {
   ReachedPlan reached;
   // Of the case, as it was when this mode was entered.
   bool has_real_scope = false, has_camera_file = false;
-  std::optional<tools::ToolSet> tools;  // empty: they can't be read
+  std::optional<tools::ToolSet> tools;  // empty: there are none, or they can't be read
 
   // A source of that kind begins: of a bone that was finished, the operation begins afresh.
   void begin(sources::SourceKind kind) {

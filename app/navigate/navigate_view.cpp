@@ -78,7 +78,9 @@ void NavigateView::enter() {
       !case_folder_.empty() && std::filesystem::exists(cases::camera_file(case_folder_));
   choices_.tools.reset();
   try {
-    choices_.tools = open_case::tools_of(!choices_.has_real_scope, case_folder_);
+    // The built-in ones are the simulator's: of a real scope nobody has said yet what its tools are.
+    if (!choices_.has_real_scope || std::filesystem::exists(cases::tools_file(case_folder_)))
+      choices_.tools = open_case::tools_of(!choices_.has_real_scope, case_folder_);
   } catch (const std::runtime_error& error) {  // what is wrong with them is a step that is not done
     notice_ = error.what();
   }

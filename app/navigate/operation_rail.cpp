@@ -34,19 +34,21 @@ struct Known {
     if (state.drilled.outcome == Outcome::NotSaid) return context.is_drilled && context.was_measured;
     return state.drilled.outcome != Outcome::NoEvidence;
   }
-  [[nodiscard]] bool probe_is_known() const {
-    const tools::ToolSet* const known = tools();
-    if (known == nullptr) return false;
-    const tools::Tool* const probe =
-        known->find_tool(state.source != nullptr ? state.source->pipeline.probe_name : "probe");
-    return probe != nullptr && probe->tip_mm.has_value();
+  [[nodiscard]] const tools::Tool* probe() const {  // null: none is known
+    if (tools() == nullptr) return nullptr;
+    return tools()->find_tool(state.source != nullptr ? state.source->pipeline.probe_name : "probe");
   }
-  [[nodiscard]] bool guide_is_known() const {
-    const tools::ToolSet* const known = tools();
-    if (known == nullptr) return false;
-    const tools::Tool* const guide = known->find_tool(
-        state.source != nullptr ? state.source->pipeline.guide_name : tools::standard_guide_name(state.bone));
-    return guide != nullptr && guide->axis.has_value();
+  [[nodiscard]] const tools::Tool* guide() const {  // likewise
+    if (tools() == nullptr) return nullptr;
+    return tools()->find_tool(state.source != nullptr ? state.source->pipeline.guide_name
+                                                      : tools::standard_guide_name(state.bone));
+  }
+  [[nodiscard]] bool probe_is_known() const { return probe() != nullptr && probe()->tip_mm.has_value(); }
+  [[nodiscard]] bool guide_is_known() const { return guide() != nullptr && guide()->axis.has_value(); }
+  // The tools are to be real ones.
+  [[nodiscard]] bool are_real() const {
+    return state.source != nullptr ? state.source->kind != sources::SourceKind::Simulation
+                                   : !context.simulates;
   }
 };
 
@@ -82,11 +84,18 @@ Missing missing_of_tools(const Known& known) {
   const auto is_simulated = [](const tools::Tool& tool) {
     return tool.provenance.origin == provenance::Origin::Simulated;
   };
-  const bool are_real = known.state.source != nullptr
-                            ? known.state.source->kind != sources::SourceKind::Simulation
-                            : !known.context.simulates;
-  return are_real && std::ranges::any_of(known.tools()->tools, is_simulated) ? Missing::RealTools
-                                                                             : Missing::Nothing;
+  return known.are_real() && std::ranges::any_of(known.tools()->tools, is_simulated) ? Missing::RealTools
+                                                                                     : Missing::Nothing;
+}
+
+// Numbers of a drawing, that nobody measured on these tools, are no tick.
+tunnels::PlanCheck::Verdict verdict_of_tools(const Known& known) {
+  using Verdict = tunnels::PlanCheck::Verdict;
+  const auto is_nominal = [](const tools::Tool* tool) {
+    return tool != nullptr && tool->provenance.origin == provenance::Origin::Nominal;
+  };
+  return known.are_real() && (is_nominal(known.probe()) || is_nominal(known.guide())) ? Verdict::Look
+                                                                                      : Verdict::Fine;
 }
 
 // What was registered before patient, knee and plan were confirmed counts from then on.
@@ -221,6 +230,7 @@ Rail rail_of(const OperationState& state, const RailContext& context) {
     } else if (rest == Missing::Nothing && (condition == Missing::Nothing || known.is_drilled())) {
       shown.state = StepState::Done;
       if (step == Step::Plan) shown.verdict = context.plan_verdict;
+      if (step == Step::Tools) shown.verdict = verdict_of_tools(known);
     } else if (condition != Missing::Nothing) {
       shown.missing = condition;
     } else {
@@ -356,7 +366,7 @@ std::string words_of(Repeat repeat, Step step) {
     case Repeat::ShowFinish:
       return "show the check list";
     case Repeat::NothingNow:
-      return "nothing to do again here now";
+      return "nothing can be repeated here now";
   }
   return "";
 }

@@ -52,7 +52,8 @@ struct RailStep {
   operation::Step step = operation::Step::Plan;
   StepState state = StepState::Closed;
   Missing missing = Missing::Nothing;  // of Now and Closed: what it waits for
-  // Of what is done: that there is a plan is no tick for a plan that fails its own checks. Fine, Look, Wrong.
+  // Of what is done: that there is a plan is no tick for a plan that fails its own checks, nor that there are
+  // tools for tools that nobody measured. Fine, Look, Wrong.
   tunnels::PlanCheck::Verdict verdict = tunnels::PlanCheck::Verdict::Fine;
 };
 using Rail = std::array<RailStep, kStepCount>;

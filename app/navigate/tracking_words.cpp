@@ -55,7 +55,7 @@ std::vector<SeverityText> contour_rows(const operation::OperationState& state) {
     case ContourState::LooksOtherwise:
       return {{Severity::Caution, name, "does not look as it did"}};
     case ContourState::Holds:
-      return {{Severity::Quiet, name, "no shift of 1 to 1.7 mm seen"}};
+      return {{Severity::Quiet, name, "no shift seen (from 1 to 1.7 mm on)"}};
     case ContourState::NotChecked:
       if (seen.reason == contour::NotCheckedReason::NoRegistration) return {};
       return {{Severity::Quiet, name, "not checked: " + std::string(contour::to_text(seen.reason))}};

@@ -12,7 +12,7 @@ using widgets::Severity;
 
 std::string percent(double share) { return fixed(100 * share, 0) + " %"; }
 
-std::vector<Row> quality_rows(const calibration::CaptureAdvice& advice) {
+std::vector<Row> quality_rows(const calibration::CaptureAdvice& advice, bool was_taken) {
   const calibration::CaptureLimits limits;
   const calibration::CaptureQuality& q = advice.quality;
   std::vector<Row> rows;
@@ -44,7 +44,7 @@ std::vector<Row> quality_rows(const calibration::CaptureAdvice& advice) {
     rows.push_back(
         {*q.tilt_deg >= limits.wanted_tilt_deg ? Severity::Good : Severity::Quiet, "Tilt",
          fixed(*q.tilt_deg, 0) + "\u00B0  (one of at least " + fixed(limits.wanted_tilt_deg, 0) + "\u00B0)"});
-  if (q.turn_deg)
+  if (q.turn_deg && !was_taken)  // it is one of the others now
     rows.push_back(limited("Turn from others", *q.turn_deg >= limits.least_turn_deg,
                            fixed(*q.turn_deg, 0) + "\u00B0",
                            "at least " + fixed(limits.least_turn_deg, 0) + "\u00B0"));
@@ -133,7 +133,7 @@ CalibrateDisplay calibrate_display(const CalibrateRunStatus& status, const Calib
   const bool is_free = !job.is_calibrating;
   const bool is_enough = job.advice != nullptr && job.advice->is_complete;
   const auto fewest = static_cast<std::size_t>(calibration::CaptureLimits{}.fewest_pictures);
-  if (display.has_picture) display.quality = quality_rows(*job.advice);
+  if (display.has_picture) display.quality = quality_rows(*job.advice, job.took_this);
   display.can_take = is_free && display.is_live && job.advice->is_good();
   display.can_drop = is_free && !job.taken.empty();
   display.can_calibrate = is_free && job.taken.size() >= fewest;
@@ -145,6 +145,8 @@ CalibrateDisplay calibrate_display(const CalibrateRunStatus& status, const Calib
   } else if (context.is_adopted) {
     display.next = CalibrateStep::Done;
     display.next_text = "go on to the tools";
+  } else if (display.can_adopt && context.result_stands_s < kReading_s) {
+    display.next_text = "read the result";
   } else if (display.can_adopt) {
     display.next = CalibrateStep::Adopt;
     display.next_text = "adopt the calibration";

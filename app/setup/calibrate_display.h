@@ -42,6 +42,7 @@ using CalibrateRunStatus = RunStatus<CalibrateStatus>;
 struct CalibrateContext {
   bool is_adopted = false;        // this very result stands in the case already
   std::string kept_because = "";  // why the case's camera.json may not be replaced; empty: it may
+  double result_stands_s = kReading_s;  // on the screen
 };
 
 [[nodiscard]] CalibrateDisplay calibrate_display(const CalibrateRunStatus& status,

@@ -15,7 +15,7 @@ using widgets::Severity;
 void CalibrateStation::draw_pictures(const widgets::Ui& ui, const widgets::Rect& area) {
   if (run_ == nullptr)
     display_.band = {
-        Severity::Quiet, "Space starts the source",
+        Severity::Quiet, "Nothing runs yet",
         "Show the board to the lens and turn the lens between the pictures; the camera head stays"};
   draw_form(ui, draw_capture(ui, area, picture_, status_.job, display_, ui.theme.px(250)));
 }

@@ -63,6 +63,7 @@ void CalibrateStation::stop() {
   status_ = {};
   display_ = {};
   adopted_result_.reset();
+  seen_result_.reset();
 }
 
 void CalibrateStation::release_source() {
@@ -70,8 +71,9 @@ void CalibrateStation::release_source() {
 }
 
 bool CalibrateStation::is_busy() const {
+  const bool is_read = seen_result_ == nullptr || steady_now_s() - seen_since_s_ > kReading_s;
   return run_ != nullptr && (status_.phase == FeedPhase::Starting || status_.phase == FeedPhase::Running ||
-                             status_.job.is_calibrating);
+                             status_.job.is_calibrating || !is_read);
 }
 
 // A result that stands is of the square that it was made with.
@@ -179,8 +181,12 @@ std::vector<const char*> CalibrateStation::buttons() const {
 void CalibrateStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (run_ != nullptr) status_ = run_->status();
   const bool is_adopted = adopted_result_ != nullptr && adopted_result_ == status_.job.summary;
-  display_ = run_ != nullptr ? calibrate_display(status_, {is_adopted, kept_because_}, steady_now_s())
-                             : CalibrateDisplay{};
+  const double now_s = steady_now_s();
+  if (seen_result_ != status_.job.summary) seen_since_s_ = now_s;
+  seen_result_ = status_.job.summary;
+  display_ = run_ != nullptr
+                 ? calibrate_display(status_, {is_adopted, kept_because_, now_s - seen_since_s_}, now_s)
+                 : CalibrateDisplay{};
   if (status_.job.summary != nullptr)
     draw_result(ui, area);
   else

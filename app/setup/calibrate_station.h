@@ -53,6 +53,8 @@ class CalibrateStation : public JobStation<CalibrateJob> {
   bool takes_by_itself_ = true;
   CalibrateDisplay display_;  // of this frame
   std::shared_ptr<const calibration::CalibrationSummary> adopted_result_;
+  std::shared_ptr<const calibration::CalibrationSummary> seen_result_;  // since then on the screen:
+  double seen_since_s_ = 0;
   Row adopted_;
   std::string kept_because_;  // see open_case::camera_is_kept()
   widgets::VideoTexture picture_, residuals_;

@@ -159,7 +159,7 @@ void FluidStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect left = rest.cut_left(rest.width * 0.36F, gap);
   const widgets::Rect band = left.cut_bottom(ui.theme.px(130), gap);
   draw_picture_with_ruler(ui, left);
-  const Band idle{widgets::Severity::Quiet, "Space starts the source",
+  const Band idle{widgets::Severity::Quiet, "Nothing runs yet",
                   "The ruler with two markers (5 and 6, 10 mm apart) in " + medium};
   draw_band(ui, band, run_ != nullptr ? display_.band : idle);
   const widgets::Rect verdict = rest.cut_bottom(ui.theme.px(130), gap);

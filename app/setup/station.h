@@ -43,6 +43,10 @@ enum class Then {
   return {is_good ? widgets::Severity::Good : widgets::Severity::Caution, name, value + "  (" + limit + ")"};
 }
 
+// A result that a pedal adopts has stood on the screen for so long: a foot that bounces adopts nothing that
+// nobody has read.
+inline constexpr double kReading_s = 2;
+
 class Station {
  public:
   virtual ~Station() = default;

@@ -131,7 +131,9 @@ ToolDisplay tool_display(const ToolRunStatus& status, const ToolChoice& choice, 
   display.band = band_of(status, choice, display);
   if (context.is_adopted) {
     display.next = ToolStep::Done;
-    display.next_text = "go on to the fluid check";
+    display.next_text = "go on to the " + (context.next_tool.empty() ? "fluid check" : context.next_tool);
+  } else if (display.can_adopt && context.result_stands_s < kReading_s) {
+    display.next_text = "read the result";
   } else if (display.can_adopt) {
     display.next = ToolStep::Adopt;
     display.next_text = choice.task == ToolTask::Tip ? "adopt the tip" : "adopt the axis";

@@ -29,6 +29,8 @@ using ToolRunStatus = RunStatus<ToolStatus>;
 struct ToolContext {
   bool is_adopted = false;        // the result shown stands in the case already
   std::string kept_because = "";  // why the case's tools.json may not be changed; empty: it may
+  double result_stands_s = kReading_s;  // usable, on the screen
+  std::string next_tool = "";           // what the same source can measure next; empty: nothing
 };
 
 [[nodiscard]] ToolDisplay tool_display(const ToolRunStatus& status, const ToolChoice& choice,

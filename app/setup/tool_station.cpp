@@ -51,9 +51,13 @@ void ToolStation::open(const std::filesystem::path& case_folder) {
 void ToolStation::read_adopted() {
   const std::filesystem::path file = cases::tools_file(case_folder_);
   tools::ToolSet tools = tools::standard_tools();
-  adopted_ = {widgets::Severity::Quiet, "Tools", "built-in geometry"};
+  // The simulator's are the built-in ones; of a real scope nobody knows them.
+  adopted_ = {widgets::Severity::Quiet, "Tools",
+              open_case::has_real_camera(case_folder_) ? "none known: measure them, or take built-in ones (B)"
+                                                       : "built-in geometry"};
+  has_file_ = std::filesystem::exists(file);
   try {  // a file that can't be used is a state of this screen
-    if (std::filesystem::exists(file)) {
+    if (has_file_) {
       tools = tools::read_tools_file(file);
       adopted_ = row_of(tools);
     }
@@ -61,8 +65,30 @@ void ToolStation::read_adopted() {
     adopted_ = {widgets::Severity::Bad, "Tools", error.what()};
   }
   choices_ = choices_of(tools);
-  if (choices_.empty()) choices_ = choices_of(tools::standard_tools());
+  if (choices_.empty()) choices_ = choices_of(tools = tools::standard_tools());
   chosen_ %= choices_.size();
+  is_measured_.clear();
+  for (const ToolChoice& one : choices_) {
+    const tools::NominalParts nominal = tools::nominal_parts(*tools.find_tool(one.tool_name));
+    is_measured_.push_back(!(one.task == ToolTask::Tip ? nominal.tip : nominal.axis));
+  }
+}
+
+std::optional<std::size_t> ToolStation::next_unmeasured() const {
+  if (run_ == nullptr || !run_->source().is_live) return std::nullopt;
+  for (std::size_t i = 1; i < choices_.size(); ++i)
+    if (const std::size_t place = (chosen_ + i) % choices_.size(); !is_measured_[place]) return place;
+  return std::nullopt;
+}
+
+// As they were designed: nobody measured them, and who is guided by them is told so.
+void ToolStation::take_built_in() {
+  try {
+    tools::write_tools_file(cases::tools_file(case_folder_), tools::standard_tools());
+    read_adopted();
+  } catch (const std::runtime_error& error) {  // a disk that is full
+    adopted_ = {widgets::Severity::Bad, "Tools", std::string("not saved: ") + error.what()};
+  }
 }
 
 ToolChoice ToolStation::choice() const { return choices_.empty() ? ToolChoice{"probe"} : choices_[chosen_]; }
@@ -103,6 +129,7 @@ void ToolStation::stop() {
   status_ = {};
   display_ = {};
   adopted_result_.reset();
+  usable_since_s_.reset();
 }
 
 void ToolStation::release_source() {
@@ -110,7 +137,9 @@ void ToolStation::release_source() {
 }
 
 bool ToolStation::is_busy() const {
-  return run_ != nullptr && (status_.phase == FeedPhase::Starting || status_.phase == FeedPhase::Running);
+  const bool is_read = !usable_since_s_ || steady_now_s() - *usable_since_s_ > kReading_s;
+  return run_ != nullptr &&
+         (status_.phase == FeedPhase::Starting || status_.phase == FeedPhase::Running || !is_read);
 }
 
 void ToolStation::adopt() {
@@ -137,7 +166,12 @@ void ToolStation::adopt() {
 }
 
 Then ToolStation::take_next_step() {
-  if (display_.next == ToolStep::Done) return Then::GoOn;
+  if (display_.next == ToolStep::Done) {
+    const auto next = next_unmeasured();
+    if (!next) return Then::GoOn;
+    chosen_ = *next;
+    return Then::StartAgain;
+  }
   if (display_.next == ToolStep::Again) return Then::StartAgain;
   if (display_.next == ToolStep::Adopt) adopt();
   return Then::Stay;
@@ -150,9 +184,17 @@ void ToolStation::add_actions(widgets::Actions& actions) {
     actions.add({id, label, tooltip, key, 0, false, enabled, {}, run, hold});
   };
   add(
-      "setup.tools.tool", "Other tool", "The next tool of tools.json; stop the source first", GLFW_KEY_TAB,
-      [this] { return choices_.size() > 1 && run_ == nullptr; },
-      [this] { chosen_ = (chosen_ + 1) % choices_.size(); });
+      "setup.tools.tool", "Other tool", "The next tool of tools.json; ends what runs", GLFW_KEY_TAB,
+      [this] { return choices_.size() > 1; },
+      [this] {
+        stop();
+        chosen_ = (chosen_ + 1) % choices_.size();
+      },
+      {"take another tool", [this] { return run_ != nullptr; }});
+  add(
+      "setup.tools.built_in", "Built-in tools",
+      "The case's tools are the built-in ones as designed, which nobody measured (nominal)", GLFW_KEY_B,
+      [this] { return !has_file_ && run_ == nullptr; }, [this] { take_built_in(); });
   actions.add({"setup.tools.medium",
                "Saline",
                "Saline while on, air while off; for the next start",
@@ -175,20 +217,26 @@ void ToolStation::add_actions(widgets::Actions& actions) {
 }
 
 std::vector<const char*> ToolStation::buttons() const {
-  return {"setup.tools.tool", "setup.tools.medium", "setup.tools.clear", "setup.tools.adopt"};
+  return {"setup.tools.tool", "setup.tools.built_in", "setup.tools.medium", "setup.tools.clear",
+          "setup.tools.adopt"};
 }
 
 void ToolStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (run_ != nullptr) status_ = run_->status();
   const bool is_adopted = adopted_result_ != nullptr && adopted_result_ == status_.job.result;
-  display_ = run_ != nullptr ? tool_display(status_, choice(), {is_adopted, kept_because_}, steady_now_s())
-                             : ToolDisplay{};
+  const double now_s = steady_now_s();
+  if (status_.job.result == nullptr || !status_.job.result->is_usable()) usable_since_s_.reset();
+  else if (!usable_since_s_) usable_since_s_ = now_s;
+  const auto next = next_unmeasured();
+  const ToolContext context{is_adopted, kept_because_, now_s - usable_since_s_.value_or(now_s),
+                            next ? name_of(choices_[*next]) : ""};
+  display_ = run_ != nullptr ? tool_display(status_, choice(), context, now_s) : ToolDisplay{};
   const float gap = ui.theme.px(12);
   widgets::Rect rest = area;
   widgets::Rect left = rest.cut_left(rest.width * 0.36F, gap);
   const widgets::Rect band = left.cut_bottom(ui.theme.px(130), gap);
   draw_picture_with_markers(ui, left);
-  const Band idle{widgets::Severity::Quiet, "Space starts the source", "Calibrates " + name_of(choice())};
+  const Band idle{widgets::Severity::Quiet, "Nothing runs yet", "Calibrates " + name_of(choice())};
   draw_band(ui, band, run_ != nullptr ? display_.band : idle);
   widgets::Rect right = rest.cut_right(rest.width * 0.48F, gap);
   widgets::Rect middle = rest;

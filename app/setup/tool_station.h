@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "app/setup/setup_panels.h"
 #include "app/setup/tool_display.h"
@@ -34,7 +35,10 @@ class ToolStation : public JobStation<ToolJob> {
   void read_adopted();
   void adopt();
   [[nodiscard]] bool is_of_camera_before() const;
+  void take_built_in();
   [[nodiscard]] ToolChoice choice() const;
+  // The next one that nobody measured, of those that the source that runs can show.
+  [[nodiscard]] std::optional<std::size_t> next_unmeasured() const;
   void draw_picture_with_markers(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_motion(const widgets::Ui& ui, const widgets::Rect& area);
 
@@ -42,10 +46,13 @@ class ToolStation : public JobStation<ToolJob> {
   std::function<void()> wake_;
   sources::BackgroundEnd& ending_;
   std::vector<ToolChoice> choices_;
+  std::vector<bool> is_measured_;  // of each choice
+  bool has_file_ = false;          // the case's tools.json
   std::size_t chosen_ = 0;
   double refractive_index_;
   ToolDisplay display_;  // of this frame
   std::shared_ptr<const ToolResult> adopted_result_;
+  std::optional<double> usable_since_s_;  // a result that may be adopted stands on the screen
   Row adopted_;
   bool finds_simulated_ = false;  // what this run finds is of the simulator
   std::string kept_because_;      // see open_case::tools_are_kept()

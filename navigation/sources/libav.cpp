@@ -49,7 +49,7 @@ LumaPlane luma_plane(const AVFrame& picture) {
 
 std::string libav_message(int error) {
   if (error == AVERROR_PROTOCOL_NOT_FOUND)
-    return "no kind of address that is known: rtsp://, rtsps://, udp://, srt://, tcp:// and gst: are";
+    return "no address of a kind that can be opened: rtsp://, rtsps://, udp://, srt://, tcp:// and gst: can";
   // The library's own words for these are of its insides.
   switch (error) {
     case AVERROR_INVALIDDATA:

@@ -53,6 +53,23 @@ TEST(TimeOutCard, Hazard20NamesPatientKneePlanCameraToolsAndMedium) {
   EXPECT_EQ(line_of(time_out_card(state, "", {}), "Plan").text, "none");
 }
 
+// A probe or a guide that nobody measured is marked.
+TEST(TimeOutCard, MarksToolsThatNobodyMeasured) {
+  auto source = std::make_shared<operation::SourceSetup>();
+  source->pipeline.tools = tools::standard_tools();
+  operation::OperationState state;
+  state.source = source;
+  const auto severity_of = [&](provenance::Origin probe, provenance::Origin guide, provenance::Origin other) {
+    for (tools::Tool& tool : source->pipeline.tools.tools)
+      tool.provenance.origin = tool.name == "probe" ? probe : tool.name == "femoral guide" ? guide : other;
+    return line_of(time_out_card(state, "", {}), "").severity;
+  };
+  using provenance::Origin;
+  EXPECT_EQ(severity_of(Origin::Measured, Origin::Measured, Origin::Nominal), Severity::Quiet);
+  EXPECT_EQ(severity_of(Origin::Nominal, Origin::Measured, Origin::Measured), Severity::Caution);
+  EXPECT_EQ(severity_of(Origin::Measured, Origin::Nominal, Origin::Measured), Severity::Caution);
+}
+
 // What its checks say of the plan is read out with it.
 TEST(TimeOutCard, SaysWhatSpeaksAgainstThePlan) {
   operation::OperationState state;

@@ -282,6 +282,28 @@ TEST(OperationRail, NamesWhatIsMissing) {
   EXPECT_EQ(missing_of(nominal.rail(), Step::Guide), Missing::GuideCheck);
 }
 
+// That there are tools is no tick for tools of which nobody measured one that registers or guides. The simulator's
+// are as they were designed.
+TEST(OperationRail, ToolsThatNobodyMeasuredAreNoTick) {
+  using Verdict = tunnels::PlanCheck::Verdict;
+  const auto verdict_of = [](const Rail& rail) { return rail[static_cast<std::size_t>(Step::Tools)].verdict; };
+  Course course;
+  course.context.simulates = false;
+  for (tools::Tool& tool : course.tools.tools) tool.provenance.origin = provenance::Origin::Measured;
+  EXPECT_EQ(state_of(course.rail(), Step::Tools), StepState::Done);
+  EXPECT_EQ(verdict_of(course.rail()), Verdict::Fine);
+  for (const char* name : {"probe", "femoral guide", "tibial guide"}) {
+    Course one = course;
+    one.context.tools = &one.tools;
+    for (tools::Tool& tool : one.tools.tools)
+      if (tool.name == name) tool.provenance.origin = provenance::Origin::Nominal;
+    const bool is_used = std::string(name) != "tibial guide";  // it is the femur's operation
+    EXPECT_EQ(verdict_of(one.rail()), is_used ? Verdict::Look : Verdict::Fine) << name;
+    one.context.simulates = true;
+    EXPECT_EQ(verdict_of(one.rail()), Verdict::Fine) << name;
+  }
+}
+
 // What was calibrated on the simulator is calibrated for its pictures alone: no tick for a real scope, before
 // a source and while its recording runs.
 TEST(OperationRail, Hazard26WhatIsOfTheSimulatorTicksNothingOfARealScope) {

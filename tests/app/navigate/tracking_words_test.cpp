@@ -156,7 +156,7 @@ TEST(ContourRows, SayWhetherTheBoneLiesWhereItLayOrWhyThatIsNotChecked) {
   EXPECT_EQ(contour_rows(state)[0].text, "not checked: too little in view that looks as it did");
   EXPECT_EQ(contour_rows(state)[0].severity, Severity::Quiet);
   state.contour.state = contour::ContourState::Holds;
-  EXPECT_EQ(contour_rows(state)[0].text, "no shift of 1 to 1.7 mm seen");
+  EXPECT_EQ(contour_rows(state)[0].text, "no shift seen (from 1 to 1.7 mm on)");
   EXPECT_EQ(contour_rows(state)[0].severity, Severity::Quiet);
   state.contour.state = contour::ContourState::LooksOtherwise;
   EXPECT_EQ(contour_rows(state)[0].text, "does not look as it did");

@@ -119,6 +119,20 @@ TEST(CalibrateDisplay, LeadsToAdoption) {
   EXPECT_FALSE(calibrate_display(done, {.is_adopted = true}, kNow_s).can_adopt);
 }
 
+// A foot that bounces presses again before anybody has read the result: it adopts nothing. Whoever means it can
+// take it at once.
+TEST(CalibrateDisplay, APedalAdoptsOnlyWhatCouldBeRead) {
+  const CalibrateRunStatus done = calibrated(CalibrationSummary::Outcome::Ok, {});
+  const CalibrateDisplay fresh = calibrate_display(done, {.result_stands_s = 0.3}, kNow_s);
+  EXPECT_EQ(fresh.next, CalibrateStep::Wait);
+  EXPECT_EQ(fresh.next_text, "read the result");
+  EXPECT_TRUE(fresh.can_adopt);
+  EXPECT_EQ(calibrate_display(done, {.result_stands_s = kReading_s}, kNow_s).next, CalibrateStep::Adopt);
+  // What was adopted already is not held up.
+  EXPECT_EQ(calibrate_display(done, {.is_adopted = true, .result_stands_s = 0}, kNow_s).next,
+            CalibrateStep::Done);
+}
+
 // A calibration that the module doubts can't be adopted, and every reason is said.
 TEST(CalibrateDisplay, RefusesWhatIsUnreliable) {
   for (const auto outcome : {CalibrationSummary::Outcome::Unreliable, CalibrationSummary::Outcome::Failed,

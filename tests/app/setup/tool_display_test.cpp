@@ -77,6 +77,28 @@ TEST(ToolDisplay, LeadsToAdoption) {
   EXPECT_EQ(tool_display(good, kProbe, {.is_adopted = true}, kNow_s).next, ToolStep::Done);
 }
 
+// The pedal adopts what could be read, also where the pictures have ended meanwhile; then it goes on to what
+// nobody measured yet.
+TEST(ToolDisplay, APedalAdoptsOnlyWhatCouldBeRead) {
+  ToolRunStatus good = with_tip(PivotCalibrationSummary::Outcome::Ok, {});
+  for (const FeedPhase phase : {FeedPhase::Running, FeedPhase::Ended}) {
+    good.phase = phase;
+    const ToolDisplay fresh = tool_display(good, kProbe, {.result_stands_s = 0.3}, kNow_s);
+    EXPECT_EQ(fresh.next, ToolStep::Wait);
+    EXPECT_EQ(fresh.next_text, "read the result");
+    EXPECT_TRUE(fresh.can_adopt);
+    EXPECT_EQ(tool_display(good, kProbe, {.result_stands_s = kReading_s}, kNow_s).next, ToolStep::Adopt);
+  }
+}
+
+TEST(ToolDisplay, GoesOnToWhatNobodyMeasured) {
+  const ToolRunStatus good = with_tip(PivotCalibrationSummary::Outcome::Ok, {});
+  EXPECT_EQ(tool_display(good, kProbe, {.is_adopted = true}, kNow_s).next_text, "go on to the fluid check");
+  EXPECT_EQ(tool_display(good, kProbe, {.is_adopted = true, .next_tool = "femoral guide: axis"}, kNow_s)
+                .next_text,
+            "go on to the femoral guide: axis");
+}
+
 // A simulated tip does not replace what a case knows of real tools.
 TEST(ToolDisplay, KeepsWhatMayNotBeReplaced) {
   const ToolRunStatus good = with_tip(PivotCalibrationSummary::Outcome::Ok, {});
