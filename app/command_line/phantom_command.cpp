@@ -31,7 +31,9 @@ void add_phantom_command(CLI::App& app, Context& context) {
     files::refuse_unwritable(folder);
     const auto knee =
         phantom::make_phantom_knee({.side = bones::side_from_text(arguments->side), .seed = arguments->seed});
-    cases::save_case(folder, phantom::case_of(knee, folder.stem().string()));
+    files::make_whole_folder(folder, [&](const std::filesystem::path& unfinished) {
+      cases::save_case(unfinished, phantom::case_of(knee, folder.stem().string()));
+    });
     workstation_library::note_case(folder);
     context.say("Wrote " + folder.string() + ": a " + arguments->side + " knee with its plan.");
   });

@@ -33,6 +33,7 @@ namespace {
 
 // An entry that lies further off the bone is a slip, not a rounding.
 constexpr double kSnapMm = 5.0;
+constexpr double kToldMm = 0.02;  // a move that is more than the rounding of what is typed
 
 struct PlanArguments {
   std::string case_folder, bone;
@@ -54,8 +55,10 @@ double diameter_mm_of(const PlanArguments& arguments) {
                                   : tunnels::usual_diameter_mm(norms::bundle_from_text(arguments.type));
 }
 
+// moved_mm: how far the entry was, to lie on the bone.
 tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case& knee,
-                               const geometry::Surface& surface) {
+                               const geometry::Surface& surface, double& moved_mm,
+                               std::vector<std::string>& notes) {
   const tunnels::TunnelKey key = key_of(arguments);
   const bones::BoneKind kind = key.bone;
   tunnels::Tunnel tunnel{.bone = kind,
@@ -72,11 +75,17 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
     tunnel.entry_mm = marks->second.at("native_footprint");
   }
   const auto nearest = surface.closest_point(tunnel.entry_mm);
-  const double off_mm = (nearest.point_mm - tunnel.entry_mm).norm();
-  if (off_mm > kSnapMm) {
+  const Eigen::Vector3d moved = nearest.point_mm - tunnel.entry_mm;
+  moved_mm = moved.norm();
+  if (moved_mm > kSnapMm) {
     throw InvalidInput(arguments.case_folder, arguments.bone,
-                       files::format("--entry lies %.1f mm off it, more than %.0f mm", off_mm, kSnapMm));
+                       files::format("--entry lies %.1f mm off it, more than %.0f mm", moved_mm, kSnapMm));
   }
+  if (moved_mm > kToldMm)
+    notes.push_back(files::format(
+        "The entry lay %.2f mm off the bone and was moved to its nearest point; the axis is %.2f mm beside "
+        "the one that was asked for.",
+        moved_mm, (moved - moved.dot(tunnel.direction) * tunnel.direction).norm()));
   tunnel.entry_mm = nearest.point_mm;
   if (!tunnels::measure(tunnel, surface).enters_bone) {
     throw InvalidInput(arguments.case_folder, arguments.bone, "--direction leads out of it at this entry");
@@ -252,7 +261,7 @@ void add_plan_command(CLI::App& app, Context& context) {
   sub->add_option("case", arguments->case_folder, "Case folder")->required();
   auto* bone =
       sub->add_option("--bone", arguments->bone, "femur or tibia")->check(CLI::IsMember({"femur", "tibia"}));
-  auto* entry = add_vector_option(*sub, "--entry", arguments->entry_mm, "Entry on the joint side, mm, LPS")
+  auto* entry = add_vector_option(*sub, "--entry", arguments->entry_mm, "Entry on the joint side, mm, LPS; up to 5 mm off the bone it is moved onto it, and that is said")
                     ->needs(bone);
   auto* direction =
       add_vector_option(*sub, "--direction", arguments->direction, "Direction of drilling, into the bone")
@@ -348,7 +357,7 @@ void add_plan_command(CLI::App& app, Context& context) {
       }
       const auto surface = std::make_shared<const geometry::Surface>(bone_of_case->second.mesh);
       put(arguments->by_default ? default_tunnel(*arguments, knee, kind, surface, verdict, proposed)
-                                : planned_tunnel(*arguments, knee, *surface),
+                                : planned_tunnel(*arguments, knee, *surface, verdict.entry_moved_mm, notes),
           bones::mesh_sha256(bone_of_case->second.mesh), knee, notes);
       arguments->names_type = true;  // what was placed is shown
     }

@@ -146,6 +146,7 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review
     node["off_norm_mm"] = verdict.off_norm_mm;
     if (const auto& p = verdict.passing_entry_mm) node["passing_entry_mm"] = {p->x(), p->y(), p->z()};
   }
+  if (verdict.entry_moved_mm > 0) node["entry_moved_mm"] = verdict.entry_moved_mm;
   if (verdict.kept_version > 0) node["kept_version"] = verdict.kept_version;
   node["reliable"] = verdict.is_reliable;
   node["reasons"] = verdict.reasons;

@@ -10,7 +10,7 @@ namespace {
 // By its ending, which also says what is written; into a device or a pipe of any name goes a PDF.
 void refuse_another_ending(const std::filesystem::path& output) {
   std::error_code ignored;
-  const std::filesystem::path ending = output.extension();
+  const std::string ending = report::ending_of(output);
   if (ending == ".pdf" || ending == ".json" || ending == ".csv" || std::filesystem::is_other(output, ignored))
     return;
   throw CLI::ValidationError("--output", output.string() + " ends in none of .pdf, .json and .csv");

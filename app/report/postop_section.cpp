@@ -1,6 +1,7 @@
 #include "app/report/postop_section.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "planning/files/format.h"
 
@@ -12,9 +13,10 @@ using files::format;
 
 constexpr TextStyle kSmall{.size_pt = 8.5, .bold = false, .ink = kGray};
 
-// In bone, as the plan of today has it; empty where the plan has no such tunnel, or it misses the bone.
+// In bone; empty where the plan has no such tunnel, is another one by now, or misses the bone.
 std::string planned_length(const Content& content, const tunnels::TunnelKey& key) {
   const auto plan = content.knee.plan.tunnels.find(key);
+  if (!postop::is_against(content.postoperative.at(key).tunnel, key, content.knee.plan.tunnels)) return {};
   const auto bone = content.knee.bones.find(key.bone);
   if (plan == content.knee.plan.tunnels.end() || bone == content.knee.bones.end()) return {};
   const auto geometry = tunnels::measure(plan->second, geometry::Surface(bone->second.mesh));
@@ -30,7 +32,10 @@ std::vector<std::string> column(const Content& content, const tunnels::TunnelKey
                                     verdict == "not reliable" ? "NOT RELIABLE" : verdict};
   if (found.is_found) {
     const auto plan = content.knee.plan.tunnels.find(key);
+    const bool is_of_plan = postop::is_against(found, key, content.knee.plan.tunnels);
     cells.push_back(format("%.2f mm ", found.offset_mm) + postop::sigma_in_words(found.entry_sigma_mm, 2));
+    cells.push_back(std::isfinite(found.offset_across_mm) ? format("%.2f mm", found.offset_across_mm)
+                                                          : "\u2013");
     const auto place = content.places.find(key);
     const bool has_place = place != content.places.end();
     const auto told = [&](std::string (&words)(const postop::AchievedPlace&)) {
@@ -42,16 +47,14 @@ std::vector<std::string> column(const Content& content, const tunnels::TunnelKey
     cells.push_back(format("%.2f\u00B0 ", geometry::deg_from_rad(found.angle_rad)) +
                     postop::sigma_in_words(geometry::deg_from_rad(found.direction_sigma_rad), 2));
     cells.push_back(format("%.1f mm", found.tunnel.diameter_mm) +
-                    (plan == content.knee.plan.tunnels.end()
-                         ? ""
-                         : format("; planned %.1f mm", plan->second.diameter_mm)));
+                    (is_of_plan ? format("; planned %.1f mm", plan->second.diameter_mm) : ""));
     const std::string widths = postop::widths_in_words(found.widths);
     cells.push_back(widths.empty() ? "not seen" : widths);
     cells.push_back(postop::length_in_words(found) + planned_length(content, key));
     cells.push_back(told(postop::wall_in_words));
     cells.push_back(format("%.0f %%", 100 * found.metal_share));
   } else {
-    cells.insert(cells.end(), 9, "\u2013");
+    cells.insert(cells.end(), 10, "\u2013");
   }
   cells.push_back(comparison.bone.is_found ? format("%.2f mm", comparison.bone.rms_mm) : "\u2013");
   return cells;
@@ -72,6 +75,7 @@ void draw_postop_section(FlowingPages& pages, const Content& content) {
   std::vector<std::vector<std::string>> rows = {{"Quantity"},
                                                 {"Verdict"},
                                                 {"Entry off the planned one"},
+                                                {"Axis off it, across the plan"},
                                                 {"Which way"},
                                                 {"Entry in the grid"},
                                                 {"Angle to the planned axis"},

@@ -1,6 +1,7 @@
 #include "app/report/report.h"
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 #include <vector>
 
@@ -378,12 +379,19 @@ Content reportable(const std::filesystem::path& case_folder, const ReportOptions
 
 }  // namespace
 
+std::string ending_of(const std::filesystem::path& output) {
+  std::string ending = output.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending;
+}
+
 std::vector<std::string> write_report(const std::filesystem::path& case_folder,
                                       const std::filesystem::path& output, const ReportOptions& options) {
   const Content content = reportable(case_folder, options);
-  if (output.extension() == ".json")
+  const std::string ending = ending_of(output);
+  if (ending == ".json")
     files::write_atomically(output, report_json(content, options));
-  else if (output.extension() == ".csv")
+  else if (ending == ".csv")
     files::write_atomically(output, report_csv(content, options));
   else
     Report(content, options).drawn().save(output);

@@ -32,6 +32,9 @@ struct ReportOptions {
   }
 };
 
+// ".pdf" of "Knee.PDF": what is written goes by it.
+[[nodiscard]] std::string ending_of(const std::filesystem::path& output);
+
 // Where none is named, the newest session with a drilled tunnel is reported, else the newest with a
 // registration; the report says so when there is none. By the output's ending: .json and .csv are the same
 // numbers for other programs, anything else is a PDF. Atomic. Throws IoError, InvalidInput (a broken case, a

@@ -165,6 +165,7 @@ ordered_json postoperative_of(const Content& content) {
     node["achieved"] = nullptr;
     if (found.is_found) node["achieved"] = json_of(found.tunnel);
     node["offset_mm"] = number(found.offset_mm);
+    node["offset_across_mm"] = number(found.offset_across_mm);
     node["angle_deg"] = number(geometry::deg_from_rad(found.angle_rad));
     node["length_mm"] = number(found.length_mm);
     node["comes_out"] = found.is_found ? ordered_json(found.comes_out) : ordered_json();

@@ -27,6 +27,8 @@ PoseRow read_row(const files::CsvTable& table, std::size_t row) {
                                             table.number(row, "tz_mm")};
   pose.rms_px = table.number(row, "rms_px");
   pose.mark_angle_deg = table.optional_number(row, "mark_angle_deg");
+  if (pose.mark_angle_deg && (*pose.mark_angle_deg < 0 || *pose.mark_angle_deg >= 360))
+    table.fail(row, "mark_angle_deg", "is not within [0, 360)");
   if (table.has_column("size_mm")) pose.size_mm = table.optional_number(row, "size_mm");
   if (pose.size_mm && *pose.size_mm <= 0) table.fail(row, "size_mm", "is not above zero");
   return pose;

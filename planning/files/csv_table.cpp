@@ -37,6 +37,8 @@ CsvTable CsvTable::parse(std::string_view text, const std::filesystem::path& nam
   table.file_ = name;
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (text.find('\n') == std::string_view::npos && text.find('\r') < text.size() - 1)
+    throw InvalidInput(name, "line 1", "its lines end in carriage returns alone: line feeds are expected");
   bool is_header = true;
   for (std::size_t line_number = 1; !text.empty(); ++line_number) {
     const auto end = text.find('\n');

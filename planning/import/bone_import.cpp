@@ -146,10 +146,15 @@ void refuse_without_threshold(const Volume& volume, const std::filesystem::path&
       {.reason = FailureReason::IsNoCt});
 }
 
-std::string list_of(const std::vector<std::pair<int, std::size_t>>& labels) {
+// Each with its segment's name, where it has one.
+std::string list_of(const std::vector<std::pair<int, std::size_t>>& labels,
+                    const std::vector<images::Segment>& segments) {
   std::string list;
   for (const auto& [value, count] : labels) {
-    if (value != 0) list += (list.empty() ? "" : ", ") + std::to_string(value);
+    if (value == 0) continue;
+    list += (list.empty() ? "" : ", ") + std::to_string(value);
+    const auto named = std::ranges::find(segments, value, &images::Segment::label);
+    if (named != segments.end()) list += " (" + named->name + ")";
   }
   return list;
 }
@@ -283,9 +288,8 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
         const auto labels = labels_of(volume);
         throw refusal(
             source,
-            "is a label map with the labels " + list_of(labels) +
-                ": say which are the bones, for example --label femur=" + std::to_string(labels[1].first) +
-                (labels.size() > 2 ? ",tibia=" + std::to_string(labels[2].first) : ""),
+            "is a label map with the labels " + list_of(labels, volume.segments) +
+                ": say which are the bones: --label femur=NUMBER" + (labels.size() > 2 ? ",tibia=NUMBER" : ""),
             {.reason = FailureReason::NeedsLabels, .labels = found_labels(volume)});
       }
       import_labels(images_of_bones, named, options, result, tell);

@@ -38,6 +38,7 @@ ordered_json tunnel_json(const tunnels::TunnelKey& key, const AchievedTunnel& ac
   json["diameter_sigma_mm"] = number(found, achieved.diameter_sigma_mm);
   json["length_sigma_mm"] = number(found, achieved.length_sigma_mm);
   json["metal_share"] = number(found, achieved.metal_share);
+  json["offset_across_mm"] = number(found, achieved.offset_across_mm);
   json["widths"] = ordered_json::array();
   for (const Width& width : achieved.widths)
     json["widths"].push_back({{"from_entry_mm", width.from_entry_mm},
@@ -95,6 +96,7 @@ AchievedTunnel tunnel_of(const files::JsonObject& node, const tunnels::TunnelKey
   achieved.length_mm = node.number("length_mm");
   achieved.offset_mm = node.number("offset_mm");
   achieved.angle_rad = geometry::rad_from_deg(node.number("angle_deg"));
+  if (node.has("offset_across_mm")) achieved.offset_across_mm = node.number("offset_across_mm");
   if (node.has("comes_out")) achieved.comes_out = node.boolean("comes_out");
   if (node.has("end_is_seen")) achieved.end_is_seen = node.boolean("end_is_seen");
   if (node.has("beyond_mm")) achieved.beyond_mm = node.number("beyond_mm");

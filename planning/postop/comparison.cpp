@@ -32,6 +32,12 @@ AchievedBone told(const FoundBone& found) {
   return bone;
 }
 
+double offset_across_mm(const tunnels::Tunnel& achieved, const tunnels::Tunnel& plan) {
+  const double along_mm = (plan.entry_mm - achieved.entry_mm).dot(plan.direction) /
+                          achieved.direction.dot(plan.direction);
+  return (achieved.entry_mm + along_mm * achieved.direction - plan.entry_mm).norm();
+}
+
 AchievedTunnel told(const DrilledTunnel& drilled, const FoundBone& bone, const tunnels::Tunnel& plan) {
   AchievedTunnel achieved;
   achieved.is_found = drilled.is_found;
@@ -43,6 +49,7 @@ AchievedTunnel told(const DrilledTunnel& drilled, const FoundBone& bone, const t
     achieved.end_is_seen = drilled.end_is_seen;
     achieved.beyond_mm = drilled.beyond_mm;
     achieved.offset_mm = (drilled.tunnel.entry_mm - plan.entry_mm).norm();
+    achieved.offset_across_mm = offset_across_mm(drilled.tunnel, plan);
     achieved.angle_rad = geometry::angle_between_rad(drilled.tunnel.direction, plan.direction);
     achieved.entry_sigma_mm = std::hypot(
         drilled.entry_sigma_mm, drilled.entry_per_across * bone.pose.sigma_at_mm(drilled.tunnel.entry_mm));

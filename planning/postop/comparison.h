@@ -50,6 +50,9 @@ struct AchievedTunnel {
   bool end_is_seen = true;  // false: how long it is is not known; the length is to where images or bone end
   double beyond_mm = 0;     // diameter of the thinner bore that goes on beyond a socket; 0: none is seen
   double offset_mm = 0;     // of the entry from the planned one
+  // From the planned entry to where the axis crosses the plane through it across the plan: what guidance
+  // calls the offset. Infinite where a file doesn't say.
+  double offset_across_mm = std::numeric_limits<double>::infinity();
   double angle_rad = 0;     // between the axes
   // One sigma each; infinite where a file doesn't say, or it is not known. Of entry and direction by the
   // scatter of the grey and the bone's pose. Of the diameter, and of the length: by the grey, and for an end

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iomanip>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
@@ -305,6 +307,28 @@ TEST_F(PlanCommand, AWrongPlanIsToldHoweverItWasMade) {
   const auto exported = run({"plan", "--export", folder_ / "out"});
   EXPECT_EQ(exported.exit_code, 0) << exported.errors;
   EXPECT_THAT(exported.output, HasSubstr("Wrong, and exported all the same: tibia: "));
+}
+
+// An entry that lies off the bone is moved onto it, and whoever typed it is told how far that took the axis.
+TEST_F(PlanCommand, AnEntryThatIsMovedOntoTheBoneIsTold) {
+  const Eigen::Vector3d on_bone = knee_.plan.tunnels.at(bones::BoneKind::Tibia).entry_mm;
+  const std::string direction = "0.3,-0.4,-0.8";
+  const auto placed_at = [&](const Eigen::Vector3d& at) {
+    std::ostringstream text;
+    text << std::setprecision(12) << at.x() << ',' << at.y() << ',' << at.z();
+    return std::vector<std::string>{"plan", "--bone", "tibia", "--entry=" + text.str(), "--direction",
+                                    direction};
+  };
+  EXPECT_THAT(run(placed_at(on_bone)).output, Not(HasSubstr("was moved")));
+  const Eigen::Vector3d asked = on_bone + Eigen::Vector3d(0, 0, 3);
+  EXPECT_THAT(run(placed_at(asked)).output, HasSubstr("off the bone and was moved to its nearest point"));
+  auto as_json = placed_at(asked);
+  as_json.emplace_back("--json");
+  const auto told = nlohmann::json::parse(run(as_json).output);
+  EXPECT_EQ(test::undescribed(told, "tunnel"), "");
+  const Eigen::Vector3d planned(told["entry_mm"][0], told["entry_mm"][1], told["entry_mm"][2]);
+  EXPECT_GT(told.at("entry_moved_mm").get<double>(), 0.5);
+  EXPECT_NEAR(told.at("entry_moved_mm").get<double>(), (planned - asked).norm(), 1e-6);
 }
 
 // Markups that say themselves that they are of the other knee are refused; of another plan they are doubted.

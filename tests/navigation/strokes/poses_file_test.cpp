@@ -68,6 +68,9 @@ TEST(PosesFile, RefusesWhatBreaksTheContract) {
   EXPECT_THAT(error_of("nan.csv", std::string(kHeader) + "0,0,0,1,0,0,0,nan,2,3,0.1,\n"),
               testing::HasSubstr("tx_mm"));
   EXPECT_THAT(error_of("column.csv", "frame,time_s,marker_id\n0,0,0\n"), testing::HasSubstr("qw"));
+  for (const char* angle : {"360", "-0.5"})
+    EXPECT_THAT(error_of("angle.csv", std::string(kHeader) + "0,0,0,1,0,0,0,1,2,3,0.1," + angle + "\n"),
+                testing::HasSubstr("line 2, column mark_angle_deg: is not within [0, 360)"));
   // 2^32 + 4 is no marker 4.
   EXPECT_THAT(
       error_of("id.csv", std::string(kHeader) + "0,0,4294967300,1,0,0,0,1,2,3,0.1,\n"),

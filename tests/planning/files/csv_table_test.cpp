@@ -53,6 +53,14 @@ TEST(CsvTable, AnotherSeparatorIsNamed) {
               HasSubstr("tabs: commas are expected"));
 }
 
+// As old programs of the Macintosh end their lines: all would be one header.
+TEST(CsvTable, LinesWithoutLineFeedsAreNamed) {
+  EXPECT_THAT(message_of<InvalidInput>([] { (void)CsvTable::parse("a,b\r1,2\r", "p.csv", {"a"}); }),
+              AllOf(HasSubstr("p.csv: line 1"), HasSubstr("carriage returns alone")));
+  EXPECT_EQ(CsvTable::parse("a,b\r\n1,2\r\n", "p.csv", {"a"}).row_count(), 1U);
+  EXPECT_EQ(CsvTable::parse("a,b\r", "p.csv", {"a"}).row_count(), 0U);
+}
+
 // 2^32 + 4 is not 4.
 TEST(CsvTable, AnIntegerThatAnIntDoesNotHoldIsRefused) {
   const CsvTable table = CsvTable::parse("id\n4294967300\n-2147483648\n", "p.csv", {});

@@ -99,6 +99,14 @@ TEST_F(Achieved, TunnelsAreFoundAwayFromThePlan) {
     EXPECT_TRUE(comparison.tunnel.comes_out);
     EXPECT_NEAR(comparison.tunnel.length_mm, tunnels::measure(tunnel, surface(bone)).length_mm, 0.4);
     EXPECT_NEAR(comparison.tunnel.offset_mm, (tunnel.entry_mm - plan(bone).entry_mm).norm(), 0.15);
+    // What guidance calls the offset: where the axis comes through the plane across the plan.
+    const auto height_mm = [&](double at_mm) {
+      return (tunnel.entry_mm + at_mm * tunnel.direction - plan(bone).entry_mm).dot(plan(bone).direction);
+    };
+    const double crossing_mm = 20 * height_mm(0) / (height_mm(0) - height_mm(20));
+    const double across_mm =
+        (tunnel.entry_mm + crossing_mm * tunnel.direction - plan(bone).entry_mm).norm();
+    EXPECT_NEAR(comparison.tunnel.offset_across_mm, across_mm, 0.15);
     EXPECT_NEAR(comparison.tunnel.angle_rad,
                 geometry::angle_between_rad(tunnel.direction, plan(bone).direction), 0.006);
   }
