@@ -40,24 +40,26 @@ const char* sign_of(PlanCheck::Verdict verdict) {
   return "    ";
 }
 
-bool has_grid(const plan_review::CaseReview& review, bones::BoneKind bone) {
-  const tunnels::PlanSurroundings& surroundings = review.bone(bone).surroundings;
-  return surroundings.quadrant || surroundings.plateau;
-}
-
 // What speaks against the landmarks that say where on its bone a tunnel begins; without a grid the checks
 // that need it say so themselves.
 std::string doubt_of_grid(const cases::Case& knee, const plan_review::CaseReview& review,
                           bones::BoneKind bone) {
-  return has_grid(review, bone) ? plan_review::grid_doubt(knee, bone) : "";
+  return review.bone(bone).surroundings.has_grid() ? plan_review::grid_doubt(knee, bone) : "";
 }
 
 // Of the same landmarks: "missing", "proposed", "incomplete" (its view's are missing) or "confirmed".
 const char* state_of_grid(const cases::Case& knee, const plan_review::CaseReview& review,
                           bones::BoneKind bone) {
-  if (!has_grid(review, bone)) return "missing";
-  const std::string doubt = plan_review::grid_doubt(knee, bone);
-  return doubt.empty() ? "confirmed" : doubt.starts_with("landmarks missing") ? "incomplete" : "proposed";
+  if (!review.bone(bone).surroundings.has_grid()) return "missing";
+  switch (plan_review::grid_state(knee, bone)) {
+    case landmarks::GridState::Confirmed:
+      return "confirmed";
+    case landmarks::GridState::Incomplete:
+      return "incomplete";
+    case landmarks::GridState::Proposed:
+      break;
+  }
+  return "proposed";
 }
 
 }  // namespace

@@ -36,10 +36,11 @@ void JudgedPlan::judge(const open_case::PlanModel& model,
   const auto checks = plan_review::checks_of(key, measured, model.surroundings(bone),
                                              model.knee_surroundings(), model.landmark_check(bone));
   const auto doubts = doubts_.find(bone);
-  const bool has_grid = model.surroundings(bone).quadrant || model.surroundings(bone).plateau;
   verdict_ = plan_review::verdict_of(
       checks, doubts == doubts_.end() ? std::vector<std::string>{} : doubts->second,
-      has_grid ? landmarks::grid_doubt(bone, model.landmarks(bone), model.landmark_states(bone)) : "");
+      model.surroundings(bone).has_grid()
+          ? landmarks::grid_doubt(bone, model.landmarks(bone), model.landmark_states(bone))
+          : "");
 }
 
 }  // namespace arthronaut::navigate

@@ -130,12 +130,12 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
                                                            panel.model.axes(panel.key.bone)));
   ImGui::Dummy({0, ui.theme.px(4)});
   draw_bone_doubts(ui, panel);
-  for (const tunnels::PlanCheck& check : worst_first(panel.model.checks(panel.key))) {
+  for (const tunnels::PlanCheck* const check : worst_first(panel.model.checks(panel.key))) {
     ImGui::BeginGroup();
-    widgets::status_row(ui, severity_of(check.verdict), check.name, files::with_signs(check.text));
+    widgets::status_row(ui, severity_of(check->verdict), check->name, files::with_signs(check->text));
     ImGui::EndGroup();
-    if (ImGui::IsItemHovered() && !check.source.empty())
-      widgets::tooltip(ui, files::with_signs(check.source));
+    if (ImGui::IsItemHovered() && !check->source.empty())
+      widgets::tooltip(ui, files::with_signs(check->source));
   }
   widgets::text_in(ui.theme.body, widgets::kQuietText,
                    "Customary values, not limits of safety. The surgeon decides.");

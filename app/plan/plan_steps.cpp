@@ -25,7 +25,7 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 NextStep to_theatre(const open_case::PlanModel& model, const StepState& state) {
-  const std::size_t count = warnings_of(model).size() + state.bone_doubts;
+  const std::size_t count = warning_count(model) + state.bone_doubts;
   return {
       "The plan can be taken to theatre" +
           (count == 0 ? "" : ", with " + std::to_string(count) + (count == 1 ? " warning" : " warnings")) +
@@ -42,29 +42,39 @@ bool has_joint(const open_case::PlanModel& model, BoneKind bone) {
 
 }  // namespace
 
-std::vector<tunnels::PlanCheck> worst_first(std::vector<tunnels::PlanCheck> checks) {
-  std::ranges::stable_sort(checks, {}, [](const tunnels::PlanCheck& check) {
-    return check.verdict == Verdict::Wrong ? 0 : check.verdict == Verdict::Look ? 1 : 2;
-  });
-  return checks;
+std::vector<const tunnels::PlanCheck*> worst_first(const std::vector<tunnels::PlanCheck>& checks) {
+  std::vector<const tunnels::PlanCheck*> in_order;
+  const auto add = [&](const auto& belongs) {
+    for (const tunnels::PlanCheck& check : checks)
+      if (belongs(check.verdict)) in_order.push_back(&check);
+  };
+  add([](Verdict verdict) { return verdict == Verdict::Wrong; });
+  add([](Verdict verdict) { return verdict == Verdict::Look; });
+  add([](Verdict verdict) { return verdict != Verdict::Wrong && verdict != Verdict::Look; });
+  return in_order;
 }
 
-std::vector<std::string> warnings_of(const open_case::PlanModel& model) {
-  std::vector<std::string> warnings;
-  const auto add = [&](const std::string& words) {
-    // What is said of both tunnels of a pair is one.
-    if (std::ranges::find(warnings, words) == warnings.end()) warnings.push_back(words);
-  };
-  for (const auto& [key, tunnel] : model.tunnels()) {
-    for (const tunnels::PlanCheck& check : model.checks(key))
-      if (check.verdict == Verdict::Look) add(check.name + ": " + check.text);
-    const auto& surroundings = model.surroundings(key.bone);
-    const std::string doubt =
-        landmarks::grid_doubt(key.bone, model.landmarks(key.bone), model.landmark_states(key.bone));
-    if ((surroundings.quadrant || surroundings.plateau) && !doubt.empty())
-      add("Grid of the " + std::string(bones::to_text(key.bone)) + ": " + doubt);
+std::size_t warning_count(const open_case::PlanModel& model) {
+  std::vector<const tunnels::PlanCheck*> said;
+  std::size_t grids = 0;
+  for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) {
+    bool is_planned = false;
+    for (const auto& [key, tunnel] : model.tunnels()) {
+      if (key.bone != bone) continue;
+      is_planned = true;
+      for (const tunnels::PlanCheck& check : model.checks(key)) {
+        // What is said of both tunnels of a pair is one.
+        const auto is_same = [&](const tunnels::PlanCheck* other) {
+          return other->name == check.name && other->text == check.text;
+        };
+        if (check.verdict == Verdict::Look && std::ranges::none_of(said, is_same)) said.push_back(&check);
+      }
+    }
+    if (is_planned && model.surroundings(bone).has_grid() &&
+        !landmarks::is_grid_confirmed(bone, model.landmarks(bone), model.landmark_states(bone)))
+      ++grids;
   }
-  return warnings;
+  return said.size() + grids;
 }
 
 std::vector<std::string> missing_for_default(const open_case::PlanModel& model, BoneKind bone) {

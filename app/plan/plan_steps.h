@@ -34,12 +34,14 @@ struct StepState {
 // drilled, the other bundle's, the other bone's; else to theatre.
 [[nodiscard]] NextStep next_step(const open_case::PlanModel& model, const StepState& state);
 
-// The same checks with what speaks against the tunnel first: wrong, to be looked at, then the rest, each as
-// they were.
-[[nodiscard]] std::vector<tunnels::PlanCheck> worst_first(std::vector<tunnels::PlanCheck> checks);
+// The same checks, for as long as they are there, with what speaks against the tunnel first: wrong, to be
+// looked at, then the rest, each as they were.
+[[nodiscard]] std::vector<const tunnels::PlanCheck*> worst_first(
+    const std::vector<tunnels::PlanCheck>& checks);
 
-// What is to be looked at in the plan of both bones, each once: "Roof: ...".
-[[nodiscard]] std::vector<std::string> warnings_of(const open_case::PlanModel& model);
+// How much is to be looked at in the plan of both bones: of their tunnels, what is said of several once, and
+// of their grids.
+[[nodiscard]] std::size_t warning_count(const open_case::PlanModel& model);
 
 // The landmarks without which the bone has no default plan, by their titles; empty where one can be made.
 // Precondition: has_bone(bone).

@@ -230,8 +230,8 @@ std::vector<std::string> shortcomings_of(const Content& content) {
 
 std::string grid_doubt(const Content& content, bones::BoneKind bone) {
   if (!content.review->has_bone(bone)) return "";
-  const tunnels::PlanSurroundings& surroundings = content.review->bone(bone).surroundings;
-  return surroundings.quadrant || surroundings.plateau ? plan_review::grid_doubt(content.knee, bone) : "";
+  return content.review->bone(bone).surroundings.has_grid() ? plan_review::grid_doubt(content.knee, bone)
+                                                            : "";
 }
 
 std::optional<postop::AchievedPlace> place_of(const Content& content,

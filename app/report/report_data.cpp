@@ -210,7 +210,8 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
     json["bone_doubts"][std::string(bones::to_text(kind))] = doubts;
   json["proposed_landmarks"] = ordered_json::array();  // bones whose grid and axes follow from such
   for (const auto& [kind, bone] : content.knee.bones)
-    if (grid_doubt(content, kind).starts_with("landmarks proposed"))
+    if (content.review->has_bone(kind) && content.review->bone(kind).surroundings.has_grid() &&
+        plan_review::grid_state(content.knee, kind) == landmarks::GridState::Proposed)
       json["proposed_landmarks"].push_back(bones::to_text(kind));
   json["plan_sha256"] = cases::plan_sha256(cases::with_named_meshes(content.knee));
   json["tunnels"] = tunnels_of(content);

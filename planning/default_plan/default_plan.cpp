@@ -329,12 +329,17 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
     if (landmarks::LandmarkStates states = input.states;
         !landmarks::has_grid(input.bone->mesh, kind, side, marks) || !joint_of(input, marks, side))
       landmarks::take_proposal(*proposal, marks, states);
-    std::string names;
+    std::string proposed, missing;
     for (const std::string& name : landmarks::grid_landmarks(kind, marks)) {
-      if (!is_confirmed(name)) names += (names.empty() ? "" : ", ") + name;
+      if (is_confirmed(name)) continue;
+      std::string& names = marks.contains(name) ? proposed : missing;
+      names += (names.empty() ? "" : ", ") + name;
     }
-    result.doubts.push_back("the " + std::string(bones::to_text(kind)) +
-                            "'s landmarks are proposed and nobody has confirmed them: " + names);
+    const std::string of_bone = "the " + std::string(bones::to_text(kind)) + "'s landmarks ";
+    if (!proposed.empty())
+      result.doubts.push_back(of_bone + "are proposed and nobody has confirmed them: " + proposed);
+    if (!missing.empty())
+      result.doubts.push_back(of_bone + "that its grid needs are not all there: " + missing);
     result.doubts.insert(result.doubts.end(), proposal->doubts.begin(), proposal->doubts.end());
   }
   if (options.stop.stop_requested()) return stopped();

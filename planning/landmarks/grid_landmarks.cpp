@@ -18,10 +18,19 @@ std::vector<std::string> grid_landmarks(bones::BoneKind bone, const Landmarks& k
   return names;
 }
 
+GridState grid_state(bones::BoneKind bone, const Landmarks& known, const LandmarkStates& states) {
+  GridState state = GridState::Confirmed;
+  for (const std::string& name : grid_landmarks(bone, known)) {
+    if (!known.contains(name))
+      state = GridState::Incomplete;
+    else if (state_of(states, name) == LandmarkState::Proposed)
+      return GridState::Proposed;
+  }
+  return state;
+}
+
 bool is_grid_confirmed(bones::BoneKind bone, const Landmarks& known, const LandmarkStates& states) {
-  return std::ranges::all_of(grid_landmarks(bone, known), [&](const std::string& name) {
-    return known.contains(name) && state_of(states, name) == LandmarkState::Confirmed;
-  });
+  return grid_state(bone, known, states) == GridState::Confirmed;
 }
 
 std::string grid_doubt(bones::BoneKind bone, const Landmarks& known, const LandmarkStates& states) {

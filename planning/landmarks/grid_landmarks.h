@@ -13,7 +13,12 @@ namespace arthronaut::landmarks {
 // when these are known. Of what it needs also those that are not known.
 [[nodiscard]] std::vector<std::string> grid_landmarks(bones::BoneKind bone, const Landmarks& known);
 
-// Whether somebody has looked at all of these, and none is missing.
+// How well a grid is looked after: somebody has looked at all of its landmarks, and none is missing; one at
+// least is as the bone's shape proposes it; somebody has looked at all that are there, and one is missing.
+enum class GridState { Confirmed, Proposed, Incomplete };
+[[nodiscard]] GridState grid_state(bones::BoneKind bone, const Landmarks& known,
+                                   const LandmarkStates& states);
+// The first of these.
 [[nodiscard]] bool is_grid_confirmed(bones::BoneKind bone, const Landmarks& known,
                                      const LandmarkStates& states);
 

@@ -1,10 +1,23 @@
 #include "planning/plan_review/tunnel_verdict.h"
 
-#include "planning/landmarks/grid_landmarks.h"
-
 namespace arthronaut::plan_review {
 
 using Verdict = tunnels::PlanCheck::Verdict;
+
+namespace {
+
+struct KnownLandmarks {
+  landmarks::Landmarks at_mm;
+  landmarks::LandmarkStates states;
+};
+KnownLandmarks known_of(const cases::Case& knee, bones::BoneKind kind) {
+  const auto marks = knee.landmarks.find(kind);
+  const auto states = knee.landmark_states.find(kind);
+  return {marks == knee.landmarks.end() ? landmarks::Landmarks{} : marks->second,
+          states == knee.landmark_states.end() ? landmarks::LandmarkStates{} : states->second};
+}
+
+}  // namespace
 
 Verdict TunnelVerdict::worst() const {
   return is_wrong() ? Verdict::Wrong : is_fine() ? Verdict::Fine : Verdict::Look;
@@ -29,12 +42,14 @@ TunnelVerdict verdict_of(const std::vector<tunnels::PlanCheck>& checks,
   return verdict;
 }
 
+landmarks::GridState grid_state(const cases::Case& knee, bones::BoneKind kind) {
+  const KnownLandmarks known = known_of(knee, kind);
+  return landmarks::grid_state(kind, known.at_mm, known.states);
+}
+
 std::string grid_doubt(const cases::Case& knee, bones::BoneKind kind) {
-  const auto marks = knee.landmarks.find(kind);
-  const auto states = knee.landmark_states.find(kind);
-  return landmarks::grid_doubt(
-      kind, marks == knee.landmarks.end() ? landmarks::Landmarks{} : marks->second,
-      states == knee.landmark_states.end() ? landmarks::LandmarkStates{} : states->second);
+  const KnownLandmarks known = known_of(knee, kind);
+  return landmarks::grid_doubt(kind, known.at_mm, known.states);
 }
 
 std::string side_doubt(const cases::BoneDoubts& doubts) {

@@ -7,6 +7,7 @@
 
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
+#include "planning/landmarks/grid_landmarks.h"
 #include "planning/tunnels/plan_checks.h"
 
 namespace arthronaut::plan_review {
@@ -30,8 +31,9 @@ struct TunnelVerdict {
                                        const std::vector<std::string>& bone_doubts,
                                        const std::string& grid_doubt);
 
-// What speaks against the grid of a case's bone, in words that follow "Grid: "; empty where all that it
-// follows from is confirmed.
+// Of the grid of a case's bone: how well it is looked after, and what speaks against it, in words that follow
+// "Grid: "; empty where all that it follows from is confirmed.
+[[nodiscard]] landmarks::GridState grid_state(const cases::Case& knee, bones::BoneKind kind);
 [[nodiscard]] std::string grid_doubt(const cases::Case& knee, bones::BoneKind kind);
 // The first of the doubts by which the bones are of the other knee than their case; empty where none is.
 [[nodiscard]] std::string side_doubt(const cases::BoneDoubts& doubts);

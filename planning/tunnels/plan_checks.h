@@ -53,6 +53,9 @@ struct PlanSurroundings {
   // The expected footprints of the ligament and of its bundles, as they lie on the bone; a missing one is
   // unknown.
   std::map<norms::Bundle, geometry::SurfacePatch> footprints = {};
+
+  // Whether the landmarks give the percentages of a point on this bone.
+  [[nodiscard]] bool has_grid() const { return quadrant || plateau; }
 };
 // Without footprints, which come from norms. surface: of that mesh; without it the entry is not
 // checked.

@@ -124,11 +124,11 @@ TEST(NextStep, ADoubtedSideComesFirst) {
 // A plan with open warnings can be taken to theatre, and says how many.
 TEST(NextStep, ToTheatreWithItsWarnings) {
   open_case::PlanModel model(knee());
-  const std::size_t before = warnings_of(model).size();
+  const std::size_t before = warning_count(model);
   tunnels::Tunnel wide = *model.tunnel(BoneKind::Tibia);
   wide.diameter_mm = 6;
   model.set_tunnel(BoneKind::Tibia, wide);
-  EXPECT_GT(warnings_of(model).size(), before);
+  EXPECT_GT(warning_count(model), before);
   const NextStep next = next_step(model, {});
   EXPECT_EQ(next.action, "mode.setup");
   EXPECT_TRUE(next.text.starts_with("The plan can be taken to theatre, with ")) << next.text;
@@ -157,14 +157,13 @@ TEST(NextStep, NamesTheLandmarksThatADefaultLacks) {
 
 TEST(WorstFirst, KeepsTheOrderOfTheRest) {
   using Verdict = tunnels::PlanCheck::Verdict;
+  const std::vector<tunnels::PlanCheck> checks{{.verdict = Verdict::Fine, .name = "a", .text = ""},
+                                               {.verdict = Verdict::Look, .name = "b", .text = ""},
+                                               {.verdict = Verdict::NotChecked, .name = "c", .text = ""},
+                                               {.verdict = Verdict::Wrong, .name = "d", .text = ""},
+                                               {.verdict = Verdict::Look, .name = "e", .text = ""}};
   std::string order;
-  for (const tunnels::PlanCheck& check :
-       worst_first({{.verdict = Verdict::Fine, .name = "a", .text = ""},
-                    {.verdict = Verdict::Look, .name = "b", .text = ""},
-                    {.verdict = Verdict::NotChecked, .name = "c", .text = ""},
-                    {.verdict = Verdict::Wrong, .name = "d", .text = ""},
-                    {.verdict = Verdict::Look, .name = "e", .text = ""}}))
-    order += check.name;
+  for (const tunnels::PlanCheck* const check : worst_first(checks)) order += check->name;
   EXPECT_EQ(order, "dbeac");
 }
 

@@ -196,6 +196,23 @@ TEST(DefaultPlan, SaysThatNobodyHasConfirmedItsLandmarks) {
   }
 }
 
+// What is not there has been proposed by nobody: a grid that is seen along the scanner's axis, since the pair
+// of condyles that tells its view is missing, is not called one that waits to be confirmed.
+TEST(DefaultPlan, CallsMissingLandmarksMissing) {
+  const Knee& knee = knee_of(Side::Right);
+  BoneInput femur = knee.inputs(true)[0];
+  femur.states.clear();  // as placed by hand
+  std::erase_if(femur.landmarks, [](const auto& one) {
+    return one.first.ends_with("_condyle_center") || one.first.ends_with("_condyle_posterior");
+  });
+  const auto made = plan_bone(femur, Side::Right);
+  ASSERT_TRUE(made.is_usable()) << made.message;
+  ASSERT_FALSE(made.doubts.empty());
+  EXPECT_EQ(made.doubts[0],
+            "the femur's landmarks that its grid needs are not all there: lateral_condyle_posterior, "
+            "medial_condyle_posterior");
+}
+
 // Landmarks that were proposed otherwise, as by an older version that proposed fewer, are planned by as they
 // are: they are what is shown and checked by. Where they give no grid all of them give way.
 TEST(DefaultPlan, IsNeverOfTwoProposals) {
