@@ -65,6 +65,27 @@ BoneSolid solid_of(const Volume& volume, const Box& box, const VoxelMask& part, 
   return solid;
 }
 
+VoxelMask within_other(const BoneSolid& solid, const BoneSolid* other) {
+  VoxelMask within(solid.mask.size);
+  if (other == nullptr) return within;
+  for (std::size_t v = 0; v < within.inside.size(); ++v) {
+    const Eigen::Array3i there = (solid.box.first + within.index_of(v) - other->box.first).array();
+    if ((there < 0).any() || (there >= other->mask.size.array()).any()) continue;
+    within.inside[v] = other->mask.inside[other->mask.index(there.x(), there.y(), there.z())];
+  }
+  return within;
+}
+
+PieceExtent extent_of(const std::vector<Eigen::Vector3d>& points_mm) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), low = points_mm.front(), high = low;
+  for (const Eigen::Vector3d& p : points_mm) {
+    sum += p;
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return {sum / static_cast<double>(points_mm.size()), high.z() - low.z(), low.z()};
+}
+
 double SectionProfile::largest_mm2() const {
   return area_mm2.empty() ? 0 : *std::max_element(area_mm2.begin(), area_mm2.end());
 }

@@ -24,6 +24,16 @@ struct BoneSolid {
 [[nodiscard]] BoneSolid solid_of(const images::Volume& volume, const Box& box, const images::VoxelMask& part,
                                  double closing_radius_mm);
 
+// Where a piece lies and how tall it is; LPS.
+struct PieceExtent {
+  Eigen::Vector3d center_mm;
+  double height_mm = 0, low_mm = 0;
+};
+[[nodiscard]] PieceExtent extent_of(const std::vector<Eigen::Vector3d>& points_mm);  // at least one
+
+// Of the box of the one solid what lies in the other one; nothing without another (null).
+[[nodiscard]] images::VoxelMask within_other(const BoneSolid& solid, const BoneSolid* other);
+
 // Cross-sections at right angles to the patient's up, 2 mm thick or a slice.
 struct SectionProfile {
   double low_mm = 0, step_mm = 2;  // LPS z of the first section's lower side

@@ -34,6 +34,8 @@ constexpr double kLeastSection_mm2 = 1300;
 constexpr double kMostBelowCondyles_mm = 42, kMostAbovePlateau_mm = 18;
 // A candidate that is alone is parted only where this much of a joint is seen, and into two that are bones.
 constexpr double kSureJoint_mm2 = 700, kLeastPart_mm3 = 8000;
+// More of a cut beside the joint space may have left a piece of one bone on the other.
+constexpr double kMostOffJoint_mm2 = 100;
 // Knees lie further apart than bones of one.
 constexpr double kBetweenKnees_mm = 70;
 // Between the middles of tibia and fibula, level. Rails of the table are as slender, and lie further off.
@@ -54,14 +56,9 @@ struct Candidate {
   }
 };
 
-struct Slender {
-  Eigen::Vector3d center_mm;
-  double height_mm = 0, low_mm = 0;
-};
-
 struct Found {
   std::vector<Candidate> candidates;  // highest first
-  std::vector<Slender> slender;
+  std::vector<PieceExtent> slender;
 };
 
 void tell(const CtBonesOptions& options, double fraction) {
@@ -86,7 +83,8 @@ Found found_pieces(const Volume& volume, const CtBonesOptions& options) {
     if (candidate.profile.volume_mm3 < kLeastPiece_mm3) continue;
     if (candidate.profile.largest_mm2() < kLeastSection_mm2) {  // it may be the cortex alone
       BoneSolid whole = candidate.solid;
-      if (close_marrow(volume, whole).widest_mm > 0) candidate.profile = profile_of(volume, whole);
+      if (close_marrow(volume, whole, VoxelMask(whole.mask.size), threshold).widest_mm > 0)
+        candidate.profile = profile_of(volume, whole);
     }
     if (candidate.profile.largest_mm2() < kLeastSection_mm2) {
       const SectionProfile& p = candidate.profile;
@@ -117,7 +115,7 @@ void keep_one_knee(Found& found, const CtBonesOptions& options, CtBones& result)
   const bool is_left = *options.side == Side::Left;
   const auto is_other = [&](double x) { return is_left ? x < gaps.back() : x > gaps.front(); };
   std::erase_if(all, [&](const Candidate& c) { return is_other(c.profile.center_mm.x()); });
-  std::erase_if(found.slender, [&](const Slender& s) { return is_other(s.center_mm.x()); });
+  std::erase_if(found.slender, [&](const PieceExtent& s) { return is_other(s.center_mm.x()); });
   result.notes.push_back("more than one knee is seen: the bones farthest on the patient's " +
                          std::string(bones::to_text(*options.side)) + " were taken");
 }
@@ -135,8 +133,9 @@ bool stands_below_a_bone(const Found& found, std::size_t at) {
 }
 
 // The joint is looked for between the shafts, from a little above the section that may be the condyles'.
+// `off_joint_mm2`: see PartedBones.
 bool part_at_joint(const Volume& volume, Found& found, std::size_t at, const CtBonesOptions& options,
-                   CtBones& result) {
+                   CtBones& result, double& off_joint_mm2) {
   const Candidate& whole = found.candidates[at];
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = -low;
   for (int corner = 0; corner < 8; ++corner) {
@@ -156,6 +155,7 @@ bool part_at_joint(const Volume& volume, Found& found, std::size_t at, const CtB
   if (!joint || (!is_needed && joint->area_mm2 < kSureJoint_mm2)) return false;
   PartedBones parted =
       part_bones(volume, whole.solid, *joint, options.threshold_for(volume), options.closing_radius_mm);
+  off_joint_mm2 = std::max(off_joint_mm2, parted.off_joint_mm2);
   Candidate femur{std::move(parted.above), {}}, tibia{std::move(parted.below), {}};
   femur.profile = profile_of(volume, femur.solid);
   tibia.profile = profile_of(volume, tibia.solid);
@@ -200,17 +200,8 @@ struct Appendage {
   std::vector<Eigen::Vector3d> taken_mm;
   bool is_fibula = false;  // runs beside the shaft to its end, as no outgrowth does
   bool stays = false;      // it is seen, and could not be parted
+  bool remains = false;    // something hangs on the bone still
 };
-
-Slender slender_of(const std::vector<Eigen::Vector3d>& points_mm) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), low = points_mm.front(), high = low;
-  for (const Eigen::Vector3d& p : points_mm) {
-    sum += p;
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  return {sum / static_cast<double>(points_mm.size()), high.z() - low.z(), low.z()};
-}
 
 Appendage take_off(const Volume& volume, BoneKind kind, Candidate& candidate, const VoxelMask& marrow) {
   Appendage appendage;
@@ -220,16 +211,21 @@ Appendage take_off(const Volume& volume, BoneKind kind, Candidate& candidate, co
     appendage.taken_mm = std::move(parted.taken_mm);
     is_seen = parted.outcome == PartedFibula::Outcome::NotParted;
     appendage.is_fibula = !appendage.taken_mm.empty() &&
-                          slender_of(appendage.taken_mm).low_mm < candidate.profile.low_mm + kFibulaEnds_mm;
+                          extent_of(appendage.taken_mm).low_mm < candidate.profile.low_mm + kFibulaEnds_mm;
   }
-  if (appendage.taken_mm.empty()) appendage.taken_mm = take_off_appendage(volume, candidate.solid, marrow);
+  if (appendage.taken_mm.empty()) {
+    appendage.taken_mm = take_off_appendage(volume, candidate.solid, marrow);
+  } else {  // what hangs on it by a neck now may be what remains of the fibula
+    BoneSolid looked_at = candidate.solid;
+    appendage.remains = !take_off_appendage(volume, looked_at, marrow).empty();
+  }
   appendage.stays = is_seen && appendage.taken_mm.empty();
   if (!appendage.taken_mm.empty()) candidate.profile = profile_of(volume, candidate.solid);
   return appendage;
 }
 
 // Which side of the tibia a fibula's piece lies on; nullopt where it lies where none is.
-std::optional<Side> side_of(const Slender& piece, const SectionProfile& tibia) {
+std::optional<Side> side_of(const PieceExtent& piece, const SectionProfile& tibia) {
   const Eigen::Vector3d from_tibia = piece.center_mm - tibia.center_mm;
   if (piece.center_mm.z() > tibia.high_mm() || std::abs(from_tibia.x()) < kLeastAside_mm ||
       from_tibia.head<2>().norm() > kFurthestFibula_mm)
@@ -244,18 +240,18 @@ struct FibulaSide {
   std::optional<Side> side;
   bool is_contradicted = false;  // one on either side
 };
-FibulaSide side_by_fibula(const std::vector<Slender>& free, const Appendage& appendage,
+FibulaSide side_by_fibula(const std::vector<PieceExtent>& free, const Appendage& appendage,
                           const SectionProfile& tibia) {
   FibulaSide told;
-  const auto say = [&](const Slender& piece) {
+  const auto say = [&](const PieceExtent& piece) {
     const auto side = side_of(piece, tibia);
     if (side && told.side && *side != *told.side) told.is_contradicted = true;
     if (side) told.side = side;
   };
-  for (const Slender& piece : free)
+  for (const PieceExtent& piece : free)
     if (piece.height_mm > kLeastFibula_mm) say(piece);
   if (!appendage.taken_mm.empty()) {
-    const Slender taken = slender_of(appendage.taken_mm);
+    const PieceExtent taken = extent_of(appendage.taken_mm);
     if (appendage.is_fibula || (!told.side && taken.height_mm > kLeastFibula_mm)) say(taken);
   }
   if (told.is_contradicted) told.side.reset();
@@ -267,19 +263,7 @@ CtBone surface_of(const Volume& volume, BoneKind kind, const Candidate& candidat
   CtBone bone;
   bone.kind = kind;
   const BoneSolid& solid = candidate.solid;
-  VoxelMask others(solid.mask.size);
-  if (other) {
-    for (int k = 0; k < solid.mask.size.z(); ++k) {
-      for (int j = 0; j < solid.mask.size.y(); ++j) {
-        for (int i = 0; i < solid.mask.size.x(); ++i) {
-          const Eigen::Vector3i there = solid.box.first + Eigen::Vector3i(i, j, k) - other->solid.box.first;
-          if ((there.array() < 0).any() || (there.array() >= other->solid.mask.size.array()).any()) continue;
-          others.inside[others.index(i, j, k)] =
-              other->solid.mask.inside[other->solid.mask.index(there.x(), there.y(), there.z())];
-        }
-      }
-    }
-  }
+  VoxelMask others = within_other(solid, other ? &other->solid : nullptr);
   const Eigen::Affine3d index_from_lps = volume.lps_from_index.inverse();
   for (const Eigen::Vector3d& p : appendage.taken_mm) {
     const Eigen::Vector3i at = (index_from_lps * p).array().round().cast<int>().matrix() - solid.box.first;
@@ -292,6 +276,9 @@ CtBone surface_of(const Volume& volume, BoneKind kind, const Candidate& candidat
                     options.threshold_for(volume), candidate.profile.volume_mm3 / 1000));
   if (appendage.stays)
     bone.doubts.push_back("the fibula hangs on it and could not be parted from it: look at its outer side");
+  if (appendage.remains)
+    bone.doubts.push_back(
+        "where the fibula was taken off something hangs on it still: look at its outer side");
   if (!appendage.taken_mm.empty())
     bone.notes.push_back(kind == BoneKind::Femur ? "a bone that touches (the patella) was taken off"
                          : appendage.is_fibula
@@ -321,11 +308,12 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
                        values_in_words(volume));
   }
   bool is_joined = false;
+  double off_joint_mm2 = 0;
   for (std::size_t i = 0; i < found.candidates.size(); ++i) {
     if (stands_below_a_bone(found, i)) continue;
     const bool holds_both = found.candidates[i].may_hold_both();
     if (!holds_both && found.candidates.size() > 1) continue;
-    if (part_at_joint(volume, found, i, options, result)) {
+    if (part_at_joint(volume, found, i, options, result, off_joint_mm2)) {
       ++i;
     } else {
       is_joined = is_joined || holds_both;
@@ -348,10 +336,17 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
     work(0);
     for (auto& other : others) other.get();
   };
+  const auto other_of = [&](std::size_t i) {
+    return wanted[i].second == chosen.femur ? chosen.tibia : chosen.femur;
+  };
   std::vector<double> gaps_mm(wanted.size());
+  std::vector<VoxelMask> others;  // as they are parted, before either is closed
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    others.push_back(within_other(wanted[i].second->solid, other_of(i) ? &other_of(i)->solid : nullptr));
   for_each_bone([&](std::size_t i) {
     Candidate& candidate = *wanted[i].second;
-    const ClosedMarrow closed = close_marrow(volume, candidate.solid);
+    const ClosedMarrow closed =
+        close_marrow(volume, candidate.solid, others[i], options.threshold_for(volume));
     gaps_mm[i] = closed.widest_mm;
     if (closed.widest_mm > 0) candidate.profile = profile_of(volume, candidate.solid);
     appendages[i] = take_off(volume, wanted[i].first, candidate, closed.voxels);
@@ -359,8 +354,8 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
   tell(options, 0.8);
   result.bones.resize(wanted.size());
   for_each_bone([&](std::size_t i) {
-    const Candidate* other = wanted[i].second == chosen.femur ? chosen.tibia : chosen.femur;
-    result.bones[i] = surface_of(volume, wanted[i].first, *wanted[i].second, other, appendages[i], options);
+    result.bones[i] =
+        surface_of(volume, wanted[i].first, *wanted[i].second, other_of(i), appendages[i], options);
     if (gaps_mm[i] > 0)
       result.bones[i].notes.push_back(files::format(
           "its cortex has gaps of up to %.0f mm at the threshold, across which the marrow was closed off",
@@ -369,6 +364,11 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
   for (CtBone& bone : result.bones) {
     if (is_joined)
       bone.doubts.push_back("femur and tibia seem to touch, and no joint space is seen between them");
+    if (off_joint_mm2 > kMostOffJoint_mm2)
+      bone.doubts.push_back(files::format(
+          "femur and tibia touch, and over %.0f cm\u00B2 no joint space parts them: a piece of the "
+          "one may have gone with the other, look at both where they meet",
+          std::max(1.0, std::round(off_joint_mm2 / 100))));
   }
   if (chosen.tibia) {
     Appendage of_tibia;

@@ -16,7 +16,10 @@ using images::VoxelMask;
 // The sheet is smooth, and told in steps of 1 mm over columns of 2 mm: so near to it the darkest voxels lie
 // where it is seen. Where it is not, beside the plates that face each other, it only goes on somehow.
 constexpr double kSeenWithin_mm = 2, kUnseenWithin_mm = 8;
+// The further off, the less it tells: as steeply as the eminences rise beside the plates.
+constexpr double kUnseenSlope = 1.5;
 constexpr double kLeastMarrow_mm3 = 2000;
+constexpr double kLeastOff_mm = 3;
 
 enum Bone : std::uint8_t { kNone = 0, kAbove = 1, kBelow = 2 };
 
@@ -39,7 +42,8 @@ Bones bones_by_sheet(const Volume& volume, const BoneSolid& whole, const JointSp
     const JointSpace::Sheet sheet = joint.at(p.x(), p.y());
     const double above_mm = p.z() - sheet.height_mm;
     bones.grey[v] = volume.at(index.x(), index.y(), index.z());
-    if (bright.inside[v] && std::abs(above_mm) < (sheet.is_seen ? kSeenWithin_mm : kUnseenWithin_mm)) {
+    const double within_mm = std::min(kUnseenWithin_mm, kSeenWithin_mm + kUnseenSlope * sheet.from_seen_mm);
+    if (bright.inside[v] && std::abs(above_mm) < within_mm) {
       bones.is_open.inside[v] = 1;
     } else {
       bones.of_voxel[v] = above_mm > 0 ? kAbove : kBelow;
@@ -116,6 +120,27 @@ BoneSolid alone(const Volume& volume, const BoneSolid& whole, const std::vector<
   return solid;
 }
 
+double off_joint_mm2(const Volume& volume, const BoneSolid& whole, const JointSpace& joint,
+                     const std::vector<std::uint8_t>& bones) {
+  const Eigen::Vector3d spacing = volume.spacing_mm();
+  const double far_mm = std::max(kLeastOff_mm, spacing.maxCoeff() + 0.5 * joint.step_mm);
+  double area_mm2 = 0;
+  for (std::size_t v = 0; v < bones.size(); ++v) {
+    if (bones[v] != kAbove) continue;
+    for (unsigned axis = 0; axis < 3; ++axis)
+      images::for_each_neighbour(
+          whole.mask.size, v,
+          [&](std::size_t beside) {
+            if (bones[beside] != kBelow) return;
+            const Eigen::Vector3d p = 0.5 * (whole.lps_of(volume, v) + whole.lps_of(volume, beside));
+            if (std::abs(p.z() - joint.at(p.x(), p.y()).height_mm) > far_mm)
+              area_mm2 += spacing.prod() / spacing[axis];
+          },
+          1U << axis);
+  }
+  return area_mm2;
+}
+
 }  // namespace
 
 PartedBones part_bones(const Volume& volume, const BoneSolid& whole, const JointSpace& joint,
@@ -124,7 +149,8 @@ PartedBones part_bones(const Volume& volume, const BoneSolid& whole, const Joint
   Bones bones = bones_by_sheet(volume, whole, joint, bright, marrow_within(volume, whole, bright));
   flood(bright, bones);
   return {alone(volume, whole, bones.of_voxel, kAbove, closing_radius_mm),
-          alone(volume, whole, bones.of_voxel, kBelow, closing_radius_mm)};
+          alone(volume, whole, bones.of_voxel, kBelow, closing_radius_mm),
+          off_joint_mm2(volume, whole, joint, bones.of_voxel)};
 }
 
 }  // namespace arthronaut::segmentation

@@ -13,6 +13,9 @@ namespace arthronaut::segmentation {
 
 struct PartedBones {
   BoneSolid above, below;  // the largest piece of each side; empty where there is none
+  // Over which they part further from the joint space than it is told to (a slice, 3 mm at least): there no
+  // darker voxels part them, and a part of one may have gone with the other.
+  double off_joint_mm2 = 0;
 };
 
 // `whole` holds both; of it only what reaches the threshold is parted.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "planning/images/voxel_mask.h"
+
 namespace arthronaut::segmentation {
 
 namespace {
@@ -20,7 +22,9 @@ constexpr double kLeastArea_mm2 = 500;
 // How far from level the sheet may run, and what a step of it costs.
 constexpr int kReach = 14;
 constexpr float kCostPerStep_hu = 30;
-constexpr int kSweeps = 6;
+// Lines of columns hold each other from the first sweep to this one more and more: held at once, a valley a
+// step beside the level is left out, since no line leaves the level alone.
+constexpr int kSweeps = 8, kHeldFromSweep = 4;
 
 struct Columns {
   Eigen::Vector3d low_mm;
@@ -146,8 +150,9 @@ JointSpace::Sheet JointSpace::at(double x_mm, double y_mm) const {
   const auto between = [&](std::size_t at) {
     return std::lerp(height_mm[at], height_mm[at + 1], x - column);
   };
-  return {std::lerp(between(first), between(next), y - row),
-          is_seen[first] && is_seen[first + 1] && is_seen[next] && is_seen[next + 1]};
+  return {
+      std::lerp(between(first), between(next), y - row),
+      std::max({from_seen_mm[first], from_seen_mm[first + 1], from_seen_mm[next], from_seen_mm[next + 1]})};
 }
 
 std::optional<JointSpace> find_joint_space(const images::Volume& volume, const Eigen::Vector3d& low_mm,
@@ -164,6 +169,7 @@ std::optional<JointSpace> find_joint_space(const images::Volume& volume, const E
   };
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     const bool along_x = sweep % 2 == 0;
+    const float cost_hu = kCostPerStep_hu * std::min(1.0F, static_cast<float>(sweep) / kHeldFromSweep);
     const int lines = along_x ? columns.ny : columns.nx, length = along_x ? columns.nx : columns.ny;
     for (int line = 0; line < lines; ++line) {
       const auto cell = [&](int i, int l) { return along_x ? index(i, l) : index(l, i); };
@@ -175,7 +181,7 @@ std::optional<JointSpace> find_joint_space(const images::Volume& volume, const E
           float gain = depths[start + static_cast<std::size_t>(h)];
           for (const int beside : {line - 1, line + 1}) {
             if (beside < 0 || beside >= lines) continue;
-            gain -= kCostPerStep_hu * static_cast<float>(std::abs(h - heights[cell(i, beside)]));
+            gain -= cost_hu * static_cast<float>(std::abs(h - heights[cell(i, beside)]));
           }
           gains.push_back(gain);
         }
@@ -189,16 +195,19 @@ std::optional<JointSpace> find_joint_space(const images::Volume& volume, const E
   space.step_mm = kStep_mm;
   space.columns = columns.nx;
   space.rows = columns.ny;
+  std::vector<std::size_t> seen;
   for (int y = 0; y < columns.ny; ++y) {
     for (int x = 0; x < columns.nx; ++x) {
       const int h = heights[index(x, y)];
       const bool is_seen = depths[columns.column(x, y) + static_cast<std::size_t>(h)] > kSeen_hu;
-      if (is_seen) space.area_mm2 += kStep_mm * kStep_mm;
-      space.is_seen.push_back(is_seen);
+      if (is_seen) seen.push_back(index(x, y));
       space.height_mm.push_back(low_mm.z() + h * kHeightStep_mm);
     }
   }
+  space.area_mm2 = kStep_mm * kStep_mm * static_cast<double>(seen.size());
   if (space.area_mm2 < kLeastArea_mm2) return std::nullopt;
+  space.from_seen_mm =
+      images::distances_mm({columns.nx, columns.ny, 1}, seen, Eigen::Vector3d::Constant(kStep_mm));
   return space;
 }
 

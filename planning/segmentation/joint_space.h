@@ -7,7 +7,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -20,13 +19,14 @@ struct JointSpace {
   Eigen::Vector2d first_mm;  // LPS x, y of the first column
   double step_mm = 2;
   int columns = 0, rows = 0;
-  std::vector<double> height_mm;      // LPS z, columns run fastest
-  std::vector<std::uint8_t> is_seen;  // of each column: a valley; else the sheet only goes on
-  double area_mm2 = 0;                // over which a valley is to be seen
+  std::vector<double> height_mm;  // LPS z, columns run fastest
+  // Of each column to the nearest where a valley is to be seen; beside them the sheet only goes on.
+  std::vector<float> from_seen_mm;
+  double area_mm2 = 0;  // over which a valley is to be seen
 
   struct Sheet {
     double height_mm;
-    bool is_seen;  // in every column beside it
+    double from_seen_mm;  // of the furthest of the columns beside it; 0 where it is seen
   };
   // Between the columns; beyond them as at the nearest.
   [[nodiscard]] Sheet at(double x_mm, double y_mm) const;

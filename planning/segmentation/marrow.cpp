@@ -18,6 +18,10 @@ constexpr double kSmallestBall_mm = 2.5, kLargestBall_mm = 6.5, kNextBall_mm = 1
 constexpr double kLeastRoom = 1.5;
 // Gaps are looked for in cells of about this size where voxels are smaller.
 constexpr double kCell_mm = 1.5;
+// Of the threshold: 120 HU in coarse voxels, 167 in fine ones; muscle has 60, a meniscus 90.
+constexpr double kDimBone = 2.0 / 3;
+// So much longer is the way of the outside through it: dim bone about the marrow is bone, but for its rim.
+constexpr double kThroughDim = 4;
 
 // A part of the volume in cells of one or several voxels.
 struct Cells {
@@ -25,6 +29,9 @@ struct Cells {
   Eigen::Vector3i voxels_each = first;
   Eigen::Vector3d spacing_mm = Eigen::Vector3d::Zero();
   VoxelMask is_bone{Eigen::Vector3i::Zero()};
+  // What a ball does not come through: bone, and where it is asked, dim bone. No marrow grows into the other
+  // bone.
+  VoxelMask is_wall = is_bone, is_other = is_bone;
 
   // Whether it lies where the box of the solid ends and the volume goes on: the bone does not come there.
   [[nodiscard]] bool is_at_margin(const Volume& volume, const Box& box, std::size_t cell) const {
@@ -62,17 +69,37 @@ Cells cells_about(const Volume& volume, const BoneSolid& solid) {
   cells.for_each_voxel(solid, [&](std::size_t cell, std::size_t voxel) {
     cells.is_bone.inside[cell] |= solid.mask.inside[voxel];
   });
+  cells.is_wall = cells.is_bone;
+  cells.is_other = VoxelMask(cells.is_bone.size);
   return cells;
 }
 
-enum Label : std::uint8_t { kFree = 0, kOutside = 1, kMarrow = 2 };
-
-std::vector<float> distances_to_bone_mm(const Cells& cells) {
-  std::vector<std::size_t> bone;
-  for (std::size_t c = 0; c < cells.is_bone.inside.size(); ++c)
-    if (cells.is_bone.inside[c]) bone.push_back(c);
-  return images::distances_mm(cells.is_bone.size, bone, cells.spacing_mm);
+std::vector<float> distances_to_mm(const Cells& cells, const VoxelMask& mask) {
+  std::vector<std::size_t> inside;
+  for (std::size_t c = 0; c < mask.inside.size(); ++c)
+    if (mask.inside[c]) inside.push_back(c);
+  return images::distances_mm(mask.size, inside, cells.spacing_mm);
 }
+
+// What is as bright as this is no soft tissue, if darker than the bone that is sure: a plate that is thinner
+// than a slice. What is nearer to the other bone is of that one: it must not shut off what lies between the
+// two.
+void wall_up_dim_bone(const Volume& volume, const BoneSolid& solid, const VoxelMask& others, double dim_hu,
+                      Cells& cells) {
+  cells.for_each_voxel(solid, [&](std::size_t cell, std::size_t voxel) {
+    cells.is_other.inside[cell] |= others.inside[voxel] && !cells.is_bone.inside[cell];
+  });
+  const bool has_other = std::ranges::find(cells.is_other.inside, 1) != cells.is_other.inside.end();
+  const auto to_bone_mm = distances_to_mm(cells, cells.is_bone);
+  const auto to_other_mm = has_other ? distances_to_mm(cells, cells.is_other) : std::vector<float>{};
+  cells.for_each_voxel(solid, [&](std::size_t cell, std::size_t voxel) {
+    if (has_other && to_other_mm[cell] < to_bone_mm[cell]) return;
+    const Eigen::Vector3i at = solid.box.first + solid.mask.index_of(voxel);
+    cells.is_wall.inside[cell] |= volume.at(at.x(), at.y(), at.z()) >= dim_hu;
+  });
+}
+
+enum Label : std::uint8_t { kFree = 0, kOutside = 1, kMarrow = 2 };
 
 // Where the middle of the ball can be, by whether it comes out; all free where nothing is kept in.
 std::vector<std::uint8_t> middles_of(const Volume& volume, const Box& box, const Cells& cells,
@@ -114,9 +141,10 @@ void grow(const Cells& cells, std::vector<std::uint8_t>& labels) {
       images::for_each_neighbour(
           cells.is_bone.size, from,
           [&](std::size_t to) {
-            if (labels[to] != kFree || cells.is_bone.inside[to]) return;
+            if (labels[to] != kFree || cells.is_bone.inside[to] || cells.is_other.inside[to]) return;
             labels[to] = labels[from];
-            fronts.emplace(way_mm + cells.spacing_mm[axis], to);
+            const bool is_held_up = labels[to] == kOutside && cells.is_wall.inside[to];
+            fronts.emplace(way_mm + (is_held_up ? kThroughDim : 1) * cells.spacing_mm[axis], to);
           },
           1U << axis);
   }
@@ -164,21 +192,26 @@ void fill_marrow(const Volume& volume, BoneSolid& solid) {
   images::fill_unreached(solid.mask);
 }
 
-ClosedMarrow close_marrow(const Volume& volume, BoneSolid& solid) {
+ClosedMarrow close_marrow(const Volume& volume, BoneSolid& solid, const VoxelMask& others, double threshold) {
   ClosedMarrow closed{solid.mask};
   Cells cells = cells_about(volume, solid);
-  std::vector<float> distances_mm = distances_to_bone_mm(cells);
-  for (double radius = kSmallestBall_mm; radius <= kLargestBall_mm; radius += kNextBall_mm) {
-    std::vector<std::uint8_t> labels = middles_of(volume, solid.box, cells, distances_mm, radius);
-    if (std::ranges::find(labels, std::uint8_t{kMarrow}) == labels.end()) continue;
-    grow(cells, labels);
-    cells.for_each_voxel(solid, [&](std::size_t cell, std::size_t voxel) {
-      if (labels[cell] == kMarrow) solid.mask.inside[voxel] = 1;
-    });
-    for (std::size_t c = 0; c < labels.size(); ++c)
-      if (labels[c] == kMarrow) cells.is_bone.inside[c] = 1;
-    distances_mm = distances_to_bone_mm(cells);
-    closed.widest_mm = 2 * radius;
+  // With dim bone for a wall marrow that is itself as bright would have no room: it is asked second.
+  for (const bool has_dim_walls : {false, true}) {
+    if (has_dim_walls) wall_up_dim_bone(volume, solid, others, kDimBone * threshold, cells);
+    std::vector<float> distances_mm = distances_to_mm(cells, cells.is_wall);
+    for (double radius = kSmallestBall_mm; radius <= kLargestBall_mm; radius += kNextBall_mm) {
+      std::vector<std::uint8_t> labels = middles_of(volume, solid.box, cells, distances_mm, radius);
+      if (std::ranges::find(labels, std::uint8_t{kMarrow}) == labels.end()) continue;
+      grow(cells, labels);
+      cells.for_each_voxel(solid, [&](std::size_t cell, std::size_t voxel) {
+        if (labels[cell] == kMarrow) solid.mask.inside[voxel] = 1;
+      });
+      for (std::size_t c = 0; c < labels.size(); ++c)
+        if (labels[c] == kMarrow) cells.is_bone.inside[c] = cells.is_wall.inside[c] = 1;
+      distances_mm = distances_to_mm(cells, cells.is_wall);
+      closed.widest_mm = std::max(closed.widest_mm, 2 * radius);
+      closed.has_dim_walls = closed.has_dim_walls || has_dim_walls;
+    }
   }
   if (closed.widest_mm > 0) fill_marrow(volume, solid);
   for (std::size_t v = 0; v < solid.mask.inside.size(); ++v)
