@@ -31,7 +31,7 @@ namespace arthronaut::open_case {
 
 class PlanModel {
  public:
-  // Proposes landmarks of a bone that the case has no grid for, or one that nobody confirmed: two seconds
+  // Proposes landmarks of a bone that the case has no grid for, or one that nobody confirmed: half a second
   // each, for a job. Throws InvalidInput when the case has no bone, and once `stop` asks for it. tell: from
   // any thread, which share of this is done, 0 to 1.
   explicit PlanModel(cases::Case knee, const std::stop_token& stop = {},

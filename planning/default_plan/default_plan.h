@@ -43,7 +43,7 @@ struct BoneInput {
   const geometry::Surface* surface = nullptr;  // of that mesh
   landmarks::Landmarks landmarks;
   landmarks::LandmarkStates states;
-  // Made before and kept by the caller, since it takes a second; without it it is made here.
+  // Made before and kept by the caller, since it takes a while; without it it is made here.
   const landmarks::Proposal* proposal = nullptr;
   // Of the ligament's other bundle, planned already: bone is left between the two where a drill can follow.
   // Without it either leaves room for the other one of the usual diameter: of two defaults either may be

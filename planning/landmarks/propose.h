@@ -44,7 +44,7 @@ struct ProposalOptions {
   // followed and a doubt is raised.
   std::optional<bones::Side> side;
   RoofConvention roof = RoofConvention::Ends;
-  // Of the mesh, where there is one already; else it is made: a fourth of the work.
+  // Of the mesh, where there is one already; else it is made: a tenth of the work.
   const geometry::Surface* surface = nullptr;
   // Asked every few hundredths of a second; then the outcome is Stopped.
   std::stop_token stop = {};
@@ -71,7 +71,7 @@ struct Proposal {
 };
 
 // mesh: closed, outward, mm (bones::mend_mesh). Never throws for a shape that it does not know: read the
-// outcome. A femur takes about a second, a tibia half of that.
+// outcome. A femur of 40,000 triangles takes 0.6 s, a tibia half of that.
 [[nodiscard]] Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone,
                                const ProposalOptions& options = {});
 

@@ -12,7 +12,7 @@
 
 namespace arthronaut::plan_review {
 
-// Which bones proposals are made for: two seconds each, side by side.
+// Which bones proposals are made for: half a second each, side by side.
 enum class Proposing {
   WithoutGrid,       // whose landmarks give no grid
   WithoutConfirmed,  // these, and those of whose grid somebody has still to look at a landmark
