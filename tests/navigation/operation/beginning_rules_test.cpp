@@ -127,8 +127,8 @@ TEST(TimeOut, OfAnOldRecordTakesWhatWasTaken) {
   source.time_out_first = false;
   run.start_unconfirmed(source);
   run.draw({trial().curves.begin(), trial().curves.begin() + 200});
-  run.touch(test::on_bone(trial(), 0));
   EXPECT_EQ(run.state()->registration->point_count, 200U);
+  run.touch(test::on_bone(trial(), 0));
   EXPECT_EQ(run.state()->registration->touches.count(), 1U);
 }
 
