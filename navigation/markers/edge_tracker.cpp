@@ -10,6 +10,7 @@
 #include "navigation/markers/linear_image.h"
 #include "navigation/markers/marker_company.h"
 #include "navigation/markers/marker_track.h"
+#include "navigation/markers/smear_search.h"
 #include "navigation/markers/square_search.h"
 #include "planning/geometry/error.h"
 
@@ -45,6 +46,9 @@ constexpr double kReachAtOnce = 0.45, kReachPerSecond = 6, kMaxReach = 1.6;
 constexpr double kOvertakenCells = 0.7, kOvertakenReach = 0.8;
 // A start that was measured in this frame is not measured again: so near, by its distance, and turned so far.
 constexpr double kSameStart = 0.001, kSameStartRad = 0.02;
+// How far what is smeared may be from where a motion puts it, and how alike picture and smeared code have to
+// be.
+constexpr double kSmearedReachCells = 0.8, kMinSmearedScore = 0.75;
 constexpr double kCompanyReach = 0.3, kCompanyReachPerSecond = 2;
 
 class EdgeTracker final : public MarkerTracker {
@@ -90,6 +94,10 @@ class EdgeTracker final : public MarkerTracker {
       starts_[i] = RigidTransform();
       const auto predicted = tracks_[i].predicted(timestamp_ns);
       if (!predicted) continue;
+      if (measure_smeared(i, tracked)) {
+        are_elsewhere_[i] = 1;
+        continue;
+      }
       const auto start = overtaken(i, *predicted, tracked);
       if (!start) continue;
       starts_[i] = *start;
@@ -129,6 +137,7 @@ class EdgeTracker final : public MarkerTracker {
     smear_.gamma = options_.gamma;
     smear_.bloom.sigma_px = options_.bloom_sigma_px;
     frames_since_search_ = 0;
+    motions_.reserve(MarkerTrack::kMostMotions);
     search_.start_over();
     corner_search_.start_over();
     is_sought_.assign(tracks_.size(), 0);
@@ -177,6 +186,21 @@ class EdgeTracker final : public MarkerTracker {
   void look_at(const TrackedFrame& frame) {
     if (!is_looked_at_) search_.look_at(frame.image.view(), frame.camera);
     is_looked_at_ = true;
+  }
+
+  // Measures a marker that a long exposure smears, where and as it is found to move.
+  bool measure_smeared(std::size_t index, const TrackedFrame& frame) {
+    MarkerTrack& track = tracks_[index];
+    track.smeared_motions(frame, motions_);
+    if (motions_.empty()) return false;
+    look_at(frame);
+    const double size_mm = track.marker().size_mm;
+    const double reach_px = kSmearedReachCells * track.cell_px(frame, motions_.front().camera_from_marker);
+    const SmearedPlace place =
+        smear_search_.find(search_.small_picture(), frame.camera, codes_[index], size_mm,
+                           {smear_.sigma_px, smear_.gamma}, motions_, reach_px);
+    return place.score >= kMinSmearedScore &&
+           track.measure_smeared(frame, place.exposed, observations_[index]);
   }
 
   // Where to measure a marker that is followed. What moves by more than a cell from frame to frame is soon
@@ -368,6 +392,8 @@ class EdgeTracker final : public MarkerTracker {
   std::vector<MarkerCandidate> candidates_;  // of this frame's search
   SquareSearch search_;
   CodeSearch code_search_;
+  SmearSearch smear_search_;
+  std::vector<ExposedPose> motions_;
   CornerSearch corner_search_;
   std::vector<char> is_sought_;      // by marker
   std::vector<char> are_elsewhere_;  // by marker: tracked in this frame by now

@@ -54,9 +54,10 @@ std::optional<Vector6d> MarkerMotion::change_to(const RigidTransform& pose, std:
   return interval * interval / (0.5 * (step + step_before)) * (now / step - before / step_before);
 }
 
-void MarkerMotion::follow(const RigidTransform& camera_from_marker, std::int64_t timestamp_ns) {
+void MarkerMotion::follow(const RigidTransform& camera_from_marker, std::int64_t timestamp_ns,
+                          const std::optional<SeenMotion>& over_exposure) {
   before_ = last_;
-  last_ = Sighting{camera_from_marker, timestamp_ns};
+  last_ = Sighting{camera_from_marker, timestamp_ns, over_exposure};
 }
 
 }  // namespace arthronaut::markers

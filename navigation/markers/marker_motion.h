@@ -8,10 +8,18 @@
 
 namespace arthronaut::markers {
 
+// How a marker moved while the shutter was open, as its smear tells: body twists, as ExposedPose has them.
+struct SeenMotion {
+  geometry::Vector6d velocity = geometry::Vector6d::Zero(), change = geometry::Vector6d::Zero();
+  // A smear looks the same run backwards: until the marker is seen to have gone on, it may have been.
+  bool is_sense_known = false;
+};
+
 class MarkerMotion {
  public:
   // The marker stands here at this time; later than the calls before.
-  void follow(const geometry::RigidTransform& camera_from_marker, std::int64_t timestamp_ns);
+  void follow(const geometry::RigidTransform& camera_from_marker, std::int64_t timestamp_ns,
+              const std::optional<SeenMotion>& over_exposure = std::nullopt);
 
   // Where it should be; nullopt when it was never seen or too long ago.
   [[nodiscard]] std::optional<geometry::RigidTransform> predicted(std::int64_t timestamp_ns) const;
@@ -29,8 +37,10 @@ class MarkerMotion {
   struct Sighting {
     geometry::RigidTransform camera_from_marker;
     std::int64_t timestamp_ns = 0;
+    std::optional<SeenMotion> over_exposure = std::nullopt;
   };
   [[nodiscard]] const std::optional<Sighting>& last() const { return last_; }
+  [[nodiscard]] const std::optional<Sighting>& before() const { return before_; }  // the one before
 
  private:
   std::optional<Sighting> last_, before_;

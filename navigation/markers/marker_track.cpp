@@ -24,6 +24,9 @@ constexpr double kMinStartShare = 1;
 // Of small direct fits: what it costs to look at its edges.
 constexpr int kEdgesAsFits = 2;
 constexpr double kSoft = 1.4;
+// What turns back while the shutter is open is smeared by a sigma of c / sqrt(720), and its edges are seen c
+// / 24 beside where it is in the middle, for a change of its motion by c.
+constexpr double kTurnedBesideSofter = 26.8 / 24;
 
 }  // namespace
 
@@ -40,6 +43,7 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
   observation = MarkerObservation();
   observation.id = marker_.id;
   is_beyond_edges_ = false;
+  seen_motion_.reset();
   const double cell = cell_px(frame, start);
   if (cell < options_.min_cell_px) {
     observation.state = MarkerState::TooSmall;
@@ -111,6 +115,8 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
                                    moved_px(picture.motion, px_per_mm)) < options_.smeared_px;
   const Vector6d& motion = turns_back ? motion_now : picture.motion;
   const double edges_motion_px = moved_px(motion, px_per_mm);
+  // By so much it is smeared without a motion that is known: out of focus, or turning back.
+  double softer_px = 0;
   if (frame.direct && (!is_motion_known || edges_motion_px > options_.smeared_px) &&
       cell > options_.min_direct_cell_px) {
     // Of what moves by more than a cell from frame to frame, and smeared so, few edges are found, or others.
@@ -140,75 +146,20 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
         direct = moving;
     }
     // With no edge pose to agree with, the corners have to be its own all the more.
-    RowTrend rows;
-    const double smear_px = moved_px(direct.pose.velocity, px_per_mm);
-    is_beyond_edges_ = smear_px > options_.max_new_smear_cells * cell;
-    if (direct.is_usable()) {
-      const double max_rms_px = fit.converged ? options_.max_direct_rms_px : options_.max_lone_rms_px;
-      report_direct(frame, direct, is_beyond_edges_ ? std::nullopt : std::optional(max_rms_px), observation);
-      EdgePose edges;
-      edges.camera_from_marker = direct.pose.camera_from_marker;
-      rows = row_trend(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, edges);
-      doubt_rows(frame, rows, observation);
-    }
-    if (is_beyond_edges_ && direct.explains_picture()) {
-      const bool goes_on = goes_on_from_published(frame, direct.pose.camera_from_marker);
-      if (observation.is_tracked() && !goes_on) observation.state = MarkerState::Blur;
-      // Good enough to go on from, not to stand for.
-      if (observation.state == MarkerState::Blur || (!observation.is_tracked() && goes_on)) {
-        go_on_from(direct.pose.camera_from_marker, 1 / (fit.converged ? fit.share[0] + fit.share[1] : 1));
-        return false;
-      }
-    }
-    const bool is_motion_new = is_found || is_motion_guessed_;
-    if (observation.is_tracked() && is_motion_new && smear_px > options_.smeared_px) {
-      if (const auto pose = refine_square_pose(frame.camera, observation.corners_px, marker_.size_mm,
-                                               observation.camera_from_marker))
-        observation.covariance += square_covariance(*pose, options_.found_corner_sigma_px);
-    }
-    if (observation.is_tracked()) {
-      frame.smear.gamma += 0.1 * (direct.gamma - frame.smear.gamma);
-      learn_exposure(motion_to(frame, direct.pose.camera_from_marker), direct.pose.velocity, px_per_mm,
-                     frame.smear);
-    }
-    const bool is_sharp = direct.explains_picture() && smear_px < options_.smeared_px;
-    // What passes for out of focus may move: then the edges are of another tilt than the whole code.
-    if (is_sharp && fit.converged && are_unlike(fit.camera_from_marker, direct.pose.camera_from_marker)) {
-      observation.state = MarkerState::Doubtful;
-      go_on_from(direct.pose.camera_from_marker, misfit_of(fit));
-      return false;
-    }
-    if (is_found && is_undecided_) {
-      observation.state = MarkerState::Doubtful;
-      return false;
-    }
-    if (observation.is_tracked() && !(is_sharp && fit.converged)) {
-      frame.smear.rows.learn(rows);
-      return true;
-    }
-    if (!is_sharp) {
-      if (!fit.converged) {
-        observation.state = reason_of_loss(start, measurements_, cell);
-        return false;
-      }
-      // Edges that the direct fit does not confirm are good enough to go on from, not to stand for.
-      report_edges(frame, fit, picture, is_found, observation);
-      if (!observation.is_tracked()) return false;
-      if (is_motion_known && moved_px(picture.motion, px_per_mm) < kLittleSmearPx &&
-          goes_on_from_published(frame, fit.camera_from_marker)) {
-        observation.covariance *= kUnconfirmed;
-        return true;
-      }
-      observation.state = edges_motion_px > options_.smeared_px ? MarkerState::Blur : MarkerState::Covered;
-      go_on_from(fit.camera_from_marker, misfit_of(fit));
-      return false;
-    }
+    const EdgesBeside edges{fit, picture, is_found, edges_motion_px > options_.smeared_px,
+                            fit.converged ? options_.max_direct_rms_px : options_.max_lone_rms_px};
+    if (const auto stands = stand_by_direct(frame, start, direct, edges, observation)) return *stands;
+    if (!is_motion_known && direct.is_usable())
+      softer_px = std::sqrt(
+          std::max(0.0, direct.sigma_px * direct.sigma_px - frame.smear.sigma_px * frame.smear.sigma_px));
   }
   if (!fit.converged) {
     observation.state = reason_of_loss(start, measurements_, cell);
     return false;
   }
   const RowTrend rows = report_edges(frame, fit, picture, is_found, observation);
+  observation.covariance.topLeftCorner<2, 2>().diagonal().array() +=
+      std::pow(kTurnedBesideSofter * softer_px / px_per_mm, 2);
   if (!observation.is_tracked()) return false;
   learn(trend, fit.bloom_px, frame.smear);
   frame.smear.rows.learn(rows);
@@ -216,6 +167,102 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
     learn_exposure(motion_to(frame, fit.camera_from_marker), picture.motion, px_per_mm, frame.smear);
   }
   return true;
+}
+
+std::optional<bool> MarkerTrack::stand_by_direct(const TrackedFrame& frame, const RigidTransform& start,
+                                                 const DirectPose& direct, const EdgesBeside& beside,
+                                                 MarkerObservation& observation) {
+  const EdgePose& fit = beside.fit;
+  const bool is_found = beside.is_found;
+  const double cell = cell_px(frame, start);
+  const double px_per_mm = cell * cells_ / marker_.size_mm;
+  const bool is_motion_known = !is_found && motion_.is_known_at(frame.timestamp_ns);
+  RowTrend rows;
+  const double smear_px = moved_px(direct.pose.velocity, px_per_mm);
+  is_beyond_edges_ = smear_px > options_.max_new_smear_cells * cell;
+  if (direct.is_usable()) {
+    seen_motion_ = forwards(frame, direct.pose);
+    report_direct(frame, direct, is_beyond_edges_ ? std::nullopt : std::optional(beside.max_rms_px),
+                  observation);
+    EdgePose edges;
+    edges.camera_from_marker = direct.pose.camera_from_marker;
+    rows = row_trend(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, edges);
+    doubt_rows(frame, rows, observation);
+  }
+  if (is_beyond_edges_ && direct.explains_picture()) {
+    const bool goes_on = goes_on_from_published(frame, direct.pose.camera_from_marker);
+    if (observation.is_tracked() && !goes_on) observation.state = MarkerState::Blur;
+    // Good enough to go on from, not to stand for.
+    if (observation.state == MarkerState::Blur || (!observation.is_tracked() && goes_on)) {
+      go_on_from(direct.pose.camera_from_marker, 1 / (fit.converged ? fit.share[0] + fit.share[1] : 1));
+      return false;
+    }
+  }
+  const bool is_motion_new = is_found || is_motion_guessed_;
+  if (observation.is_tracked() && is_motion_new && smear_px > options_.smeared_px) {
+    if (const auto pose = refine_square_pose(frame.camera, observation.corners_px, marker_.size_mm,
+                                             observation.camera_from_marker))
+      observation.covariance += square_covariance(*pose, options_.found_corner_sigma_px);
+  }
+  if (observation.is_tracked()) {
+    frame.smear.gamma += 0.1 * (direct.gamma - frame.smear.gamma);
+    learn_share(frame, direct.pose);
+  }
+  const bool is_sharp = direct.explains_picture() && smear_px < options_.smeared_px;
+  // What passes for out of focus may move: then the edges are of another tilt than the whole code.
+  if (is_sharp && fit.converged && are_unlike(fit.camera_from_marker, direct.pose.camera_from_marker)) {
+    observation.state = MarkerState::Doubtful;
+    go_on_from(direct.pose.camera_from_marker, misfit_of(fit));
+    return false;
+  }
+  if (is_found && is_undecided_) {
+    observation.state = MarkerState::Doubtful;
+    return false;
+  }
+  if (observation.is_tracked() && !(is_sharp && fit.converged)) {
+    frame.smear.rows.learn(rows);
+    return true;
+  }
+  if (!is_sharp) {
+    if (!fit.converged) {
+      observation.state = reason_of_loss(start, measurements_, cell);
+      return false;
+    }
+    // Edges that the direct fit does not confirm are good enough to go on from, not to stand for.
+    report_edges(frame, fit, beside.picture, is_found, observation);
+    if (!observation.is_tracked()) return false;
+    if (is_motion_known && moved_px(beside.picture.motion, px_per_mm) < kLittleSmearPx &&
+        goes_on_from_published(frame, fit.camera_from_marker)) {
+      observation.covariance *= kUnconfirmed;
+      return true;
+    }
+    observation.state = beside.is_smeared ? MarkerState::Blur : MarkerState::Covered;
+    go_on_from(fit.camera_from_marker, misfit_of(fit));
+    return false;
+  }
+  return std::nullopt;
+}
+
+bool MarkerTrack::measure_smeared(const TrackedFrame& frame, const ExposedPose& start,
+                                  MarkerObservation& observation) {
+  observation = MarkerObservation();
+  observation.id = marker_.id;
+  is_beyond_edges_ = false;
+  seen_motion_.reset();
+  const RigidTransform& pose = start.camera_from_marker;
+  if (cell_px(frame, pose) < options_.min_direct_cell_px || !frame.direct || frame.fits_left <= 0)
+    return false;
+  const DirectPose direct = fit_directly(frame, pose, start.velocity, unsure(options_.direct), &start.change);
+  if (!direct.explains_picture()) return false;
+  const Smear picture{frame.smear.sigma_px, direct.pose.velocity};
+  const EdgePose none;
+  const EdgesBeside edges{none, picture, false, true, options_.max_direct_rms_px};
+  if (!stand_by_direct(frame, pose, direct, edges, observation).value_or(false)) return false;
+  if (stood_lately(frame) && !goes_on_from_published(frame, observation.camera_from_marker)) {
+    observation.state = MarkerState::Doubtful;
+    return false;
+  }
+  return is_identified(frame, picture, 1, observation);
 }
 
 void MarkerTrack::look_at_edges(const TrackedFrame& frame, const RigidTransform& pose, Smear picture,
@@ -260,7 +307,8 @@ EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform&
 }
 
 DirectPose MarkerTrack::fit_directly(const TrackedFrame& frame, const RigidTransform& start,
-                                     const Vector6d& motion, const DirectOptions& options) {
+                                     const Vector6d& motion, const DirectOptions& options,
+                                     const Vector6d* change) {
   frame.fits_left -= options.max_pixels < options_.direct.max_pixels ? 1 : kWholeFit;
   DirectStart from;
   from.pose = {start, motion, Vector6d::Zero()};
@@ -272,8 +320,11 @@ DirectPose MarkerTrack::fit_directly(const TrackedFrame& frame, const RigidTrans
   const double motion_px = px_per_mm * motion.head<3>().norm();
   from.change_sigma_px = 2 + 0.35 * motion_px;
   from.velocity_sigma_px = 2 + 0.2 * motion_px;
-  if (const auto change = motion_.change_to(start, frame.timestamp_ns, frame.interval_ns)) {
-    from.pose.change = std::pow(frame.smear.exposure_share, 2) * *change;
+  std::optional<Vector6d> known = change ? std::optional(*change) : std::nullopt;
+  if (const auto by_way = motion_.change_to(start, frame.timestamp_ns, frame.interval_ns); by_way && !change)
+    known = std::pow(frame.smear.exposure_share, 2) * *by_way;
+  if (known) {
+    from.pose.change = *known;
     from.change_sigma_px = 1.5 + 0.5 * px_per_mm * from.pose.change.head<3>().norm();
   }
   return frame.direct->refine(frame.image.view(), frame.camera, code_, samples_, marker_.size_mm, from,

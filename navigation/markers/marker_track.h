@@ -89,6 +89,13 @@ class MarkerTrack {
   bool measure_recovered(const TrackedFrame& frame, const geometry::RigidTransform& start,
                          MarkerObservation& observation);
 
+  // Motions over a long exposure that may have brought it here since it was seen last, each with where it
+  // puts the marker; none where no motion is known, or none smears it over a cell.
+  void smeared_motions(const TrackedFrame& frame, std::vector<ExposedPose>& motions) const;
+  static constexpr std::size_t kMostMotions = 512;  // so many at most
+  // Measures it by its whole code, smeared by a motion, which a search put here.
+  bool measure_smeared(const TrackedFrame& frame, const ExposedPose& start, MarkerObservation& observation);
+
   // The edges about a pose that little speaks for. What they lead to, if they and the cells say that it is
   // the marker, is good enough to go on from in the next frame.
   void suppose(const TrackedFrame& frame, const geometry::RigidTransform& start);
@@ -134,6 +141,21 @@ class MarkerTrack {
   bool measure_from_edges(const TrackedFrame& frame, const geometry::RigidTransform& start, bool is_found,
                           const EdgePose& fit, const Smear& picture, const SmearTrend& trend,
                           MarkerObservation& observation);
+  // What is known by edges beside a direct fit from the same start.
+  struct EdgesBeside {
+    const EdgePose& fit;
+    const Smear& picture;
+    bool is_found = false, is_smeared = false;
+    double max_rms_px = 0;  // that their corners may lie from the direct fit
+  };
+  // Whether a pose by the direct fit stands, or not; nullopt: the edges say.
+  std::optional<bool> stand_by_direct(const TrackedFrame& frame, const geometry::RigidTransform& start,
+                                      const DirectPose& direct, const EdgesBeside& edges,
+                                      MarkerObservation& observation);
+  // The motion that a fit found or its opposite, as the marker went on since it was seen; from both, what
+  // share of the time is exposed.
+  [[nodiscard]] SeenMotion forwards(const TrackedFrame& frame, const ExposedPose& found) const;
+  void learn_share(const TrackedFrame& frame, const ExposedPose& found) const;
   // Edge profiles: refines the pose and the motion of `picture`.
   [[nodiscard]] EdgePose fit_edges(const TrackedFrame& frame, const geometry::RigidTransform& start,
                                    bool is_found, Smear& picture, SmearTrend& trend);
@@ -145,9 +167,10 @@ class MarkerTrack {
                                                    const geometry::RigidTransform& pose) const;
   // What is not known of the rows' timing is an error of the pose.
   void doubt_rows(const TrackedFrame& frame, const RowTrend& trend, MarkerObservation& observation) const;
-  // Direct fit from a pose and a motion.
+  // Direct fit from a pose and a motion, of which the change is known as well, or by the frames before.
   [[nodiscard]] DirectPose fit_directly(const TrackedFrame& frame, const geometry::RigidTransform& start,
-                                        const geometry::Vector6d& motion, const DirectOptions& options);
+                                        const geometry::Vector6d& motion, const DirectOptions& options,
+                                        const geometry::Vector6d* change = nullptr);
   // The same with those motions of a grid that the edges speak for, where none is known; the best, usable or
   // not.
   [[nodiscard]] DirectPose try_motions(const TrackedFrame& frame, const geometry::RigidTransform& start);
@@ -187,11 +210,13 @@ class MarkerTrack {
   struct Guess {
     geometry::RigidTransform camera_from_marker;
     double misfit = 0;
+    std::optional<SeenMotion> over_exposure = std::nullopt;
   };
-  std::optional<Guess> guess_;      // of this frame, until it is final
-  CodeEvidence evidence_;           // of which marker it is, since it is followed
-  bool is_sure_ = false;            // that it is this one
-  bool is_motion_guessed_ = false;  // what is known of the motion comes from a pose that did not stand
+  std::optional<SeenMotion> seen_motion_;  // of what was measured last
+  std::optional<Guess> guess_;             // of this frame, until it is final
+  CodeEvidence evidence_;                  // of which marker it is, since it is followed
+  bool is_sure_ = false;                   // that it is this one
+  bool is_motion_guessed_ = false;         // what is known of the motion comes from a pose that did not stand
   // What was measured last is smeared over more than a cell: neither edges nor cells can be told.
   bool is_beyond_edges_ = false;
   // What a search led to in this frame that did not stand, the last few: another start that leads there is

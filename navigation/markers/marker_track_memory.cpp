@@ -72,20 +72,21 @@ bool MarkerTrack::goes_on_from_published(const TrackedFrame& frame, const RigidT
 }
 
 void MarkerTrack::go_on_from(const RigidTransform& pose, double misfit) {
-  if (!guess_ || misfit < guess_->misfit) guess_ = Guess{pose, misfit};
+  if (!guess_ || misfit < guess_->misfit) guess_ = Guess{pose, misfit, seen_motion_};
 }
 
 void MarkerTrack::follow(const MarkerObservation& observation, std::int64_t timestamp_ns) {
   const bool is_measured = observation.is_tracked() || observation.state == MarkerState::Ambiguous ||
                            observation.state == MarkerState::Duplicate;
   if (is_measured)
-    motion_.follow(observation.camera_from_marker, timestamp_ns);
+    motion_.follow(observation.camera_from_marker, timestamp_ns, seen_motion_);
   else if (guess_)
-    motion_.follow(guess_->camera_from_marker, timestamp_ns);
+    motion_.follow(guess_->camera_from_marker, timestamp_ns, guess_->over_exposure);
   if (observation.is_tracked())
     published_ = MarkerMotion::Sighting{observation.camera_from_marker, timestamp_ns};
   if (is_measured || guess_) is_motion_guessed_ = !is_measured;
   guess_.reset();
+  seen_motion_.reset();
   refused_count_ = 0;
   explained_.reset();
   is_undecided_ = false;
@@ -95,6 +96,7 @@ void MarkerTrack::forget() {
   motion_ = MarkerMotion();
   published_.reset();
   guess_.reset();
+  seen_motion_.reset();
   refused_count_ = 0;
   explained_.reset();
   evidence_.start_over();

@@ -19,6 +19,22 @@ constexpr int kTriedDirections = 4;
 // How far the edges are looked for, in cells; less than half, or the next edge answers.
 constexpr double kReachPredicted = 0.35, kReachFound = 0.45;
 
+// Which motions over a long exposure may have brought a marker here: that its motion, as far as it is known,
+// may be off by so much, and by this share of what it was, in these steps, in cells; from so much on it is
+// smeared.
+constexpr double kMotionReachCells = 0.5, kMotionReach = 0.5, kMaxMotionReachCells = 2.5,
+                 kMotionStepCells = 0.5, kSmearedCells = 1;
+constexpr double kTurnStepRad = 0.1, kTurnStep = 0.5;
+// The cosine between the way and the motion at its ends from which on they tell of each other.
+constexpr double kAlongWay = 0.9;
+
+// What a smear tells of a motion: along the marker's plane and about its normal.
+Vector6d in_plane(const Vector6d& twist) {
+  Vector6d seen = Vector6d::Zero();
+  for (const int i : {0, 1, 5}) seen[i] = twist[i];
+  return seen;
+}
+
 // Quick: which of many motions is worth a whole fit.
 DirectOptions tried(DirectOptions options) {
   options = unsure(options);
@@ -72,6 +88,86 @@ Vector6d MarkerTrack::interval_motion(const TrackedFrame& frame, const RigidTran
   const Vector6d motion = motion_.twist_to(pose, frame.timestamp_ns, frame.interval_ns);
   const auto change = motion_.change_to(pose, frame.timestamp_ns, frame.interval_ns);
   return change ? Vector6d(motion + 0.5 * *change) : motion;
+}
+
+SeenMotion MarkerTrack::forwards(const TrackedFrame& frame, const ExposedPose& found) const {
+  SeenMotion seen{found.velocity, found.change, false};
+  if (!motion_.is_known_at(frame.timestamp_ns)) return seen;
+  const auto& before = motion_.last()->over_exposure;
+  const Vector6d way = motion_to(frame, found.camera_from_marker);
+  const double px_per_mm = cell_px(frame, found.camera_from_marker) * cells_ / marker_.size_mm;
+  seen.is_sense_known = moved_px(way, px_per_mm) > options_.smeared_px || (before && before->is_sense_known);
+  // On the way it moved as it does in the mean of both ends.
+  const auto off_mm = [&](double sense, double sense_before) {
+    const Vector6d mean = before ? Vector6d(0.5 * (sense_before * before->velocity + sense * seen.velocity))
+                                 : Vector6d(sense * seen.velocity);
+    return (way - mean).head<3>().squaredNorm();
+  };
+  const bool is_open = before && !before->is_sense_known;
+  const double forwards_mm = is_open ? std::min(off_mm(1, 1), off_mm(1, -1)) : off_mm(1, 1),
+               backwards_mm = is_open ? std::min(off_mm(-1, 1), off_mm(-1, -1)) : off_mm(-1, 1);
+  if (backwards_mm < forwards_mm) seen.velocity = -seen.velocity;
+  return seen;
+}
+
+void MarkerTrack::learn_share(const TrackedFrame& frame, const ExposedPose& found) const {
+  if (!motion_.is_known_at(frame.timestamp_ns)) return;
+  const double px_per_mm = cell_px(frame, found.camera_from_marker) * cells_ / marker_.size_mm;
+  const MarkerMotion::Sighting& last = *motion_.last();
+  // What was not seen meanwhile may have turned back.
+  if (2 * (frame.timestamp_ns - last.timestamp_ns) > 3 * frame.interval_ns) return;
+  const Vector6d way = motion_.twist_to(found.camera_from_marker, frame.timestamp_ns, frame.interval_ns);
+  double& share = frame.smear.exposure_share;
+  if (!last.over_exposure) {
+    learn_exposure(share * way, found.velocity, px_per_mm, frame.smear);
+    return;
+  }
+  if (!last.over_exposure->is_sense_known) return;
+  // The way by the speeds at both ends and how they change there (Euler and Maclaurin).
+  const SeenMotion now = forwards(frame, found);
+  const Vector6d mean = 0.5 * (last.over_exposure->velocity + now.velocity) +
+                        (last.over_exposure->change - now.change) / (12 * share);
+  if (mean.head<3>().dot(way.head<3>()) > kAlongWay * mean.head<3>().norm() * way.head<3>().norm())
+    learn_exposure(share * way, mean, px_per_mm, frame.smear);
+}
+
+void MarkerTrack::smeared_motions(const TrackedFrame& frame, std::vector<ExposedPose>& motions) const {
+  motions.clear();
+  const auto& last = motion_.last();
+  if (!motion_.is_known_at(frame.timestamp_ns) || frame.timestamp_ns <= last->timestamp_ns) return;
+  if (!last->over_exposure) return;
+  const double share = frame.smear.exposure_share;
+  const double frames = std::max(1.0, static_cast<double>(frame.timestamp_ns - last->timestamp_ns) /
+                                          static_cast<double>(frame.interval_ns));
+  const RigidTransform& pose = last->camera_from_marker;
+  const double cell = cell_px(frame, pose), px_per_mm = cell * cells_ / marker_.size_mm;
+  const double step_px = kMotionStepCells * cell;
+  const Vector6d change = in_plane(last->over_exposure->change);
+  const double way = frames / share;  // in exposures
+  for (const double sense : {1.0, -1.0}) {
+    if (sense < 0 && last->over_exposure->is_sense_known) break;
+    const Vector6d from = sense * in_plane(last->over_exposure->velocity), supposed = from + way * change;
+    const double fastest_px = std::max(moved_px(from, px_per_mm), moved_px(supposed, px_per_mm));
+    if (fastest_px < kSmearedCells * cell) return;
+    const double reach_px =
+        std::min(kMaxMotionReachCells * cell, kMotionReachCells * cell + kMotionReach * fastest_px);
+    const int steps = static_cast<int>(reach_px / step_px);
+    const double turn_step = std::max(kTurnStepRad, kTurnStep * std::abs(from[5]));
+    for (int turn = -1; turn <= 1; ++turn) {
+      for (int y = -steps; y <= steps; ++y) {
+        for (int x = -steps; x <= steps; ++x) {
+          if (x * x + y * y > steps * steps) continue;
+          Vector6d motion = supposed + twist_of({x * step_px, y * step_px}, frame.camera, pose);
+          motion[5] += turn * turn_step;
+          // Its acceleration changes evenly from what it was, so that it comes to this motion.
+          const Vector6d later = 2 / way * (motion - from) - change;
+          const RigidTransform here =
+              pose * geometry::exp(way / 3 * (2 * from + motion) + way * way / 6 * change);
+          motions.push_back({here, motion, later});
+        }
+      }
+    }
+  }
 }
 
 DirectPose MarkerTrack::try_motions(const TrackedFrame& frame, const RigidTransform& start) {
