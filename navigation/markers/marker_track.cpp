@@ -252,7 +252,11 @@ bool MarkerTrack::measure_smeared(const TrackedFrame& frame, const ExposedPose& 
   const RigidTransform& pose = start.camera_from_marker;
   if (cell_px(frame, pose) < options_.min_direct_cell_px || !frame.direct || frame.fits_left <= 0)
     return false;
-  const DirectPose direct = fit_directly(frame, pose, start.velocity, unsure(options_.direct), &start.change);
+  DirectOptions near = options_.direct;
+  near.max_way_cells = 2;
+  DirectPose direct = fit_directly(frame, pose, start.velocity, near, &start.change);
+  if (!direct.explains_picture())
+    direct = fit_directly(frame, pose, start.velocity, unsure(options_.direct), &start.change);
   if (!direct.explains_picture()) return false;
   const Smear picture{frame.smear.sigma_px, direct.pose.velocity};
   const EdgePose none;
