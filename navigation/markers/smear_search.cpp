@@ -15,6 +15,8 @@ constexpr double kDark = 0.05;          // light of what is dark, of what is bri
 // A pixel of the small picture is the mean of a square of its size: sigma of that, in its sizes.
 constexpr double kPixelSigma = 0.29;
 
+constexpr double kMomentCells = 0.25;  // moments of the exposure are no nearer to each other
+constexpr double kPlaceStep = 0.5;     // of places that are looked at, in cells
 // Steps of the search about the best place: of the motion in cells, of the distance in shares of it.
 constexpr double kFineStep = 0.25, kFineDistance = 0.03, kFineTurnRad = 0.05;
 
@@ -42,7 +44,7 @@ bool SmearSearch::place_points(const SquareSearch::SmallPicture& picture, const 
   const double sigma_cells = std::hypot(look.sigma_px, kPixelSigma * picture.times) / (px_per_mm * cell_mm);
   const double moved_cells =
       (motion.velocity.head<3>().norm() + 0.5 * size_mm * motion.velocity.tail<3>().norm()) / cell_mm;
-  exposed.move(motion, static_cast<int>(std::ceil(moved_cells / std::max(0.25, 1.6 * sigma_cells))));
+  exposed.move(motion, static_cast<int>(std::ceil(moved_cells / std::max(kMomentCells, 1.6 * sigma_cells))));
   LookedAt at;
   SeenLevels seen;
   int lanes = 0;
@@ -118,10 +120,10 @@ SmearedPlace SmearSearch::find(const SquareSearch::SmallPicture& picture, const 
   if (picture.view.width <= 0) return best;
   ExposedCode exposed(code, size_mm);
   Eigen::Vector2i best_shift(0, 0);
-  const auto take = [&](const ExposedPose& motion, int reach) {
+  const auto take = [&](const ExposedPose& motion, int reach, int step) {
     if (!place_points(picture, camera, code, size_mm, look, motion, exposed)) return;
-    for (int dy = -reach; dy <= reach; ++dy) {
-      for (int dx = -reach; dx <= reach; ++dx) {
+    for (int dy = -reach; dy <= reach; dy += step) {
+      for (int dx = -reach; dx <= reach; dx += step) {
         const double score = score_at(picture, dx, dy);
         if (score <= best.score) continue;
         best = {motion, score};
@@ -129,8 +131,12 @@ SmearedPlace SmearSearch::find(const SquareSearch::SmallPicture& picture, const 
       }
     }
   };
-  for (const ExposedPose& motion : motions)
-    take(motion, static_cast<int>(std::ceil(reach_px / picture.times)));
+  const double cell_px = motions.empty() ? 0
+                                         : camera.central_focal_px() * size_mm / code.cells /
+                                               motions.front().camera_from_marker.translation_mm.z();
+  const int step = std::max(1, static_cast<int>(std::lround(kPlaceStep * cell_px / picture.times)));
+  const int reach = static_cast<int>(std::ceil(reach_px / picture.times));
+  for (const ExposedPose& motion : motions) take(motion, reach / step * step, step);
   if (best.score < 0 || !shift(camera, picture.times * best_shift, best.exposed.camera_from_marker))
     return SmearedPlace();
   // Finer, about the best: in its motion, and as it is nearer or farther and turned.
@@ -146,7 +152,7 @@ SmearedPlace SmearSearch::find(const SquareSearch::SmallPicture& picture, const 
     pose.translation_mm *= 1 + kFineDistance * farther;
     pose.rotation = pose.rotation *
                     Eigen::Quaterniond(Eigen::AngleAxisd(kFineTurnRad * turned, Eigen::Vector3d::UnitZ()));
-    take(motion, 1);
+    take(motion, std::max(1, step / 2), 1);
   }
   return shift(camera, picture.times * best_shift, best.exposed.camera_from_marker) ? best : SmearedPlace();
 }
