@@ -269,12 +269,13 @@ bool MarkerTrack::measure_smeared(const TrackedFrame& frame, const ExposedPose& 
   return is_identified(frame, picture, 1, observation);
 }
 
-void MarkerTrack::look_at_edges(const TrackedFrame& frame, const RigidTransform& pose, Smear picture,
-                                const ProfileOptions& options, SmearTrend& trend) {
+void MarkerTrack::look_at_edges(const TrackedFrame& frame, const LinearImage& image,
+                                const RigidTransform& pose, Smear picture, const ProfileOptions& options,
+                                SmearTrend& trend) {
   picture.interval_motion = interval_motion(frame, pose);
   picture.between_fields = frame.smear.rows.known()[1];
-  measure_edges(frame.image, frame.camera, pose, marker_.size_mm, cells_, samples_, picture, options,
-                measurements_, trend);
+  measure_edges(image, frame.camera, pose, marker_.size_mm, cells_, samples_, picture, options, measurements_,
+                trend);
   if (const auto center = frame.camera.project(pose.translation_mm))
     correct_rows(frame.smear.rows, center->y(), frame.image.view().height, picture.sigma_px, measurements_);
 }
@@ -288,7 +289,7 @@ EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform&
   const CameraSmear& smear = frame.smear;
   picture = {smear.sigma_px,
              is_found ? likely_motion(frame, start, coarse.search_px) : motion_to(frame, start)};
-  look_at_edges(frame, start, picture, coarse, trend);
+  look_at_edges(frame, frame.image, start, picture, coarse, trend);
   EdgePose fit =
       fit_edge_pose(frame.camera, marker_.size_mm, samples_, measurements_, start, smear.bloom, is_inlier_);
   if (!fit.converged || fit.share[0] + fit.share[1] < kMinEdgeShare) {
@@ -298,7 +299,7 @@ EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform&
   if (!is_found) picture.motion = motion_to(frame, fit.camera_from_marker);
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     const RigidTransform here = fit.camera_from_marker;
-    look_at_edges(frame, here, picture, {}, trend);
+    look_at_edges(frame, frame.image, here, picture, {}, trend);
     fit =
         fit_edge_pose(frame.camera, marker_.size_mm, samples_, measurements_, here, smear.bloom, is_inlier_);
     if (!fit.converged) break;

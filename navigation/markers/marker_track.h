@@ -160,8 +160,9 @@ class MarkerTrack {
   [[nodiscard]] EdgePose fit_edges(const TrackedFrame& frame, const geometry::RigidTransform& start,
                                    bool is_found, Smear& picture, SmearTrend& trend);
   // Where its edges lie about a pose, as far as is known had all rows been exposed at once.
-  void look_at_edges(const TrackedFrame& frame, const geometry::RigidTransform& pose, Smear picture,
-                     const ProfileOptions& options, SmearTrend& trend);
+  void look_at_edges(const TrackedFrame& frame, const LinearImage& image,
+                     const geometry::RigidTransform& pose, Smear picture, const ProfileOptions& options,
+                     SmearTrend& trend);
   // How it moves in this frame, by the frames before: body twist of one frame's time; zero when not known.
   [[nodiscard]] geometry::Vector6d interval_motion(const TrackedFrame& frame,
                                                    const geometry::RigidTransform& pose) const;

@@ -49,23 +49,36 @@ void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit
   const double ratio = fit.pose.change.head<2>().norm() / std::max(1e-6, fit.pose.velocity.head<2>().norm());
   const Vector6d left_out = std::clamp(ratio, 0.4, 4.0) / 24 * fit.pose.velocity;
   observation.covariance.diagonal() += left_out.cwiseAbs2();
-  // The corners as the edges by themselves would have them.
+  // The corners as the edges by themselves would have them. A smeared edge is a ramp, which another tone
+  // curve bends: it is looked at in the light that the fit found. And it lies where it was in the mean, which
+  // is not in the middle of the time where the motion changes.
+  const RigidTransform& pose = fit.pose.camera_from_marker;
+  const double px_per_mm = cell_px(frame, pose) * cells_ / marker_.size_mm;
+  const bool is_smeared = moved_px(fit.pose.velocity, px_per_mm) > options_.smeared_px;
+  const LinearTable light(fit.gamma);
+  const LinearImage in_its_light(frame.image.view(), light);
+  const RigidTransform mean = is_smeared ? pose * geometry::exp(1.0 / 24 * fit.pose.change) : pose;
   SmearTrend ignored;
-  look_at_edges(frame, fit.pose.camera_from_marker, {frame.smear.sigma_px, fit.pose.velocity}, {}, ignored);
+  look_at_edges(frame, is_smeared ? in_its_light : frame.image, mean,
+                {frame.smear.sigma_px, fit.pose.velocity}, {}, ignored);
   is_inlier_.resize(measurements_.size());
-  for (std::size_t i = 0; i < measurements_.size(); ++i)
-    is_inlier_[i] =
-        measurements_[i].state == EdgeState::Found && std::abs(measurements_[i].offset_px) < kMaxEdgeRmsPx;
+  for (std::size_t i = 0; i < measurements_.size(); ++i) {
+    EdgeMeasurement& measurement = measurements_[i];
+    is_inlier_[i] = measurement.state == EdgeState::Found && std::abs(measurement.offset_px) < kMaxEdgeRmsPx;
+    const EdgeSample& sample = samples_[measurement.sample];
+    const Eigen::Vector3d place(sample.x * marker_.size_mm, sample.y * marker_.size_mm, 0);
+    const auto there = frame.camera.project(pose * place), in_mean = frame.camera.project(mean * place);
+    if (is_smeared && there && in_mean) measurement.point_px += *there - *in_mean;
+  }
   EdgePose edges;
-  edges.camera_from_marker = fit.pose.camera_from_marker;
-  edges.bloom_px = frame.smear.bloom.mean_px;
+  edges.camera_from_marker = pose;
+  edges.bloom_px = is_smeared ? 0 : frame.smear.bloom.mean_px;
   const MeasuredCorners corners =
       measured_corners(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, edges);
   observation.corners_px = corners.corners_px;
   observation.rms_px = corners.rms_px;
   observation.ambiguity_ratio = kNoOtherPose;
   if (!max_rms_px) {
-    const double px_per_mm = cell_px(frame, fit.pose.camera_from_marker) * cells_ / marker_.size_mm;
     const double unfollowed_px = options_.unfollowed_share * moved_px(fit.pose.velocity, px_per_mm);
     if (const auto square = refine_square_pose(frame.camera, corners.corners_px, marker_.size_mm,
                                                fit.pose.camera_from_marker))

@@ -251,6 +251,28 @@ TEST_F(MarkerTracking, RefusesBadDeclarationsAndFrames) {
   EXPECT_THROW((void)make_aruco_tracker(declared_)->track({}, camera_, 0), InvalidInput);
 }
 
+// Through a smear an edge is a ramp, which the camera's tone curve bends: by a twelfth of its length, as long
+// as it is read by another one. Corners that lay there were held against a right pose.
+TEST_F(MarkerTracking, CornersOfASmearedMarkerLieAtItsPose) {
+  const auto tracker = make_tracker(std::vector<DeclaredMarker>{{2, 4}});
+  const RigidTransform start = facing_pose(-4, -2, 13, -15, 25, 120);
+  const geometry::Vector6d open = motion_of(camera_, start, {12, 5});
+  for (int frame = 0; frame < 6; ++frame) {
+    PlacedMarker moving = placed(2, start * geometry::exp(2.0 * frame * open));
+    moving.velocity = open;
+    const auto shown = picture({moving}, static_cast<unsigned>(frame));
+    const auto& seen = tracker->track(shown.view(), camera_, frame * kFrameNs)[0];
+    if (frame == 0) continue;
+    ASSERT_TRUE(seen.is_tracked()) << frame << ": " << to_text(seen.state);
+    EXPECT_LT(seen.rms_px, 0.4) << frame;
+    for (int k = 0; k < 4; ++k) {
+      const Eigen::Vector3d corner(k % 3 ? 2 : -2, k < 2 ? 2 : -2, 0);
+      EXPECT_LT((seen.corners_px[k] - *camera_.project(moving.camera_from_marker * corner)).norm(), 0.6)
+          << frame << ", " << k;
+    }
+  }
+}
+
 // After the first frames nothing is allocated: neither while tracking, nor when a marker is lost for the
 // first time and searched for, nor under a smear of 12 px or after half a second without a marker, when all
 // its pixels are fitted.
