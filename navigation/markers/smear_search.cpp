@@ -16,7 +16,7 @@ constexpr double kDark = 0.05;          // light of what is dark, of what is bri
 constexpr double kPixelSigma = 0.29;
 
 constexpr double kMomentCells = 0.25;  // moments of the exposure are no nearer to each other
-constexpr double kPlaceStep = 0.5;     // of places that are looked at, in cells
+constexpr double kPlaceStep = 0.35;    // of places that are looked at, in cells
 // Steps of the search about the best place: of the motion in cells, of the distance in shares of it.
 constexpr double kFineStep = 0.25, kFineDistance = 0.03, kFineTurnRad = 0.05;
 
