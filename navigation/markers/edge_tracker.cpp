@@ -12,6 +12,7 @@
 #include "navigation/markers/marker_track.h"
 #include "navigation/markers/smear_search.h"
 #include "navigation/markers/square_search.h"
+#include "navigation/markers/verdict.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::markers {
@@ -44,11 +45,6 @@ constexpr double kReachAtOnce = 0.45, kReachPerSecond = 6, kMaxReach = 1.6;
 // From where a marker is predicted to where its code is found, in cells: more, and the edges are not found
 // from the one, and not much less than the other may be off by itself.
 constexpr double kOvertakenCells = 0.7, kOvertakenReach = 0.8;
-// A start that was measured in this frame is not measured again: so near, by its distance, and turned so far.
-constexpr double kSameStart = 0.001, kSameStartRad = 0.02;
-// How far what is smeared may be from where a motion puts it, and how alike picture and smeared code have to
-// be.
-constexpr double kSmearedReachCells = 0.8, kMinSmearedScore = 0.75;
 constexpr double kCompanyReach = 0.3, kCompanyReachPerSecond = 2;
 
 class EdgeTracker final : public MarkerTracker {
@@ -94,9 +90,12 @@ class EdgeTracker final : public MarkerTracker {
       starts_[i] = RigidTransform();
       const auto predicted = tracks_[i].predicted(timestamp_ns);
       if (!predicted) continue;
-      if (measure_smeared(i, tracked)) {
-        are_elsewhere_[i] = 1;
-        continue;
+      tracks_[i].smeared_motions(tracked, motions_);
+      if (!motions_.empty()) {
+        look_at(tracked);
+        are_elsewhere_[i] = tracks_[i].measure_smeared(tracked, search_.small_picture(), smear_search_,
+                                                       motions_, observations_[i]);
+        if (are_elsewhere_[i]) continue;
       }
       const auto start = overtaken(i, *predicted, tracked);
       if (!start) continue;
@@ -188,21 +187,6 @@ class EdgeTracker final : public MarkerTracker {
     is_looked_at_ = true;
   }
 
-  // Measures a marker that a long exposure smears, where and as it is found to move.
-  bool measure_smeared(std::size_t index, const TrackedFrame& frame) {
-    MarkerTrack& track = tracks_[index];
-    track.smeared_motions(frame, motions_);
-    if (motions_.empty()) return false;
-    look_at(frame);
-    const double size_mm = track.marker().size_mm;
-    const double reach_px = kSmearedReachCells * track.cell_px(frame, motions_.front().camera_from_marker);
-    const SmearedPlace place =
-        smear_search_.find(search_.small_picture(), frame.camera, codes_[index], size_mm,
-                           {smear_.sigma_px, smear_.gamma}, motions_, reach_px);
-    return place.score >= kMinSmearedScore &&
-           track.measure_smeared(frame, place.exposed, observations_[index]);
-  }
-
   // Where to measure a marker that is followed. What moves by more than a cell from frame to frame is soon
   // elsewhere than where it was going to: its code is looked for about there, and where it was. nullopt: it
   // was not seen in the last frame either, and its code is not found.
@@ -262,7 +246,7 @@ class EdgeTracker final : public MarkerTracker {
         track.is_duplicate |= !square.is_at(known.corners_px);
         continue;
       }
-      if (attempts_[code->index]++ < kMostSquares) acquire(track, square, code->turn, frame, known);
+      if (attempts_[code->index]++ < kMostSquares) track.acquire(frame, square.tangent, code->turn, known);
       are_elsewhere_[code->index] = known.is_tracked();
     }
   }
@@ -367,19 +351,6 @@ class EdgeTracker final : public MarkerTracker {
         tracks_[none].forget();
       }
     }
-  }
-
-  static void acquire(MarkerTrack& track, const FoundSquare& square, int turn, const TrackedFrame& frame,
-                      MarkerObservation& observation) {
-    for (const RigidTransform& start : poses_of_square(square.tangent, turn, track.marker().size_mm)) {
-      if (start.translation_mm.z() > 0 && track.measure(frame, start, true, observation)) return;
-    }
-  }
-
-  // By less than makes another measurement of it.
-  static bool are_alike(const RigidTransform& a, const RigidTransform& b) {
-    return (a.translation_mm - b.translation_mm).norm() < kSameStart * a.translation_mm.norm() &&
-           geometry::rotation_angle_rad(a.rotation.conjugate() * b.rotation) < kSameStartRad;
   }
 
   EdgeTrackerOptions options_;

@@ -23,6 +23,10 @@ constexpr double kSameEdgesPx = 0.1, kSameMotionPx = 0.5;
 constexpr double kMinStartShare = 1;
 // Of small direct fits: what it costs to look at its edges.
 constexpr int kEdgesAsFits = 2;
+// How far what is smeared may be from where a motion puts it; how alike frame and smeared code have to be.
+constexpr double kSmearedReachCells = 0.8, kMinSmearedScore = 0.75;
+// From a start that was found so, the fit goes no farther, in cells.
+constexpr double kSmearedWayCells = 2;
 constexpr double kSoft = 1.4;
 // What turns back while the shutter is open is smeared by a sigma of c / sqrt(720), and its edges are seen c
 // / 24 beside where it is in the middle, for a change of its motion by c.
@@ -243,8 +247,23 @@ std::optional<bool> MarkerTrack::stand_by_direct(const TrackedFrame& frame, cons
   return std::nullopt;
 }
 
-bool MarkerTrack::measure_smeared(const TrackedFrame& frame, const ExposedPose& start,
+bool MarkerTrack::acquire(const TrackedFrame& frame, const Corners& square, int turn,
+                          MarkerObservation& observation) {
+  for (const RigidTransform& start : poses_of_square(square, turn, marker_.size_mm)) {
+    if (start.translation_mm.z() > 0 && measure(frame, start, true, observation)) return true;
+  }
+  return false;
+}
+
+bool MarkerTrack::measure_smeared(const TrackedFrame& frame, const SquareSearch::SmallPicture& small,
+                                  SmearSearch& search, std::span<const ExposedPose> motions,
                                   MarkerObservation& observation) {
+  if (motions.empty()) return false;
+  const double reach_px = kSmearedReachCells * cell_px(frame, motions.front().camera_from_marker);
+  const SmearedPlace place = search.find(small, frame.camera, code_, marker_.size_mm,
+                                         {frame.smear.sigma_px, frame.smear.gamma}, motions, reach_px);
+  if (place.score < kMinSmearedScore) return false;
+  const ExposedPose& start = place.exposed;
   observation = MarkerObservation();
   observation.id = marker_.id;
   is_beyond_edges_ = false;
@@ -253,7 +272,7 @@ bool MarkerTrack::measure_smeared(const TrackedFrame& frame, const ExposedPose& 
   if (cell_px(frame, pose) < options_.min_direct_cell_px || !frame.direct || frame.fits_left <= 0)
     return false;
   DirectOptions near = options_.direct;
-  near.max_way_cells = 2;
+  near.max_way_cells = kSmearedWayCells;
   DirectPose direct = fit_directly(frame, pose, start.velocity, near, &start.change);
   if (!direct.explains_picture())
     direct = fit_directly(frame, pose, start.velocity, unsure(options_.direct), &start.change);

@@ -17,6 +17,7 @@
 #include "navigation/markers/marker_motion.h"
 #include "navigation/markers/marker_tracker.h"
 #include "navigation/markers/seen_code.h"
+#include "navigation/markers/smear_search.h"
 
 namespace arthronaut::markers {
 
@@ -93,8 +94,12 @@ class MarkerTrack {
   // puts the marker; none where no motion is known, or none smears it over a cell.
   void smeared_motions(const TrackedFrame& frame, std::vector<ExposedPose>& motions) const;
   static constexpr std::size_t kMostMotions = 512;  // so many at most
-  // Measures it by its whole code, smeared by a motion, which a search put here.
-  bool measure_smeared(const TrackedFrame& frame, const ExposedPose& start, MarkerObservation& observation);
+  // Measures it by its whole code, where and as one of these motions is found to smear it.
+  bool measure_smeared(const TrackedFrame& frame, const SquareSearch::SmallPicture& small,
+                       SmearSearch& search, std::span<const ExposedPose> motions,
+                       MarkerObservation& observation);
+  // Measures it where a search found a square with its code, turned so often.
+  bool acquire(const TrackedFrame& frame, const Corners& square, int turn, MarkerObservation& observation);
 
   // The edges about a pose that little speaks for. What they lead to, if they and the cells say that it is
   // the marker, is good enough to go on from in the next frame.

@@ -15,6 +15,8 @@ constexpr double kMinNewShare = 0.7;
 constexpr double kMaxSigmaMm = 0.25, kMaxSigmaRad = 1.5 * geometry::kPi / 180;
 constexpr double kMinFacing = 0.2;  // cosine of the face's normal to the line of sight: 78 degrees
 constexpr double kMinAmbiguityRatio = 2;
+// A start that was measured in this frame is not measured again: so near, by its distance, and turned so far.
+constexpr double kSameStart = 0.001, kSameStartRad = 0.02;
 
 double facing(const RigidTransform& pose) {
   return -pose.rotate(Eigen::Vector3d::UnitZ()).dot(pose.translation_mm.normalized());
@@ -24,6 +26,11 @@ double facing(const RigidTransform& pose) {
 
 bool are_unlike(const RigidTransform& a, const RigidTransform& b) {
   return geometry::rotation_angle_rad(a.rotation.conjugate() * b.rotation) > kHarmlessTiltRad;
+}
+
+bool are_alike(const RigidTransform& a, const RigidTransform& b) {
+  return (a.translation_mm - b.translation_mm).norm() < kSameStart * a.translation_mm.norm() &&
+         geometry::rotation_angle_rad(a.rotation.conjugate() * b.rotation) < kSameStartRad;
 }
 
 bool is_known_well_enough(const geometry::Matrix6d& covariance) {

@@ -18,6 +18,9 @@ inline constexpr double kMaxEdgeRmsPx = 1.2;  // how far an edge, or a corner, m
 // Turned from each other by more than does no harm.
 [[nodiscard]] bool are_unlike(const geometry::RigidTransform& a, const geometry::RigidTransform& b);
 
+// Less apart than makes another measurement of it, as starts.
+[[nodiscard]] bool are_alike(const geometry::RigidTransform& a, const geometry::RigidTransform& b);
+
 // Whether a pose with this covariance of its body twist may stand: one sigma in all directions together.
 [[nodiscard]] bool is_known_well_enough(const geometry::Matrix6d& covariance);
 
