@@ -20,10 +20,9 @@ constexpr int kTriedDirections = 4;
 constexpr double kReachPredicted = 0.35, kReachFound = 0.45;
 
 // Which motions over a long exposure may have brought a marker here: that its motion, as far as it is known,
-// may be off by so much, and by this share of what it was, in these steps, in cells; from so much on it is
-// smeared.
+// may be off by so much, and by this share of what it was, in these steps, in cells.
 constexpr double kMotionReachCells = 0.5, kMotionReach = 0.5, kMaxMotionReachCells = 2.5,
-                 kMotionStepCells = 0.5, kSmearedCells = 1;
+                 kMotionStepCells = 0.5;
 constexpr double kTurnStepRad = 0.1, kTurnStep = 0.5;
 // The cosine between the way and the motion at its ends from which on they tell of each other.
 constexpr double kAlongWay = 0.9;
@@ -148,7 +147,7 @@ void MarkerTrack::smeared_motions(const TrackedFrame& frame, std::vector<Exposed
     if (sense < 0 && last->over_exposure->is_sense_known) break;
     const Vector6d from = sense * in_plane(last->over_exposure->velocity), supposed = from + way * change;
     const double fastest_px = std::max(moved_px(from, px_per_mm), moved_px(supposed, px_per_mm));
-    if (fastest_px < kSmearedCells * cell) return;
+    if (fastest_px < options_.max_new_smear_cells * cell) return;
     const double reach_px =
         std::min(kMaxMotionReachCells * cell, kMotionReachCells * cell + kMotionReach * fastest_px);
     const int steps = static_cast<int>(reach_px / step_px);
