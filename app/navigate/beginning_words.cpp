@@ -31,6 +31,11 @@ std::string in_words(const plan_review::TunnelVerdict& verdict) {
   return verdict.is_fine() ? "" : (verdict.is_wrong() ? "; WRONG: " : "; look: ") + verdict.in_short();
 }
 
+std::string plan_and_verdict(const std::optional<operation::PlannedTunnel>& plan,
+                             const plan_review::TunnelVerdict& verdict) {
+  return plan_in_words(plan) + in_words(verdict);
+}
+
 std::string count_of(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : what == "touch" ? "es" : "s");
 }
@@ -90,7 +95,7 @@ std::vector<CardLine> time_out_lines(const operation::OperationState& state, con
            std::string(bones::to_text(source.pipeline.side)) + ", " + std::string(bones::to_text(state.bone)),
            Topic::Knee},
           {state.plan || !verdict.is_fine() ? severity_of(verdict) : Severity::Caution, "Plan",
-           plan_in_words(state.plan) + in_words(verdict), Topic::Plan},
+           plan_and_verdict(state.plan, verdict), Topic::Plan},
           {has_nominal_tool(source.pipeline) ? Severity::Caution : Severity::Quiet, "Camera and tools",
            source.calibration, Topic::CameraAndTools},
           medium_line(state)};
@@ -106,6 +111,11 @@ Card time_out_card(const operation::OperationState& state, const std::string& pa
     line.text = without_dates(line.text);
   }
   return card;
+}
+
+std::string words_of_edited(const std::optional<operation::PlannedTunnel>& edited,
+                            const plan_review::TunnelVerdict& verdict) {
+  return edited ? "now " + plan_and_verdict(edited, verdict) : "now none is planned";
 }
 
 Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedTunnel>& plan,

@@ -36,6 +36,11 @@ struct Card {
 [[nodiscard]] Card time_out_card(const operation::OperationState& state, const std::string& patient,
                                  const plan_review::TunnelVerdict& verdict);
 
+// Of an edited plan that waits to be taken over, what it is and what speaks against it: "now 8.0 mm
+// wide, 25.5 mm long; WRONG: Wall: 0.3 mm". verdict: of that one.
+[[nodiscard]] std::string words_of_edited(const std::optional<operation::PlannedTunnel>& edited,
+                                          const plan_review::TunnelVerdict& verdict);
+
 // `plan`: the case's, as an operation that begins afresh would have it. verdict: of the one that was left.
 [[nodiscard]] Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedTunnel>& plan,
                                const plan_review::TunnelVerdict& verdict,

@@ -111,13 +111,6 @@ std::string NavigateView::next_step() {
   return (have_ended ? "the pictures have ended: " : "") + words_of_start();
 }
 
-std::string NavigateView::words_of_verdict() const {
-  const plan_review::TunnelVerdict& verdict = judged_.verdict();
-  return verdict.is_fine() ? ""
-                           : (verdict.is_wrong() ? "the plan is wrong: " : "the plan is to be looked at: ") +
-                                 verdict.in_short();
-}
-
 std::string NavigateView::missing_now(const Rail& rail) {
   const bool asks_otherwise = model_ == nullptr || cameras_.is_open() || left_behind() != nullptr ||
                               resume_.is_looking() || choices_.goes_to_other_bone || !lent_step().empty();
@@ -127,6 +120,8 @@ std::string NavigateView::missing_now(const Rail& rail) {
     return step.verdict == tunnels::PlanCheck::Verdict::Fine ? hindrance_of(step, true) : words_of_verdict();
   }
   if (finishes()) return "";
+  // What a press would put in force, before it is pressed.
+  if (waits_for_take_over()) return words_of_edited(live_->operation->edited_plan, judged_edited_.verdict());
   const bool has_pictures = is_running() && !awaits_picture(*live_) && words_without_pictures().empty();
   if (has_pictures && !is_in_wrong_medium())
     if (const std::string words = hindrance_of(*live_->operation, live_->trouble); !words.empty())
@@ -176,7 +171,10 @@ void NavigateView::take_next_step() {
     if (!bones_.must_choose(choices_.bone)) go_elsewhere_(Elsewhere::Plan);
     return;
   }
-  if (waits_for_take_over()) return ask(operation::TakePlanOver{});
+  if (waits_for_take_over()) {
+    if (was_read()) ask(operation::TakePlanOver{});
+    return;
+  }
   switch (action_now()) {
     case NextAction::StartSource:
     case NextAction::PlanTunnel:  // of an operation that was not told yet of the plan that is there
@@ -189,8 +187,6 @@ void NavigateView::take_next_step() {
       return ask(operation::Draw{true});
     case NextAction::RegisterStrokes:
       return ask(operation::RegisterStrokes{});
-    case NextAction::TakePlanOver:
-      return ask(operation::TakePlanOver{});
     case NextAction::ConfirmByTouch:
     case NextAction::VerifyByTouch:
       return take_touch(false);
@@ -209,6 +205,7 @@ void NavigateView::take_next_step() {
     case NextAction::BringGuide:
       if (takes_guide_in_simulation()) start_simulation(SimulatedPart::Drill);
       return;
+    case NextAction::TakePlanOver:  // answered above
     case NextAction::ShowWorldMarker:
     case NextAction::GoOnDrawing:
     case NextAction::WaitForRegistration:
@@ -236,6 +233,7 @@ bool NavigateView::pedal_acts() {
     return finish_action(finished_bones(), choices_.bone, is_under_way(*live_)) != FinishAction::Nothing &&
            was_read();
   if (awaits_picture(*live_) || is_in_wrong_medium() || !words_without_pictures().empty()) return false;
+  if (waits_for_take_over()) return was_read();
   switch (action_now()) {
     case NextAction::BringGuide:
       return takes_guide_in_simulation();

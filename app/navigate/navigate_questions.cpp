@@ -46,6 +46,11 @@ std::optional<operation::PlannedTunnel> NavigateView::plan_in_question() {
   return bones_.plan_of(choices_.bone);
 }
 
+void NavigateView::judge_plans() {
+  judged_.judge(*model_, plan_in_question());
+  judged_edited_.judge(*model_, live_->operation->edited_plan);
+}
+
 bool NavigateView::draw_questions(const widgets::Ui& ui, const TheatreLayout& layout) {
   const widgets::Rect& area = layout.block;
   switch (choices_.asked) {

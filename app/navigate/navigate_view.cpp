@@ -61,6 +61,7 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   resume_.open(*opened.model, opened.folder, !opened.read_only.empty(), opened.left_by_crash_since);
   patient_.clear();
   judged_.open(case_folder_);
+  judged_edited_.open(case_folder_);
   try {  // who it is is never guessed: what cannot be read is said
     if (const auto identity = cases::load_identity(case_folder_)) patient_ = identity->in_words();
   } catch (const std::runtime_error& error) {
@@ -352,7 +353,7 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   // The bone is made ready for registration as soon as this mode is looked at.
   if (model_ != nullptr && model_->has_bone(choices_.bone)) (void)bones_.operation(choices_.bone);
   read_live();
-  if (model_ != nullptr) judged_.judge(*model_, plan_in_question());
+  if (model_ != nullptr) judge_plans();
   drawn_.live = live_;
   const double now = drawn_.since_s = theatre::LiveOperation::now_s();
   NavigateDisplay display = display_of(live_.get(), now);

@@ -136,6 +136,7 @@ class NavigateView : public mode::Mode {
   // What that waits for; empty: nothing, or next_step() says it.
   [[nodiscard]] std::string missing_now(const Rail& rail);
   [[nodiscard]] std::optional<operation::PlannedTunnel> plan_in_question();
+  void judge_plans();  // that in force, and the one that waits to be taken over
   [[nodiscard]] std::string words_of_verdict() const;  // of the plan; empty: nothing speaks against it
   [[nodiscard]] std::string lent_step() const { return lent_ && lent_->next_step ? lent_->next_step() : ""; }
   [[nodiscard]] bool can_simulate() const;
@@ -165,7 +166,8 @@ class NavigateView : public mode::Mode {
   VideoTextures video_;
   std::shared_ptr<PoseSharing> sharing_;  // also with operations that end behind the screen
   TheatreBones bones_;
-  JudgedPlan judged_;  // of the chosen bone
+  JudgedPlan judged_;         // of the chosen bone
+  JudgedPlan judged_edited_;  // of the one that waits to be taken over
   ResumeOffer resume_;
   DepthEntry depth_;
   CameraChoice cameras_;

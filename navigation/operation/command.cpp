@@ -63,6 +63,9 @@ void add(Json& json, const OfferPlan& offer) {
   add(json, offer.plan);
   if (offer.moves_target) json["moves_target"] = true;
 }
+void add(Json& json, const TakePlanOver& take) {
+  if (take.asks_time_out) json["asks_time_out"] = true;
+}
 void add(Json& json, const registration::RegistrationSummary& registration,
          const registration::Provenance& of) {
   json["registration"] = registration::to_json(registration, &of);
@@ -215,6 +218,8 @@ Command read_command(const std::string& text, const std::string& name) {
     drilled->without_picture_s = json.number("without_picture_s");
   if (std::holds_alternative<OfferPlan>(command))
     command = OfferPlan{plan_from(json), moves_target_from(json)};
+  if (auto* take = std::get_if<TakePlanOver>(&command))
+    take->asks_time_out = json.has("asks_time_out") && json.boolean("asks_time_out");
   if (auto* time_out = std::get_if<ConfirmTimeOut>(&command)) {
     time_out->patient_was_shown = json.boolean("patient_was_shown");
     if (json.has("beside")) time_out->beside = json.text("beside");

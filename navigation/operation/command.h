@@ -53,7 +53,11 @@ struct OfferPlan {
   // was this keep the target of the first plan: they run again as they ran.
   bool moves_target = true;
 };
-struct TakePlanOver {};
+struct TakePlanOver {
+  // With a live source the time-out is due again: what it was confirmed of was another plan. Records of
+  // before there was this took the word for a confirmation of its own: they run again as they ran.
+  bool asks_time_out = true;
+};
 // The surgeon goes on without a touch that verifies; that is recorded.
 struct SkipVerification {};
 // The world marker sits elsewhere now: nothing that was found before holds.

@@ -20,7 +20,7 @@ class ConfirmedTimeOut {
     guides_ = guides_now_;
     plan_ = plan;
   }
-  // The surgeon took it over: that it is the right one was just said.
+  // In records of before taking a plan over asked anew: that was a confirmation of its own.
   void on_plan_taken_over(const std::optional<PlannedTunnel>& plan) { plan_ = plan; }
 
   // source: that runs, or ran last; null: none yet. Only a live one asks. A marker that is placed anew

@@ -213,6 +213,7 @@ OperationStatePtr Operation::state() {
   state->touch_asked_ns = p.touch.time_ns;
   state->plan = p.plan;
   state->plan_was_edited = p.offered.has_value();
+  state->edited_plan = p.offered ? p.offered->plan : std::nullopt;
   state->depth_stop_mm = p.drilling.depth_stop_mm();
   state->drilled = p.drilling.state();
   state->medium = p.medium.verdict();

@@ -33,7 +33,7 @@
 //   strokes                           | . x . . . x x x . x .
 //   which strokes were tried          | . x . x . x x x . x .
 //   what is found while drawing       | . x . . . x x x . x .
-//   the time-out's confirmation       | . x . . . . . . . . .
+//   the time-out's confirmation       | . x . x . . . . . . .
 //   the check of a nominal guide      | . x . . . . . . . x .
 //   why no touch was taken            | x x . . . . . . . . .
 //   that the probe draws              | x x x . . . . . . . .
@@ -163,11 +163,11 @@ struct Operation::Parts {
   void apply(const RegisterStrokes&) { register_strokes(); }
   void apply(const ChooseRegistration& choose) { ledger.choose(choose.entry); }
   void apply(const OfferPlan& offer);
-  void apply(const TakePlanOver&) {
+  void apply(const TakePlanOver& take) {
     if (!offered) return;
     take_offered();
     resumed_plan_waits = false;
-    confirmed.on_plan_taken_over(plan);
+    if (!take.asks_time_out) confirmed.on_plan_taken_over(plan);
   }
   void apply(const SkipVerification&) { skip_verification("asked for"); }
   void apply(const MarkerPlacedAnew&) { find_anew("the world marker was placed anew"); }

@@ -159,6 +159,7 @@ struct OperationState {
   GuideCheckState guide_check;
   std::optional<PlannedTunnel> plan;               // in force
   bool plan_was_edited = false;                    // another one is offered and not taken over
+  std::optional<PlannedTunnel> edited_plan;        // that one; empty with plan_was_edited: none is planned
   std::optional<double> depth_stop_mm;             // as the surgeon read it last
   std::shared_ptr<const ResumeOperation> resumed;  // what it went on from; null: it began afresh
   pipeline::MediumVerdict medium;                  // whether the pictures fit the medium in force

@@ -85,6 +85,14 @@ TEST(TimeOutCard, SaysWhatSpeaksAgainstThePlan) {
   EXPECT_EQ(line_of(time_out_card(state, "", {}), "Plan").severity, Severity::Quiet);
 }
 
+// What a press would put in force stands beside what it does, with all that speaks against it.
+TEST(EditedPlan, Hazard5SaysWhatWouldBeTakenOver) {
+  EXPECT_EQ(words_of_edited(plan(), {}), "now 8.5 mm wide, 31.2 mm long");
+  EXPECT_EQ(words_of_edited(plan(), {.wrong = {"Wall: 0.3 mm: may break out"}}),
+            "now 8.5 mm wide, 31.2 mm long; WRONG: Wall: 0.3 mm: may break out");
+  EXPECT_EQ(words_of_edited(std::nullopt, {}), "now none is planned");
+}
+
 LeftBehind left_behind() {
   LeftBehind left;
   left.has_same_camera = left.has_same_tools = true;

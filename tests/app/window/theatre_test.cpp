@@ -74,6 +74,10 @@ TEST_F(Theatre, Hazard5AnEditedPlanWaitsUntilItIsTakenOver) {
   ASSERT_TRUE(app.wait_for_state("plan", "edited"));
   ASSERT_TRUE(app.wait_for_state("next", "the plan was edited: take it over"));
   EXPECT_EQ(app.state("picture"), "live");
+  EXPECT_EQ(app.state("missing").find("now "), 0U) << app.state("missing");
+  app.press("space");  // nobody has read it yet
+  ASSERT_TRUE(app.wait_for_state("pedal", "acts"));
+  EXPECT_EQ(app.state("plan"), "edited");
   app.press("space");
   EXPECT_TRUE(app.wait_for_state("plan", "in force"));
   EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
@@ -108,6 +112,7 @@ TEST_F(Theatre, Hazard38OfTwoTunnelsOneIsChosenAndNamed) {
   ASSERT_TRUE(app.wait_for_state("plan", "edited"));
   EXPECT_EQ(app.state("tunnel"), "femur AM");
   ASSERT_TRUE(app.wait_for_state("next", "take over the tunnel femur PL"));
+  ASSERT_TRUE(app.wait_for_state("pedal", "acts"));
   app.press("space");
   EXPECT_TRUE(app.wait_for_state("tunnel", "femur PL"));
   EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);

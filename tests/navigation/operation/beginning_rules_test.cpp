@@ -160,7 +160,7 @@ TEST(TimeOut, IsNotAskedForWhereNobodyIsDrilled) {
 
 // What was confirmed holds for this camera, these tools, guide and drill among them, this medium, this side's
 // bone and this plan: with anything else it is asked for again. The same camera opened again goes on; so does
-// a plan that was taken over, which is a confirmation of its own, and a marker that was placed anew.
+// a marker that was placed anew.
 TEST(TimeOut, HoldsForWhatWasConfirmedAlone) {
   PhantomOperation run;
   const SourceSetup source = test::scripted_source(SourceKind::Live);
@@ -173,8 +173,15 @@ TEST(TimeOut, HoldsForWhatWasConfirmedAlone) {
   PlannedTunnel edited = test::phantom_plan();
   edited.length_mm += 1;
   run.apply(OfferPlan{edited});
+  EXPECT_EQ(run.state()->time_out, TimeOut::Confirmed) << "the one in force guides on";
   run.apply(TakePlanOver{});
-  EXPECT_EQ(run.state()->time_out, TimeOut::Confirmed);
+  EXPECT_EQ(run.state()->time_out, TimeOut::Due);
+  EXPECT_EQ(run.state()->next_action, NextAction::ConfirmTimeOut);
+  run.operation().end_source();
+  run.start_unconfirmed(source);
+  EXPECT_EQ(run.state()->time_out, TimeOut::Due) << "opening the camera again confirms nothing";
+  run.apply(ConfirmTimeOut{});
+  ASSERT_EQ(run.state()->time_out, TimeOut::Confirmed);
   run.operation().end_source();
   edited.length_mm += 1;
   run.apply(OfferPlan{edited});  // taken at once: no source runs
@@ -199,6 +206,43 @@ TEST(TimeOut, HoldsForWhatWasConfirmedAlone) {
     run.start_unconfirmed(other);
     EXPECT_EQ(run.state()->time_out, TimeOut::Due) << what;
   }
+}
+
+// A plan that was edited is shown before it is taken over, and guides live only when the time-out was
+// confirmed of it.
+TEST(TimeOut, Hazard5APlanThatIsTakenOverGuidesOnlyAfterAnotherTimeOut) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source(SourceKind::Live);
+  run.start(source);
+  run.apply(given(run, source));
+  run.apply(SkipVerification{});
+  ASSERT_EQ(shown(run), guidance::GuidanceState::Valid);
+  PlannedTunnel edited = test::phantom_plan();
+  edited.tunnel.entry_mm.x() += 1;
+  run.apply(OfferPlan{edited});
+  EXPECT_EQ(run.state()->edited_plan, edited);
+  EXPECT_EQ(shown(run), guidance::GuidanceState::Valid);
+  run.apply(TakePlanOver{});
+  EXPECT_EQ(run.state()->edited_plan, std::nullopt);
+  EXPECT_EQ(run.state()->plan, edited);
+  EXPECT_EQ(shown(run), guidance::GuidanceState::NotConfirmed);
+  const long told = run.count(JournalKind::TimeOutConfirmed);
+  run.apply(ConfirmTimeOut{true});
+  EXPECT_EQ(run.count(JournalKind::TimeOutConfirmed), told + 1);
+  EXPECT_EQ(shown(run), guidance::GuidanceState::Valid);
+}
+
+// A record of before took the word for a confirmation: it runs again as it ran.
+TEST(TimeOut, ATakeOverOfAnOlderRecordStaysAConfirmation) {
+  PhantomOperation run;
+  run.start(test::scripted_source(SourceKind::Live));
+  PlannedTunnel edited = test::phantom_plan();
+  edited.length_mm += 1;
+  run.apply(OfferPlan{edited});
+  run.apply(command_from_text(R"({"format":"arthronaut.command","version":1,"command":"take plan over"})",
+                              "the record"));
+  EXPECT_EQ(run.state()->plan, edited);
+  EXPECT_EQ(run.state()->time_out, TimeOut::Confirmed);
 }
 
 ResumeOperation left_behind(PhantomOperation& run, const SourceSetup& source) {

@@ -65,6 +65,7 @@ const std::vector<Command>& all_commands() {
                                              OfferPlan{plan()},
                                              OfferPlan{},
                                              TakePlanOver{},
+                                             TakePlanOver{false},
                                              SkipVerification{},
                                              MarkerPlacedAnew{},
                                              ReadDepthStop{1.0 / 3},
