@@ -3,6 +3,7 @@
 #include "app/guidance_severity/guidance_severity.h"
 #include "app/review/ct_beside.h"
 #include "app/review/review_panels.h"
+#include "navigation/recording/drilled_by_word.h"
 
 namespace arthronaut::review {
 
@@ -48,7 +49,11 @@ void draw_achieved(const widgets::Ui& ui, const ReviewScreen& screen) {
   widgets::text_in(ui.theme.title, widgets::kText, "Planned and achieved");
   if (!review.achieved_problem.empty())
     return widgets::status_row(ui, widgets::Severity::Bad, "Not readable", review.achieved_problem);
-  if (review.drilled.empty())
+  const auto by_word = recording::drilled_by_word(review.session->events, review.session->header.bone);
+  for (const recording::DrilledByWord& said : by_word)
+    widgets::status_row(ui, widgets::Severity::Caution, "By word alone",
+                        said.tunnel + ": no pose shows where it runs");
+  if (review.drilled.empty() && by_word.empty())
     return widgets::text_in(ui.theme.body, widgets::kQuietText, "No tunnel was recorded as drilled.");
   for (const DrilledTunnel& drilled : review.drilled) {
     const operation::AchievedTunnel& achieved = drilled.achieved;

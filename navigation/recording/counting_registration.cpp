@@ -1,10 +1,21 @@
 #include "navigation/recording/counting_registration.h"
 
+#include <utility>
+
+#include "navigation/operation/command.h"
+
 namespace arthronaut::recording {
 
 void CountingRegistration::follow(const SessionEvent& event) {
   // What verified the one before says nothing of this one.
-  if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent) newest_ = {event.text};
+  // What that event takes away, the one right after it says.
+  static const std::string kMarkerOut = operation::to_text(operation::MarkerOut{});
+  const bool says_out = event.kind == kCommandEvent && event.text == kMarkerOut;
+  const bool was_taken_away = std::exchange(marker_goes_out_, says_out) && !newest_.file.empty();
+  if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent) {
+    last_file_ = event.text;
+    if (!was_taken_away) newest_ = {event.text};
+  }
   if (event.kind == kVerifiedEvent) newest_.was_verified = true;
   if (event.kind == kVerificationLostEvent) newest_.was_verified = false;
   if (event.kind == kVoidEvent) {

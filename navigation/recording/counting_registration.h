@@ -1,6 +1,6 @@
 // Which registration counts for a session, from its events in order. What stands for a tunnel is what it was
 // drilled by: once the marker is out, nothing is registered any more. Of a session in which nothing is
-// drilled it is the newest one.
+// drilled, or by word alone, it is the newest one; that the marker was said to be out takes none away.
 #pragma once
 
 #include <string>
@@ -24,10 +24,12 @@ class CountingRegistration {
     return drilled_by != nullptr ? *drilled_by : newest_;
   }
   // It is not the newest: registration.json holds another one.
-  [[nodiscard]] bool is_of_before() const { return counts().file != newest_.file && !counts().file.empty(); }
+  [[nodiscard]] bool is_of_before() const { return counts().file != last_file_ && !counts().file.empty(); }
 
  private:
   Trust newest_;
+  std::string last_file_;         // of all registration events
+  bool marker_goes_out_ = false;  // that was said just before
   OfDrilled<Trust> drilled_by_;
 };
 

@@ -99,9 +99,8 @@ void read_record(const fs::path& folder, SessionFacts& facts) {
       "SELECT (SELECT timestamp_ns FROM frames ORDER BY frame DESC LIMIT 1) - "
       "(SELECT timestamp_ns FROM frames ORDER BY frame LIMIT 1)");
   if (span.step() && !span.is_null(0)) facts.length_min = static_cast<double>(span.integer(0)) * 1e-9 / 60;
-  Statement events = database.prepare(
-      "SELECT timestamp_ns, kind, text FROM events WHERE kind NOT IN ('command', 'outcome', 'plan') ORDER BY "
-      "id");
+  Statement events =
+      database.prepare("SELECT timestamp_ns, kind, text FROM events WHERE kind <> 'plan' ORDER BY id");
   CountingRegistration registration;
   while (events.step()) {
     const SessionEvent event{events.integer(0), events.text(1), events.text(2)};

@@ -4,6 +4,8 @@
 
 #include <initializer_list>
 
+#include "navigation/operation/command.h"
+
 namespace arthronaut::recording {
 namespace {
 
@@ -44,6 +46,24 @@ TEST(CountingRegistrationTest, ATunnelThatIsDrilledAfterAllCountsByWhatStoodThen
   const auto registration = after({kFirst, kAm, kNotAm, kMarkerOut, kAm});
   EXPECT_FALSE(registration.is_of_before());
   EXPECT_EQ(registration.counts().file, "registration_2.json");
+}
+
+// That the marker is out is the end of what guided, and no verdict on it: also where the tunnel is drilled by
+// word alone, or nothing was said of it.
+TEST(CountingRegistrationTest, TheMarkerThatIsSaidToBeOutTakesNothingAway) {
+  const SessionEvent says_out = event(kCommandEvent, operation::to_text(operation::MarkerOut{}));
+  const SessionEvent by_word = event(kDrilledByWordEvent, "femur: nothing was seen");
+  for (const auto& registration : {after({kFirst, kVerified, says_out, kMarkerOut}),
+                                   after({kFirst, kVerified, by_word, says_out, kMarkerOut})}) {
+    EXPECT_TRUE(registration.is_of_before());
+    EXPECT_EQ(registration.counts().file, "registration_1.json");
+    EXPECT_TRUE(registration.counts().was_verified);
+  }
+  // What is found after it counts; so does that a marker was placed anew, which nobody said was out.
+  const SessionEvent found = event(kRegistrationEvent, "registration_3.json");
+  EXPECT_EQ(after({kFirst, says_out, kMarkerOut, found}).counts().file, "registration_3.json");
+  EXPECT_EQ(after({kFirst, says_out, event(kOutcomeEvent, "7"), found}).counts().file, "registration_3.json");
+  EXPECT_EQ(after({kFirst, kMarkerOut}).counts().file, "registration_2.json");
 }
 
 }  // namespace
