@@ -42,12 +42,13 @@ std::vector<FinishedBone> NavigateView::finished_bones() const {
     for (const tunnels::TunnelKey& key : keys) {
       const auto said = choices_.drilled.find({kind, key});
       const auto planned = bones_.planned(key);
-      FinishedTunnel& tunnel = bone.tunnels.emplace_back(FinishedTunnel{key, false, {}});
+      FinishedTunnel& tunnel = bone.tunnels.emplace_back(FinishedTunnel{key, false, {}, false});
       tunnel.is_drilled = said != choices_.drilled.end() && planned == said->second;
       if (const auto measured = choices_.measured.find({kind, key});
           measured != choices_.measured.end() && planned &&
           operation::PlannedTunnel{measured->second.planned, planned->length_mm} == *planned)
         tunnel.measured = measured->second;
+      tunnel.was_verified = choices_.verified.contains({kind, key});
     }
     bones.push_back(std::move(bone));
   }

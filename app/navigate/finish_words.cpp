@@ -36,6 +36,13 @@ bool FinishedBone::is_drilled() const {
   return !tunnels.empty() && std::ranges::all_of(tunnels, &FinishedTunnel::is_drilled);
 }
 
+std::optional<bool> FinishedBone::was_verified() const {
+  std::optional<bool> all;
+  for (const FinishedTunnel& tunnel : tunnels)
+    if (tunnel.is_drilled && tunnel.measured) all = all.value_or(true) && tunnel.was_verified;
+  return all;
+}
+
 FinishList finish_list(const std::vector<FinishedBone>& bones) {
   FinishList list;
   list.is_done = !bones.empty();
@@ -46,6 +53,10 @@ FinishList finish_list(const std::vector<FinishedBone>& bones) {
       list.lines.push_back({is_seen ? Severity::Good : Severity::Caution,
                             name_in_list(tunnels::name_of(tunnel.key), " tunnel"), tunnel_in_words(tunnel)});
     }
+    if (const auto was_verified = bone.was_verified())
+      list.lines.push_back({*was_verified ? Severity::Good : Severity::Caution,
+                            name_in_list(std::string(bones::to_text(bone.bone)), " registration"),
+                            *was_verified ? "verified by touches" : "NOT verified by touches"});
     list.lines.push_back({bone.marker_is_out ? Severity::Good : Severity::Caution,
                           name_in_list(std::string(bones::to_text(bone.bone)), " marker"),
                           bone.marker_is_out ? "out"
@@ -64,7 +75,9 @@ FinishAction finish_action(const std::vector<FinishedBone>& bones, bones::BoneKi
   return is_under_way ? FinishAction::EndSource : FinishAction::Nothing;
 }
 
-std::string words_of(FinishAction action, bones::BoneKind bone) {
+std::string words_of(FinishAction action, const std::vector<FinishedBone>& bones, bones::BoneKind bone) {
+  const bool is_unverified =
+      std::ranges::any_of(bones, [](const FinishedBone& one) { return !one.was_verified().value_or(true); });
   const std::string own(bones::to_text(bone));
   const std::string other(
       bones::to_text(bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia : bones::BoneKind::Femur));
@@ -76,7 +89,8 @@ std::string words_of(FinishAction action, bones::BoneKind bone) {
     case FinishAction::EndSource:
       return "all is drilled, the markers are out: end the pictures";
     case FinishAction::Nothing:
-      return "done: the report is in Review (F3)";
+      return is_unverified ? "done, not verified: the report is in Review (F3)"
+                           : "done: the report is in Review (F3)";
   }
   return "";
 }

@@ -12,6 +12,7 @@ struct FinishedTunnel {
   tunnels::TunnelKey key = bones::BoneKind::Femur;
   bool is_drilled = false;                            // by the surgeon's word
   std::optional<operation::AchievedTunnel> measured;  // empty: nothing was
+  bool was_verified = false;                          // what guided there, by touches; of a measured one
 };
 // Of one bone that has a planned tunnel, or two.
 struct FinishedBone {
@@ -20,11 +21,13 @@ struct FinishedBone {
   bool marker_is_out = false;             // by the surgeon's word
   bool has_begun = false;                 // pictures of it came: its marker was put in, if not before
   [[nodiscard]] bool is_drilled() const;  // all of them
+  // Of what guided to a measured tunnel, all was verified by touches; empty: none was measured.
+  [[nodiscard]] std::optional<bool> was_verified() const;
 };
 
 struct FinishList {
-  std::vector<CardLine> lines;  // of each bone one for each tunnel, and one for its marker
-  bool is_done = false;         // every line
+  std::vector<CardLine> lines;  // of each bone one for each tunnel, for what guided, and for its marker
+  bool is_done = false;         // all is drilled, and every marker out
 };
 [[nodiscard]] FinishList finish_list(const std::vector<FinishedBone>& bones);
 
@@ -33,6 +36,7 @@ enum class FinishAction { TakeMarkerOut, OtherBone, EndSource, Nothing };
 // `bone`: that is navigated. `is_under_way`: pictures come.
 [[nodiscard]] FinishAction finish_action(const std::vector<FinishedBone>& bones, bones::BoneKind bone,
                                          bool is_under_way);
-[[nodiscard]] std::string words_of(FinishAction action, bones::BoneKind bone);
+[[nodiscard]] std::string words_of(FinishAction action, const std::vector<FinishedBone>& bones,
+                                   bones::BoneKind bone);
 
 }  // namespace arthronaut::navigate

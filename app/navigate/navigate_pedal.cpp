@@ -85,8 +85,10 @@ std::string NavigateView::next_step() {
   const NextAction action = action_now();
   if (const auto offered = tunnel_to_choose()) return words_of_choosing(*offered);
   if (choices_.goes_to_other_bone) return "wait: the pictures end";
-  if (finishes())
-    return words_of(finish_action(finished_bones(), choices_.bone, is_under_way(*live_)), choices_.bone);
+  if (finishes()) {
+    const auto bones = finished_bones();
+    return words_of(finish_action(bones, choices_.bone, is_under_way(*live_)), bones, choices_.bone);
+  }
   const auto guided = bones_.guided(choices_.bone);
   if (!guided) return words_of(NextAction::PlanTunnel);
   if (waits_for_take_over() && guided->bundle != norms::Bundle::Whole)

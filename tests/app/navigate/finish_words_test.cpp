@@ -9,7 +9,7 @@ using bones::BoneKind;
 
 FinishedBone bone_of(BoneKind bone, bool is_drilled, bool marker_is_out,
                      const std::optional<operation::AchievedTunnel>& measured = {}) {
-  return {bone, {{bone, is_drilled, measured}}, marker_is_out};
+  return {bone, {{bone, is_drilled, measured, false}}, marker_is_out};
 }
 
 // Femur first, then tibia, each drilled and its marker out: only then nothing is left to do.
@@ -66,11 +66,11 @@ TEST(FinishWords, TellOfEachOfTwoTunnels) {
   operation::AchievedTunnel measured;
   measured.depth_mm = 24.5;
   FinishedBone femur{BoneKind::Femur,
-                     {{{BoneKind::Femur, norms::Bundle::Anteromedial}, true, measured},
-                      {{BoneKind::Femur, norms::Bundle::Posterolateral}, true, {}}},
+                     {{{BoneKind::Femur, norms::Bundle::Anteromedial}, true, measured, true},
+                      {{BoneKind::Femur, norms::Bundle::Posterolateral}, true, {}, false}},
                      true};
   const FinishList list = finish_list({femur});
-  ASSERT_EQ(list.lines.size(), 3U);
+  ASSERT_EQ(list.lines.size(), 4U);
   EXPECT_EQ(list.lines[0].name, "Femur AM tunnel");
   EXPECT_EQ(list.lines[0].text, "drilled, 24.5 mm deep");
   EXPECT_EQ(list.lines[1].name, "Femur PL tunnel");
@@ -79,6 +79,26 @@ TEST(FinishWords, TellOfEachOfTwoTunnels) {
   femur.tunnels.back().is_drilled = false;
   EXPECT_FALSE(finish_list({femur}).is_done);
   EXPECT_FALSE(femur.is_drilled());
+}
+
+// What guided without a touch that verified it is no green end: the list says so, and so does the last word.
+TEST(FinishWords, SayThatNothingWasVerified) {
+  FinishedBone femur = bone_of(BoneKind::Femur, true, true, operation::AchievedTunnel());
+  const auto line = [&] {
+    for (const CardLine& one : finish_list({femur}).lines)
+      if (one.name == "Femur registration") return one;
+    return CardLine();
+  };
+  const auto last_word = [&] { return words_of(FinishAction::Nothing, {femur}, BoneKind::Femur); };
+  EXPECT_EQ(line().text, "NOT verified by touches");
+  EXPECT_EQ(line().severity, widgets::Severity::Caution);
+  EXPECT_EQ(last_word(), "done, not verified: the report is in Review (F3)");
+  femur.tunnels.front().was_verified = true;
+  EXPECT_EQ(line().text, "verified by touches");
+  EXPECT_EQ(line().severity, widgets::Severity::Good);
+  EXPECT_EQ(last_word(), "done: the report is in Review (F3)");
+  femur.tunnels.front().measured.reset();
+  EXPECT_EQ(line().name, "") << "nothing guided to a tunnel of which there is the surgeon's word alone";
 }
 
 }  // namespace
