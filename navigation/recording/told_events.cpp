@@ -50,6 +50,8 @@ class PoseFollower {
   explicit PoseFollower(const ReadRegistration& read) : read_(read) {}
 
   enum class Change { Pose, Verdict, NoPose };
+  // Why there is none, after NoPose; may be empty.
+  [[nodiscard]] const std::string& why_none() const { return why_none_; }
   // Where its file cannot be read it counts as a pose: that there was one, its event says.
   Change follow(const SessionEvent& event) {
     const auto registration = read_(event);
@@ -59,6 +61,7 @@ class PoseFollower {
     }
     if (!registration->has_pose) {
       pose_.reset();
+      why_none_ = registration->reasons.empty() ? "" : registration->reasons.front();
       return Change::NoPose;
     }
     if (pose_ && is_same(*pose_, registration->marker_from_bone)) return Change::Verdict;
@@ -69,6 +72,7 @@ class PoseFollower {
  private:
   const ReadRegistration& read_;
   std::optional<geometry::RigidTransform> pose_;
+  std::string why_none_;
 };
 
 }  // namespace
@@ -99,6 +103,7 @@ std::vector<ToldEvent> told_events(const std::vector<SessionEvent>& events, cons
       next.is_of_operation = false;
     } else if (change == PoseFollower::Change::NoPose) {
       next.words = was_registered ? "nothing is registered any more" : "no place of the bone was found";
+      if (was_registered && !poses.why_none().empty()) next.words += ": " + poses.why_none();
     }
     was_registered = was_registered || change == PoseFollower::Change::Pose;
   }

@@ -256,6 +256,9 @@ double OperationRun::picture_age_ms() const {
 }
 
 std::int64_t OperationRun::silence_ns() const {
+  // A recording and a simulation tell the time by their pictures alone; once these have ended, a clock does.
+  const bool is_live = theatre_source_.setup.kind == sources::SourceKind::Live;
+  if (!is_live && live_.ended_ns > 0) return since_ns(live_.ended_ns);
   if (theatre_source_.setup.kind != sources::SourceKind::Live || live_.taken_ns <= 0) return 0;
   return since_ns(live_.captured_ns > 0 ? live_.captured_ns : live_.taken_ns);
 }
@@ -321,6 +324,7 @@ void OperationRun::end_source() {
   const std::int64_t silent_at_end_ns = silence_ns();
   operation_.end_source();
   pass_on(silent_at_end_ns);
+  live_.ended_ns = sources::steady_now_ns();
   const bool was_live = theatre_source_.setup.kind == sources::SourceKind::Live;
   source_.reset();
   outside_ = {};

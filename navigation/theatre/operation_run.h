@@ -122,7 +122,8 @@ class OperationRun {
                                                    const pipeline::PictureObservation& view);
   void measure(const camera::Frame& frame, std::int64_t taken_ns);
   [[nodiscard]] double picture_age_ms() const;  // below 0 where nobody knows, or no live source runs
-  // Since the newest picture of the live source that runs, or ran last, for as long as none comes; else 0.
+  // Since the newest picture of the live source that runs, or ran last, for as long as none comes; of another
+  // one since it ended, and 0 while it runs.
   [[nodiscard]] std::int64_t silence_ns() const;
   // The same since the newest one that showed anything: neither a plain picture nor a frozen one does.
   [[nodiscard]] std::int64_t unseen_ns() const;
@@ -166,6 +167,7 @@ class OperationRun {
     bool is_news = false;               // what is wrong with the source has changed with it
     std::int64_t showed_ns = 0;         // when the newest that showed anything was captured, or taken up
     std::int64_t unseen_at_end_ns = 0;  // for how long none had come that did when the source ended
+    std::int64_t ended_ns = 0;          // when that was, of steady_now_ns(); 0: it runs
   } live_;
   double late_after_s_ = kLateAfter_s;
 };

@@ -46,7 +46,7 @@ TEST(ToldEvents, AVerdictIsNoRegistration) {
   for (const ToldEvent& one : told)
     if (one.is_of_operation) steps.push_back(one.words);
   EXPECT_EQ(steps, (std::vector<std::string>{"bone registered", "alarm", "alarm is over", "bone registered",
-                                             "nothing is registered any more"}));
+                                             "nothing is registered any more: no registration was run"}));
   EXPECT_EQ(told[1].words, "registration judged anew");
   EXPECT_EQ(told[1].gravity, Gravity::Note);
   EXPECT_EQ(told[2].gravity, Gravity::Alarm);
@@ -54,6 +54,19 @@ TEST(ToldEvents, AVerdictIsNoRegistration) {
   EXPECT_EQ(told[4].gravity, Gravity::Step);
   EXPECT_EQ(told[7].words, "anything");
   EXPECT_EQ(told[7].detail, "else");
+}
+
+// Why nothing is registered any more is told with it: the marker that was taken out is the end of every
+// operation, and one that was bumped is not.
+TEST(ToldEvents, SayWhyNothingIsRegisteredAnyMore) {
+  const auto with_reason = [](const SessionEvent& of) {
+    auto registration = read(of);
+    if (registration && !registration->has_pose)
+      registration->reasons = {"the world marker is out of the bone"};
+    return registration;
+  };
+  const auto told = told_events(kEvents, with_reason);
+  EXPECT_EQ(told[6].words, "nothing is registered any more: the world marker is out of the bone");
 }
 
 // That there was a registration its event says, whether its file can be read or not.

@@ -7,8 +7,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <random>
+#include <thread>
 
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_check.h"
@@ -180,6 +182,24 @@ TEST_F(OperationRunTest, Hazard29WhatIsSaidWithoutAPictureIsDatedWhenItIsSaid) {
       [](const recording::SessionEvent& event) { return event.kind == recording::kDrilledByWordEvent; });
   ASSERT_NE(word, recorded.events().end());
   EXPECT_EQ(word->timestamp_ns, said_ns[1]);
+}
+
+// The pictures of a recording tell the time while they come, and none once they have ended: what is said then
+// is dated by how long ago that was.
+TEST_F(OperationRunTest, Hazard29WhatIsSaidAfterARecordingIsDatedWhenItIsSaid) {
+  const fs::path session = folder_ / "session";
+  fs::create_directory(session);
+  OperationRun run(setup_, test::at_once(setup_), [&] { return session; });
+  run.start(test::plain_source(3));
+  (void)run_to_end(run);
+  const std::int64_t last_ns = run.state_of_frame()->frame.timestamp_ns;
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  run.apply(operation::TunnelDrilled{});
+  const recording::RecordedSession recorded(session);
+  const recording::SessionEvent& word = recorded.events().back();
+  ASSERT_EQ(word.kind, recording::kDrilledByWordEvent);
+  EXPECT_GE(word.timestamp_ns - last_ns, 700'000'000);
+  EXPECT_LT(word.timestamp_ns - last_ns, 60'000'000'000);
 }
 
 // Nor has one that is said over pictures that show nothing: a scope that was drawn out with its light off,
