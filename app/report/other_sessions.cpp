@@ -4,8 +4,10 @@
 #include <set>
 #include <utility>
 
+#include "app/report/report_words.h"
 #include "app/report/session_rows.h"
 #include "navigation/operation/achieved_tunnel.h"
+#include "navigation/recording/cut_short.h"
 #include "navigation/recording/drilled_by_word.h"
 #include "navigation/recording/session_overview.h"
 #include "planning/bones/mesh_hash.h"
@@ -91,6 +93,31 @@ void note_figures_of_before(Content& content) {
     said.has_figures_of_before = with_figures.contains(said.tunnel);
 }
 
+void add_others(const std::vector<std::filesystem::path>& sessions, Content& content) {
+  std::set<std::string> names;
+  for (const Content::Earlier& earlier : content.earlier) names.insert(earlier.session);
+  for (const Content::ByWord& said : content.by_word)
+    if (!said.at_s) names.insert(said.session);
+  for (const auto& folder : sessions) {
+    if (!names.contains(folder.filename().string())) continue;
+    unless_unreadable(folder, content, [&] {
+      const recording::RecordedSession session(folder);
+      Content::Other& other = content.others.emplace_back();
+      other.session = folder.filename().string();
+      other.bone = session.header().bone;
+      other.safety = safety_rows(
+          session, recording::cut_short_in_words(session.was_finished(), session.events(), false));
+      try {  // the rest of it is told all the same
+        other.registration = registration_that_counts(session);
+      } catch (const InvalidInput&) {
+        other.has_broken_registration = true;
+      } catch (const IoError&) {
+        other.has_broken_registration = true;
+      }
+    });
+  }
+}
+
 }  // namespace
 
 void unless_unreadable(const std::filesystem::path& session, Content& content,
@@ -111,6 +138,24 @@ void add_other_sessions(const std::vector<std::filesystem::path>& sessions, Cont
   add_by_word(sessions, content);
   add_earlier(sessions, content);
   note_figures_of_before(content);
+  add_others(sessions, content);
+}
+
+void draw_other_sessions(FlowingPages& pages, const Content& content) {
+  for (const Content::Other& other : content.others) {
+    pages.heading("The session of the " + std::string(bones::to_text(other.bone)));
+    std::vector<std::vector<std::string>> rows{{"Session", other.session.empty() ? kNotTold : other.session}};
+    if (other.registration)
+      rows.push_back(
+          {"Registration",
+           std::string(other.registration->reliable ? "reliable" : "NOT RELIABLE") +
+               (other.registration->has_pose ? ", predicted error at the target, one sigma " +
+                                                   number(other.registration->predicted_tre_mm, " mm", 2)
+                                             : "")});
+    if (other.has_broken_registration) rows.push_back({"Registration", "NOT READABLE"});
+    rows.insert(rows.end(), other.safety.begin(), other.safety.end());
+    pages.table({70, 100}, rows);
+  }
 }
 
 std::string in_words(const Content::ByWord& said) {

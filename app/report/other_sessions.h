@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/report/flowing_pages.h"
 #include "app/report/report_content.h"
 
 namespace arthronaut::report {
@@ -18,6 +19,9 @@ void unless_unreadable(const std::filesystem::path& session, Content& content,
 // Which tunnels were said to be drilled, and which were drilled, in sessions before; `content` has its own
 // session and what was achieved in it. sessions: the oldest first.
 void add_other_sessions(const std::vector<std::filesystem::path>& sessions, Content& content);
+
+// A table of each: its registration, and what stood against a mistake.
+void draw_other_sessions(FlowingPages& pages, const Content& content);
 
 // That it was said, when, and why no number is told of it.
 [[nodiscard]] std::string in_words(const Content::ByWord& said);

@@ -9,6 +9,7 @@
 #include "app/report/other_sessions.h"
 #include "app/report/pdf_document.h"
 #include "app/report/plan_sheet.h"
+#include "app/report/plans_in_force.h"
 #include "app/report/postop_section.h"
 #include "app/report/report_content.h"
 #include "app/report/report_data.h"
@@ -34,13 +35,6 @@ namespace arthronaut::report {
 namespace {
 
 constexpr double kWidthMm = FlowingPages::kWidthMm;
-// A hash is a word too long for a line: "3dd6dcd64e4a9eeb 069e29a556f187e8 ...".
-std::string in_groups(const std::string& hash) {
-  std::string groups;
-  for (std::size_t at = 0; at < hash.size(); at += 16) groups += (at > 0 ? " " : "") + hash.substr(at, 16);
-  return groups;
-}
-
 class Report {
  public:
   Report(const Content& content, const ReportOptions& options)
@@ -317,15 +311,17 @@ void Report::navigate_page() {
       {"Source", kind_in_words(header)},
       {"Video", content_.identity ? header.source : neutral_source(header)},
       {"Medium", camera::medium_to_text(header.refractive_index)},
-      {"Frames", std::to_string(figures.frames) + " in " + clock_text(figures.length_s)},
-      {"World marker tracked", number(figures.world_percent, " % of the frames")},
-      {"Lens mark found", number(figures.mark_percent, " % of the frames")},
+      {"Frames", frames_in_words(figures)},
+      {"World marker tracked", number(figures.world_percent, " % of the frames that came")},
+      {"Lens mark found", number(figures.mark_percent, " % of the frames that came")},
       {"Record by its hashes", recording::check_words(content_.check)},
       {"Last hash of the record", content_.last_hash.empty() ? "none" : in_groups(content_.last_hash)}};
   if (figures.other_medium_percent > 0)
     rows.push_back({"WRONG MEDIUM by the markers", number(figures.other_medium_percent, " % of the frames")});
   if (const std::string guided = guided_bundles(session); !guided.empty())
     rows.push_back({"Guided to the tunnel", guided});
+  if (const std::string plan = plans_in_words(plans_in_force(session)); !plan.empty())
+    rows.push_back({"Plan in force", plan});
   for (auto& row : safety_rows(session, content_.cut_short)) rows.push_back(std::move(row));
   pages_.table({70, 100}, rows);
   if (content_.registration) registration_section(*content_.registration);
@@ -341,6 +337,7 @@ void Report::navigate_page() {
                         ".",
                     {.size_pt = 8.5, .ink = kGray});
   }
+  draw_other_sessions(pages_, content_);
   for (const Content::ByWord& said : content_.by_word)
     pages_.sentence(in_words(said), {.bold = true, .ink = kWarning});
   draw_postop_section(pages_, content_);

@@ -194,6 +194,7 @@ void blank_for_strangers(Content& content) {
   content.started_utc.clear();
   if (!content.cut_short.empty()) content.cut_short = std::string("why is ") + kNotTold;
   for (Content::Earlier& earlier : content.earlier) earlier.session.clear();
+  for (Content::Other& other : content.others) other.session.clear();
   for (Content::ByWord& said : content.by_word) said.session.clear();
   if (content.camera && !content.camera->date_utc.empty()) content.camera->date_utc = kNotTold;
   for (auto& [session, reason] : content.unreadable) {
@@ -244,20 +245,23 @@ std::optional<postop::AchievedPlace> place_of(const Content& content,
                           plan_review::state_of_grid(content.knee, bone));
 }
 
-std::string changed_since(const Content& content, const tunnels::Tunnel& guided) {
+std::string difference_from_now(const Content& content, const tunnels::Tunnel& guided) {
   const auto now = content.knee.plan.tunnels.find(guided.key());
-  if (now == content.knee.plan.tunnels.end())
-    return "The plan was changed since: this tunnel is planned no more. What follows is against the one "
-           "that guided.";
+  if (now == content.knee.plan.tunnels.end()) return "planned no more";
   const operation::TunnelDifference by = operation::compare(guided, now->second);
   constexpr double kSame_mm = 0.05, kSame_deg = 0.05;  // as it is printed
   const double wider_mm = now->second.diameter_mm - guided.diameter_mm;
   if (by.entry_mm < kSame_mm && by.angle_deg < kSame_deg && std::abs(wider_mm) < kSame_mm) return "";
   return files::format(
-      "The plan was changed since, by %.1f mm at the entry, %.1f\u00B0%s: what follows is against "
-      "the plan that guided, not the one on the first pages.",
-      by.entry_mm, by.angle_deg,
+      "changed since, by %.1f mm at the entry, %.1f\u00B0%s", by.entry_mm, by.angle_deg,
       std::abs(wider_mm) < kSame_mm ? "" : files::format(" and %+.1f mm in diameter", wider_mm).c_str());
+}
+
+std::string changed_since(const Content& content, const tunnels::Tunnel& guided) {
+  const std::string by = difference_from_now(content, guided);
+  return by.empty() ? ""
+                    : "This tunnel was " + by +
+                          ": what follows is against the plan that guided, not the one on the first pages.";
 }
 
 std::string verdict_of(const Content& content, const tunnels::TunnelKey& key) {
@@ -294,6 +298,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
                   .cut_short = {},
                   .achieved = {},
                   .earlier = {},
+                  .others = {},
                   .by_word = {},
                   .unreadable = {},
                   .marks = {},

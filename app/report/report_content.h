@@ -47,6 +47,15 @@ struct Content {
     std::string session;
   };
   std::vector<Earlier> earlier = {};
+  // The sessions that `earlier` and `by_word` tell of beside `session`: by what their tunnels were drilled.
+  struct Other {
+    std::string session;
+    bones::BoneKind bone = bones::BoneKind::Femur;
+    std::optional<registration::RegistrationSummary> registration = {};
+    bool has_broken_registration = false;
+    std::vector<std::vector<std::string>> safety = {};  // see safety_rows()
+  };
+  std::vector<Other> others = {};
   // Those of which the last that was said, in `session` or before it, is that they are drilled, and no pose
   // shows where: no number is told of them. at_s: from the beginning of `session`; empty: said in another
   // one.
@@ -91,6 +100,9 @@ inline constexpr double kGatheredShare = 0.3;
 // Where navigation says that it was drilled; nullopt where the case lacks the bone, or has another surface.
 [[nodiscard]] std::optional<postop::AchievedPlace> place_of(const Content& content,
                                                             const operation::AchievedTunnel& achieved);
+// How the case's plan differs from what guided: "changed since, by 1.2 mm at the entry, 3.0°", "planned no
+// more"; empty: it does not.
+[[nodiscard]] std::string difference_from_now(const Content& content, const tunnels::Tunnel& guided);
 // Where the plan is not the one any more that guided there: how it differs; else empty.
 [[nodiscard]] std::string changed_since(const Content& content, const tunnels::Tunnel& guided);
 // "reliable", "not reliable", "of an earlier plan", "no tunnel found", "bone not found in the images".

@@ -2,9 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/report/plans_in_force.h"
 #include "app/report/report_words.h"
 #include "app/report/result_summary.h"
 #include "app/report/session_rows.h"
+#include "app/report/source_faults.h"
 #include "app/report/versions.h"
 #include "navigation/camera/medium.h"
 #include "planning/cases/plan_file.h"
@@ -86,6 +88,18 @@ ordered_json json_of(const camera::CalibrationRecord& camera) {
           {"origin", provenance::to_text(camera.provenance.origin)}};
 }
 
+ordered_json others_of(const Content& content) {
+  ordered_json all = ordered_json::array();
+  for (const Content::Other& other : content.others) {
+    ordered_json node = {{"id", if_told(other.session)}, {"bone", bones::to_text(other.bone)}};
+    node["registration"] = other.registration ? json_of(*other.registration) : ordered_json();
+    node["safety"] = ordered_json::object();
+    for (const auto& row : other.safety) node["safety"][row[0]] = row[1];
+    all.push_back(std::move(node));
+  }
+  return all;
+}
+
 ordered_json session_of(const Content& content) {
   if (!content.session) return nullptr;
   const recording::RecordedSession& session = *content.session;
@@ -112,6 +126,20 @@ ordered_json session_of(const Content& content) {
   node["registration"] = nullptr;
   if (content.registration) node["registration"] = json_of(*content.registration);
   if (!content.registration_problem.empty()) node["registration_problem"] = content.registration_problem;
+  node["without_picture_s"] = figures.without_picture_s;
+  node["source_faults"] = ordered_json::array();
+  for (const SourceFault& fault : source_faults(session))
+    node["source_faults"].push_back(
+        {{"what", theatre::to_text(fault.trouble)}, {"from_s", fault.from_s}, {"for_s", fault.for_s}});
+  node["plans"] = ordered_json::array();
+  for (const PlanInForce& in_force : plans_in_force(session)) {
+    ordered_json plan = {{"tunnel", tunnels::name_of(in_force.plan.tunnel.key())},
+                         {"since_s", in_force.since_s}};
+    plan.update(json_of(in_force.plan.tunnel));
+    plan["length_mm"] = in_force.plan.length_mm;
+    node["plans"].push_back(std::move(plan));
+  }
+  node["plan_warnings"] = plan_warnings(content);
   node["safety"] = ordered_json::object();
   for (const auto& row : safety_rows(session, content.cut_short)) node["safety"][row[0]] = row[1];
   node["steps"] = ordered_json::array();
@@ -216,6 +244,7 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
   json["plan_sha256"] = cases::plan_sha256(cases::with_named_meshes(content.knee));
   json["tunnels"] = tunnels_of(content);
   json["session"] = session_of(content);
+  json["other_sessions"] = others_of(content);
   json["unreadable_sessions"] = ordered_json::array();
   for (const auto& [session, reason] : content.unreadable)
     json["unreadable_sessions"].push_back({{"id", if_told(session)}, {"reason", if_told(reason)}});

@@ -21,6 +21,13 @@ inline std::string number(double value, const char* unit, int decimals = 1) {
   return files::format("%.*f%s", decimals, is_zero ? 0 : value, unit);
 }
 
+// A hash is a word too long for a line: "3dd6dcd64e4a9eeb 069e29a556f187e8 ...".
+inline std::string in_groups(const std::string& hash) {
+  std::string groups;
+  for (std::size_t at = 0; at < hash.size(); at += 16) groups += (at > 0 ? " " : "") + hash.substr(at, 16);
+  return groups;
+}
+
 inline std::string point(const Eigen::Vector3d& p, int decimals = 1) {
   return number(p.x(), ", ", decimals) + number(p.y(), ", ", decimals) + number(p.z(), "", decimals);
 }

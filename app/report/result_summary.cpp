@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "app/report/plans_in_force.h"
 #include "app/report/report_words.h"
 #include "app/report/session_rows.h"
 #include "planning/files/unit_signs.h"
@@ -34,6 +35,24 @@ std::string by_ct(const Content& content, const TunnelResult& result) {
   return off_by(found.offset_mm, geometry::deg_from_rad(found.angle_rad)) +
          (verdict == "reliable" ? "" : "; " + verdict) +
          (result.imaged->kept_because.empty() ? "" : "; kept from earlier images");
+}
+
+// By what a bone's tunnel was drilled, or would have been: "Femur: registration reliable, ...".
+std::string by_registration(bones::BoneKind bone,
+                            const std::optional<registration::RegistrationSummary>& registration,
+                            const std::string& without, const std::vector<std::vector<std::string>>& safety) {
+  std::string words = (bone == bones::BoneKind::Femur ? "Femur: " : "Tibia: ") + without;
+  if (registration)
+    words = std::string(bone == bones::BoneKind::Femur ? "Femur" : "Tibia") + ": registration " +
+            (registration->reliable ? "reliable" : "NOT RELIABLE") +
+            (registration->has_pose
+                 ? ", predicted error at the target " + number(registration->predicted_tre_mm, " mm", 2)
+                 : "");
+  words += ".";
+  for (const std::vector<std::string>& row : safety)
+    if (row.front() == kVerificationRow || row.front() == kAlarmsRow)
+      words += " " + row.front() + ": " + row.back() + ".";
+  return words;
 }
 
 // Whether the CT's numbers stand, whatever became of the plan since.
@@ -99,6 +118,8 @@ void draw_result_summary(FlowingPages& pages, const Content& content) {
   pages.heading("Result");
   if (content.session && content.session->header().source_kind == "simulation")
     pages.sentence("SIMULATION: nobody's knee.", {.bold = true, .ink = kWarning});
+  for (const std::string& warning : plan_warnings(content))
+    pages.sentence(warning, {.bold = true, .ink = kWarning});
   std::vector<std::vector<std::string>> rows = {
       {"Tunnel", "Navigation, off the plan", "CT after, off the plan", "CT against navigation"}};
   for (const TunnelResult& result : results)
@@ -108,17 +129,17 @@ void draw_result_summary(FlowingPages& pages, const Content& content) {
                         : "\u2013"});
   if (!results.empty()) pages.table({20, 54, 54, 42}, rows);
   if (!content.session) return;
-  std::string words =
-      content.registration_problem.empty() ? "No registration was kept." : "NOT READABLE: the registration.";
-  if (content.registration)
-    words = "Registration " + std::string(content.registration->reliable ? "reliable" : "NOT RELIABLE") +
-            (content.registration->has_pose ? ", predicted error at the target " +
-                                                  number(content.registration->predicted_tre_mm, " mm", 2)
-                                            : "") +
-            ".";
-  for (const std::vector<std::string>& row : safety_rows(*content.session, content.cut_short))
-    if (row.front() == "Verification") words += " Verification: " + row.back() + ".";
-  pages.sentence(words, {.size_pt = 8.5});
+  pages.sentence(by_registration(content.session->header().bone, content.registration,
+                                 content.registration_problem.empty() ? "no registration was kept"
+                                                                      : "NOT READABLE: the registration",
+                                 safety_rows(*content.session, content.cut_short)),
+                 {.size_pt = 8.5});
+  for (const Content::Other& other : content.others)
+    pages.sentence(by_registration(other.bone, other.registration,
+                                   other.has_broken_registration ? "NOT READABLE: the registration"
+                                                                 : "no registration was kept",
+                                   other.safety),
+                   {.size_pt = 8.5});
 }
 
 }  // namespace arthronaut::report

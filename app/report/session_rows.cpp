@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "app/report/plans_in_force.h"
+#include "app/report/source_faults.h"
 #include "navigation/recording/counting_registration.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/files/format.h"
@@ -77,6 +79,12 @@ std::optional<registration::RegistrationSummary> registration_that_counts(
 
 namespace {
 
+std::string in_capitals(std::string words) {
+  std::transform(words.begin(), words.end(), words.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return words;
+}
+
 // Each text once, in the order of the first of its kind: an alarm comes and goes many times.
 std::string alarms_in_words(const recording::RecordedSession& session) {
   std::vector<std::pair<std::string, int>> alarms;
@@ -102,7 +110,12 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
   bool is_verified = false, is_lost = false, was_verified = false, was_skipped = false, is_confirmed = false;
   recording::CountingRegistration registration;
   std::string guide, beside;
+  const std::vector<PlanInForce> plans = plans_in_force(session);
+  const operation::PlannedTunnel* plan = nullptr;       // in force
+  const operation::PlannedTunnel* confirmed = nullptr;  // that the time-out was confirmed of last
   for (const recording::SessionEvent& event : session.events()) {
+    for (const PlanInForce& next : plans)
+      if (next.event == &event) plan = &next.plan;
     const bool ends = event.kind == recording::kRegistrationEvent ||
                       event.kind == recording::kGivenRegistrationEvent ||
                       event.kind == recording::kVoidEvent || event.kind == recording::kVerificationLostEvent;
@@ -112,6 +125,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
     registration.follow(event);
     was_skipped = was_skipped || event.kind == recording::kVerificationSkippedEvent;
     if (event.kind == recording::kTimeOutConfirmedEvent) {
+      confirmed = plan;
       is_confirmed = true;  // what was wrong with its picture is said before what was on the screen
       beside = event.text.starts_with("BESIDE ") ? event.text.substr(0, event.text.find(';')) : "";
     }
@@ -126,14 +140,20 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
                      : "not verified";
   const std::string& kind = session.header().source_kind;
   const bool is_live = kind == sources::to_text(sources::SourceKind::Live);
-  return {{"Record", cut_short.empty() ? "from beginning to end" : "CUT SHORT: " + cut_short},
-          {"Verification", verified + (was_skipped ? "; guidance began without it" : "")},
-          {"Time-out", is_confirmed   ? "confirmed" + (beside.empty() ? "" : "; " + beside)
-                       : is_live      ? "not confirmed in this session"
-                       : kind.empty() ? "not recorded"
-                                      : "not asked: no live source"},
-          {"Check of a nominal guide", guide.empty() ? "none in this session" : guide},
-          {"Alarms, void registrations", alarms_in_words(session)}};
+  std::string time_out = "confirmed";
+  if (confirmed != nullptr) time_out += " of the plan " + in_words(*confirmed);
+  if (confirmed != nullptr && *confirmed != *plan) time_out += "; NOT CONFIRMED of the plan after it";
+  if (!beside.empty()) time_out += "; " + beside;
+  return {
+      {"Record", cut_short.empty() ? "from beginning to end" : "CUT SHORT: " + cut_short},
+      {kVerificationRow, verified + (was_skipped ? "; guidance began without it" : "")},
+      {"Time-out", is_confirmed   ? time_out
+                   : is_live      ? "not confirmed in this session"
+                   : kind.empty() ? "not recorded"
+                                  : "not asked: no live source"},
+      {"Check of a nominal guide", guide.empty() ? "none in this session" : guide},
+      {"Faults of the source", is_live ? in_words(source_faults(session)) : "not looked for: no live source"},
+      {kAlarmsRow, alarms_in_words(session)}};
 }
 
 SessionFigures figures_of(const recording::RecordedSession& session) {
@@ -153,8 +173,19 @@ SessionFigures figures_of(const recording::RecordedSession& session) {
   const double frames = std::max<double>(1, static_cast<double>(session.frames().size()));
   const double length_s =
       session.frames().empty() ? 0 : time_s(session, session.frames().back().timestamp_ns);
-  return {session.frames().size(), length_s, 100 * static_cast<double>(with_world) / frames,
-          100 * static_cast<double>(with_mark) / frames, 100 * static_cast<double>(in_other_medium) / frames};
+  return {session.frames().size(),
+          length_s,
+          100 * static_cast<double>(with_world) / frames,
+          100 * static_cast<double>(with_mark) / frames,
+          100 * static_cast<double>(in_other_medium) / frames,
+          report::without_picture_s(session)};
+}
+
+std::string frames_in_words(const SessionFigures& figures) {
+  const std::string words = std::to_string(figures.frames) + " in " + clock_text(figures.length_s);
+  return figures.without_picture_s > 0
+             ? words + files::format("; NO PICTURE for %.1f s", figures.without_picture_s)
+             : words;
 }
 
 double time_s(const recording::RecordedSession& session, std::int64_t timestamp_ns) {
@@ -171,9 +202,14 @@ std::string seen_and_said(const recording::RecordedSession& session,
                           const operation::AchievedTunnel& achieved) {
   std::string words = ", the last at " + clock_text(time_s(session, achieved.timestamp_ns));
   const std::string file = operation::achieved_file_name(achieved.planned.key());
-  for (auto it = session.events().rbegin(); it != session.events().rend(); ++it)
-    if (it->kind == recording::kDrilledEvent && it->text == file)
-      return words + "; said to be drilled at " + clock_text(time_s(session, it->timestamp_ns));
+  for (auto it = session.events().rbegin(); it != session.events().rend(); ++it) {
+    if (it->kind != recording::kDrilledEvent || it->text != file) continue;
+    const bool had_ended = std::any_of(it, session.events().rend(), [](const auto& before) {
+      return before.kind == recording::kSourceEndedEvent;
+    });
+    return words + "; said to be drilled at " + clock_text(time_s(session, it->timestamp_ns)) +
+           (had_ended ? ", after the pictures had ended" : "");
+  }
   return words;
 }
 
@@ -181,32 +217,45 @@ std::vector<Step> steps_of(const recording::RecordedSession& session) {
   struct Run {
     std::string words;
     double first_s = 0, last_s = 0;
+    double for_s = 0;  // of a fault of the source
     int more = 0;
   };
   std::vector<Run> runs;
-  for (const recording::ToldEvent& told :
-       recording::told_events(session.events(), registrations_of(session))) {
-    if (!told.is_of_operation) continue;
-    std::string words = told.words;
-    if (told.gravity == recording::Gravity::Alarm) {
-      std::transform(words.begin(), words.end(), words.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-      if (!told.detail.empty()) words += ": " + told.detail;
-    }
-    const double at_s = time_s(session, told.event->timestamp_ns);
+  const auto add = [&](std::string words, double at_s, double for_s) {
     if (!runs.empty() && runs.back().words == words) {
       runs.back().last_s = at_s;
       ++runs.back().more;
     } else {
-      runs.push_back({std::move(words), at_s, at_s, 0});
+      runs.push_back({std::move(words), at_s, at_s, for_s, 0});
     }
+  };
+  const std::vector<PlanInForce> plans = plans_in_force(session);
+  const std::vector<SourceFault> faults = source_faults(session);
+  for (const recording::ToldEvent& told :
+       recording::told_events(session.events(), registrations_of(session))) {
+    const double at_s = time_s(session, told.event->timestamp_ns);
+    for (std::size_t i = 1; i < plans.size(); ++i)
+      if (plans[i].event == told.event) add("ANOTHER PLAN TAKEN OVER: " + in_words(plans[i].plan), at_s, 0);
+    for (const SourceFault& fault : faults)
+      if (fault.event == told.event && fault.is_loss())
+        add(in_capitals("source: " + std::string(theatre::to_text(fault.trouble))), at_s, fault.for_s);
+    if (!told.is_of_operation) continue;
+    std::string words = told.words;
+    if (told.gravity == recording::Gravity::Alarm) {
+      words = in_capitals(words);
+      if (!told.detail.empty()) words += ": " + told.detail;
+    }
+    add(std::move(words), at_s, 0);
   }
   std::vector<Step> steps;
-  for (const Run& run : runs)
-    steps.push_back(
-        {run.first_s, run.words + (run.more > 0 ? ", and " + std::to_string(run.more) + " times more until " +
-                                                      clock_text(run.last_s)
-                                                : "")});
+  for (const Run& run : runs) {
+    std::string words = run.words;
+    if (run.more > 0)
+      words += ", and " + std::to_string(run.more) + " times more until " + clock_text(run.last_s);
+    else if (run.for_s > 0)
+      words += files::format(", for %.1f s", run.for_s);
+    steps.push_back({run.first_s, std::move(words)});
+  }
   return steps;
 }
 

@@ -25,6 +25,8 @@ namespace arthronaut::report {
 // out, and nothing is registered any more. Throws IoError or InvalidInput where its file cannot be read.
 [[nodiscard]] std::optional<registration::RegistrationSummary> registration_that_counts(
     const recording::RecordedSession& session);
+inline constexpr const char* kVerificationRow = "Verification";
+inline constexpr const char* kAlarmsRow = "Alarms, void registrations";
 // A registration of it by its event.
 [[nodiscard]] recording::ReadRegistration registrations_of(const recording::RecordedSession& session);
 // What was asked before the guide was followed, and what spoke against it, as the session's events say it: a
@@ -39,20 +41,25 @@ struct SessionFigures {
   double length_s = 0;                         // from the first to the last
   double world_percent = 0, mark_percent = 0;  // of the frames: world marker tracked, lens mark found
   double other_medium_percent = 0;             // of them: nothing stood, since the medium was contradicted
+  double without_picture_s = 0;                // of a live source: for so long none came
 };
 [[nodiscard]] SessionFigures figures_of(const recording::RecordedSession& session);
+// "2094 in 1:10.0; NO PICTURE for 26.4 s"
+[[nodiscard]] std::string frames_in_words(const SessionFigures& figures);
 
 // Seconds from the first frame; 0 for what was before it.
 [[nodiscard]] double time_s(const recording::RecordedSession& session, std::int64_t timestamp_ns);
 // "1:02.3"
 [[nodiscard]] std::string clock_text(double seconds);
 // When the last pose of a tunnel was seen that was drilled in this session, and when it was said to be: what
-// was seen is not of all the time between them. ", the last at 0:54.2; said to be drilled at 1:23.0".
+// was seen is not of all the time between them. ", the last at 0:54.2; said to be drilled at 1:23.0, after
+// the pictures had ended".
 [[nodiscard]] std::string seen_and_said(const recording::RecordedSession& session,
                                         const operation::AchievedTunnel& achieved);
 
 // A step of the operation on its time line: registered, verified, confirmed, drilled; and what stood against
-// one, in capitals: an alarm, a registration that is void.
+// one, in capitals: an alarm, a registration that is void, another plan, pictures that did not come or showed
+// nothing.
 struct Step {
   double time_s = 0;
   std::string words;  // of several alike that follow each other the first, and how many more until when

@@ -49,22 +49,38 @@ void camera_section(FlowingPages& pages, const Content& content) {
         {.size_pt = 8.5, .ink = kGray});
 }
 
+// Whether somebody measured it: a guide's error depends on that, and its tunnel's with it.
+std::string known_by(const tools::Tool& tool) {
+  const tools::NominalParts parts = tools::nominal_parts(tool);
+  std::string words(provenance::to_text(tool.provenance.origin));
+  if (tool.provenance.origin == provenance::Origin::Nominal || !parts.any()) return words;
+  const auto add = [&](bool is_nominal, const char* part) {
+    if (is_nominal) words += std::string(words.ends_with("nominal") ? " " : ", ") + part;
+  };
+  words += "; nominal";
+  add(parts.tip, "tip");
+  add(parts.axis, "axis");
+  add(parts.end, "end");
+  return words;
+}
+
 void tools_table(FlowingPages& pages, const recording::RecordedSession& session) {
   pages.heading("Tools");
-  std::vector<std::vector<std::string>> rows = {{"Tool", "Marker", "Size", "Tip or axis in its frame, mm"}};
+  std::vector<std::vector<std::string>> rows = {
+      {"Tool", "Marker", "Size", "Known", "Tip or axis in its frame, mm"}};
   const auto options = session.pipeline_options();
   for (const auto& world : options.tools.world_markers) {
     rows.push_back({std::string(bones::to_text(world.bone)) + " (world)", ids_of(world),
-                    number(world.size_mm, " mm", 2), ""});
+                    number(world.size_mm, " mm", 2), "", ""});
   }
   for (const auto& tool : options.tools.tools) {
     std::string where;
     if (tool.tip_mm) where = "tip " + point(*tool.tip_mm, 2);
     if (tool.axis)
       where = "axis through " + point(tool.axis->point_mm, 2) + " along " + point(tool.axis->direction, 3);
-    rows.push_back({tool.name, ids_of(tool), number(tool.size_mm, " mm", 2), where});
+    rows.push_back({tool.name, ids_of(tool), number(tool.size_mm, " mm", 2), known_by(tool), where});
   }
-  pages.table({34, 16, 20, 100}, rows);
+  pages.table({30, 14, 18, 22, 86}, rows);
 }
 
 }  // namespace
@@ -78,7 +94,6 @@ void draw_settings_section(FlowingPages& pages, const Content& content) {
   for (const auto& [name, version] : versions())
     text += (text.empty() ? "" : " \u00B7 ") + name + " " + version;
   pages.sentence(text, {.size_pt = 8.5});
-  pages.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
 }
 
 }  // namespace arthronaut::report

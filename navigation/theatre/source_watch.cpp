@@ -34,6 +34,19 @@ std::string_view to_text(SourceTrouble trouble) {
   return kNames[static_cast<std::size_t>(trouble)];
 }
 
+SourceTrouble trouble_of(std::string_view words) {
+  if (words.empty()) return SourceTrouble::None;
+  if (words.starts_with("No picture comes")) return SourceTrouble::NoPicture;
+  if (words.starts_with("The picture is plain")) return SourceTrouble::Plain;
+  if (words.starts_with("The source sends the same picture")) return SourceTrouble::Frozen;
+  if (words.starts_with("Torn pictures")) return SourceTrouble::Torn;
+  if (words.starts_with("The source repeats")) return SourceTrouble::Repeated;
+  if (words.starts_with("Pictures are late")) return SourceTrouble::Late;
+  const bool is_slow = words.starts_with("Each is over ") ||
+                       words.find(" a second are too few: each is too old") != std::string_view::npos;
+  return is_slow ? SourceTrouble::Slow : SourceTrouble::Lost;
+}
+
 bool is_of_now(double age_s, SourceTrouble trouble, double late_after_s) {
   constexpr double kSlowPicture_s = 0.3;
   return age_s <= (trouble == SourceTrouble::Slow ? kSlowPicture_s : late_after_s);

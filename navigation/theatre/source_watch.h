@@ -18,6 +18,8 @@ namespace arthronaut::theatre {
 enum class SourceTrouble { None, NoPicture, Plain, Frozen, Torn, Repeated, Late, Slow, Lost };
 // "no picture", "plain picture", ...; empty for None.
 [[nodiscard]] std::string_view to_text(SourceTrouble trouble);
+// What SourceWatch::words() tell of, as a record keeps them. A source's own words are of Lost.
+[[nodiscard]] SourceTrouble trouble_of(std::string_view words);
 
 // Whether a live picture of this age may be shown, and told to others, as one of now. Of a slow source no
 // picture guides, and what is young enough for a touch (see OperationRun::apply) is shown all the same.

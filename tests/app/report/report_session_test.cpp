@@ -61,12 +61,13 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   expect_contains(text, "least wall");
   expect_contains(text, "water");
   expect_contains(text, "CUT SHORT: the video stopped: video.mkv: disk full");
-  EXPECT_EQ(text.find("The plan was changed since"), std::string::npos);
+  EXPECT_EQ(text.find("changed since"), std::string::npos);
   // The first pages show today's plan, which did not guide.
   knee_.plan.tunnels.at(bones::BoneKind::Femur).entry_mm += 3 * side;
   cases::save_case(knee_folder(), knee_);
   write(pdf());
-  expect_contains(pdf_text(), "The plan was changed since, by 3.0 mm at the entry, 0.0\u00B0: what follows");
+  expect_contains(pdf_text(),
+                  "This tunnel was changed since, by 3.0 mm at the entry, 0.0\u00B0: what follows");
 }
 
 // Each start of a source is a session of its own: what was drilled in the one before is not left out.
@@ -126,7 +127,15 @@ TEST_F(Report, TellsOfBothBonesThoughEachWasDrilledInASessionOfItsOwn) {
     options.bone = bone;
     options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
     options.tools = tools::standard_tools();
-    recording::SessionRecorder(folder, header, options).finish();
+    recording::SessionRecorder recorder(folder, header, options);
+    registration::RegistrationSummary registration;
+    registration.has_pose = registration.reliable = true;
+    registration.reasons.clear();
+    registration.predicted_tre_mm = off_mm / 5;
+    recorder.set_registration(registration);
+    if (bone == bones::BoneKind::Femur)
+      recorder.add_event({0, std::string(recording::kVerifiedEvent), "", -1});
+    recorder.finish();
     tunnels::Tunnel measured = planned;
     measured.entry_mm += off_mm * planned.direction.unitOrthogonal();
     operation::write_achieved_file(
@@ -140,8 +149,18 @@ TEST_F(Report, TellsOfBothBonesThoughEachWasDrilledInASessionOfItsOwn) {
   expect_contains(text, "Planned against achieved: femur");
   expect_contains(text, "1.25 mm");
   expect_contains(text, "Drilled in the session " + sessions.front());
+  // On the first page by what each was drilled, and further on the other session's own safety.
+  expect_contains(text,
+                  "Tibia: registration reliable, predicted error at the target 0.15 mm. Verification: not");
+  expect_contains(
+      text, "Femur: registration reliable, predicted error at the target 0.25 mm. Verification: verified");
+  expect_contains(text, "The session of the femur");
   const auto json = knee_folder().parent_path() / "report.json";
   write(json);
+  const auto others = nlohmann::json::parse(files::read_text(json)).at("other_sessions");
+  ASSERT_EQ(others.size(), 1U);
+  EXPECT_EQ(others[0].at("bone"), "femur");
+  EXPECT_EQ(others[0].at("safety").at("Verification"), "verified by touches");
   const auto told = nlohmann::json::parse(files::read_text(json)).at("achieved");
   ASSERT_EQ(told.size(), 2U);
   EXPECT_EQ(told[0].at("session"), sessions.back());
@@ -258,6 +277,53 @@ TEST_F(Report, SaysHowItWasVerifiedConfirmedAndDoubted) {
   const std::string skipped = text_of_session("simulation", {{"verification skipped", "guidance began"}});
   expect_contains(skipped, "SKIPPED; guidance began without it");
   expect_contains(skipped, "not asked: no live source");
+}
+
+// A plan that was changed in the session, and one that was changed since, are told on the first page, which
+// shows the plan of now.
+TEST_F(Report, Hazard5SaysThatThePlanIsNotTheOneThatGuided) {
+  const auto folder = cases::create_session_folder(knee_folder());
+  pipeline::PipelineOptions options;
+  options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+  options.tools = tools::standard_tools();
+  recording::SessionHeader header;
+  header.id = folder.filename().string();
+  header.source_kind = "live";
+  const tunnels::Tunnel planned = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  tunnels::Tunnel edited = planned;
+  edited.entry_mm += 3 * planned.direction.unitOrthogonal();
+  registration::RegistrationSummary registration;
+  registration.has_pose = registration.reliable = true;
+  registration.reasons.clear();
+  {
+    recording::SessionRecorder recorder(folder, header, options);
+    recorder.set_plan(planned, 41.1);
+    recorder.set_registration(registration);
+    recorder.append({});
+    recorder.finish();
+  }
+  write(pdf());
+  EXPECT_EQ(pdf_text().find("THE PLAN "), std::string::npos);
+  knee_.plan.tunnels.at(bones::BoneKind::Femur) = edited;
+  cases::save_case(knee_folder(), knee_);
+  write(pdf());
+  expect_contains(pdf_text(),
+                  "THE PLAN IS ANOTHER ONE NOW: the session guided to the femur, 9.0 mm wide, 41.1 mm");
+  const auto second = cases::create_session_folder(knee_folder());
+  header.id = second.filename().string();
+  {
+    recording::SessionRecorder recorder(second, header, options);
+    recorder.set_plan(planned, 41.1);
+    recorder.set_registration(registration);
+    recorder.append({});
+    recorder.set_plan(edited, 25.5);
+    recorder.finish();
+  }
+  write(pdf());
+  const std::string text = pdf_text();
+  expect_contains(
+      text, "THE PLAN WAS CHANGED IN THE SESSION, at 0:00.0: from femur, 9.0 mm wide, 41.1 mm long, to");
+  EXPECT_EQ(text.find("THE PLAN IS ANOTHER ONE NOW"), std::string::npos);
 }
 
 // What happened when, what whoever looked at it marked, and by what the record is known. A broken file of

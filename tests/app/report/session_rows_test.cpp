@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "app/report/plans_in_force.h"
+#include "app/report/source_faults.h"
 #include "navigation/tools/tool_set.h"
 #include "tests/temporary_folder.h"
 
@@ -64,7 +68,7 @@ TEST(SessionRows, ATunnelIsToldOfByTheRegistrationThatItWasDrilledBy) {
   EXPECT_EQ(safety_rows(session, "").at(1).at(1), "verified by touches");
   const std::vector<Step> steps = steps_of(session);
   EXPECT_EQ(steps.front().words, "bone registered");
-  EXPECT_EQ(steps.back().words, "nothing is registered any more");
+  EXPECT_EQ(steps.back().words, "nothing is registered any more: the world marker was placed anew");
 }
 
 // An alarm that comes and goes filled a page with the same words.
@@ -99,6 +103,105 @@ TEST(SessionRows, Hazard27AMediumThatWasContradictedIsToldOf) {
     recorder.finish();
   }
   EXPECT_EQ(figures_of(recording::RecordedSession(folder.path())).other_medium_percent, 75);
+}
+
+pipeline::FrameResult frame_at(std::int64_t index, double time_s) {
+  pipeline::FrameResult frame;
+  frame.frame_index = index;
+  frame.timestamp_ns = static_cast<std::int64_t>(std::llround(1e9 * time_s));
+  return frame;
+}
+
+recording::SessionEvent event_at(double time_s, std::string_view kind, const std::string& text = "") {
+  return {static_cast<std::int64_t>(std::llround(1e9 * time_s)), std::string(kind), text, -1};
+}
+
+std::string row_of(const std::vector<std::vector<std::string>>& rows, const std::string& name) {
+  for (const auto& row : rows)
+    if (row.front() == name) return row.back();
+  return "no such row";
+}
+
+recording::SessionHeader live_header() {
+  recording::SessionHeader header;
+  header.source_kind = "live";
+  return header;
+}
+
+// The plan that the time-out was confirmed of, and the one that was taken over after it, each with when; what
+// the case was planned to be after the pictures had ended guided nothing.
+TEST(SessionRows, Hazard5NameEachPlanThatGuidedAndWhichWasConfirmed) {
+  const test::TemporaryFolder folder;
+  tunnels::Tunnel plan;
+  plan.diameter_mm = 8;
+  {
+    recording::SessionRecorder recorder(folder.path(), live_header(), options());
+    recorder.set_plan(plan, 30);  // replaced before the first picture
+    recorder.set_plan(plan, 41.1);
+    recorder.append(frame_at(0, 0));
+    recorder.add_event(event_at(0, recording::kTimeOutConfirmedEvent, "right femur"));
+    recorder.append(frame_at(1, 33.4));
+    recorder.set_plan(plan, 25.5);
+    recorder.set_plan(plan, 25.5);  // said again
+    recorder.add_event(event_at(34, recording::kSourceEndedEvent));
+    recorder.set_plan(plan, 41.1);
+    recorder.finish();
+  }
+  const recording::RecordedSession session(folder.path());
+  EXPECT_EQ(plans_in_words(plans_in_force(session)),
+            "femur, 8.0 mm wide, 41.1 mm long; from 0:33.4 femur, 8.0 mm wide, 25.5 mm long");
+  EXPECT_EQ(row_of(safety_rows(session, ""), "Time-out"),
+            "confirmed of the plan femur, 8.0 mm wide, 41.1 mm long; NOT CONFIRMED of the plan after it");
+  const std::vector<Step> steps = steps_of(session);
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_EQ(steps.back().words, "ANOTHER PLAN TAKEN OVER: femur, 8.0 mm wide, 25.5 mm long");
+  EXPECT_DOUBLE_EQ(steps.back().time_s, 33.4);
+}
+
+// Pictures that did not come, and those that were late, are two things: each loss is a step with how long it
+// took, whatever the words for it were meanwhile, and the figures say that the frames are those that came.
+TEST(SessionRows, TellOfEveryLossOfTheSource) {
+  const test::TemporaryFolder folder;
+  {
+    recording::SessionRecorder recorder(folder.path(), live_header(), options());
+    for (int i = 0; i <= 10; ++i) recorder.append(frame_at(i, 0.1 * i));
+    recorder.add_event(event_at(1.4, recording::kSourceTroubleEvent, "No picture comes"));
+    recorder.add_event(event_at(2.4, recording::kSourceTroubleEvent, "No picture comes: broke off"));
+    recorder.append(frame_at(11, 11));
+    recorder.add_event(
+        event_at(11, recording::kSourceTroubleEvent, "Pictures are late: 151 ms from capture"));
+    recorder.append(frame_at(12, 11.2));
+    recorder.add_event(event_at(11.2, recording::kSourceTroubleEvent, ""));
+    recorder.add_event(event_at(11.6, recording::kSourceTroubleEvent, "No picture comes"));
+    recorder.add_event(event_at(13.2, recording::kSourceEndedEvent));
+    recorder.finish();
+  }
+  const recording::RecordedSession session(folder.path());
+  EXPECT_EQ(row_of(safety_rows(session, ""), "Faults of the source"),
+            "no picture 2 times, 11.2 s in all; late pictures once, 0.2 s");
+  EXPECT_NEAR(figures_of(session).without_picture_s, 12, 1e-9) << "from 1 to 11 s, and from 11.2 to 13.2 s";
+  EXPECT_EQ(frames_in_words(figures_of(session)), "13 in 0:11.2; NO PICTURE for 12.0 s");
+  const std::vector<Step> steps = steps_of(session);
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_EQ(steps.front().words, "SOURCE: NO PICTURE, for 9.6 s");
+  EXPECT_EQ(steps.back().words, "SOURCE: NO PICTURE, for 1.6 s");
+}
+
+// What is said after the pictures is not what they showed.
+TEST(SessionRows, Hazard29SayThatTheWordCameAfterThePictures) {
+  const test::TemporaryFolder folder;
+  {
+    recording::SessionRecorder recorder(folder.path(), {}, options());
+    recorder.append(frame_at(0, 0));
+    recorder.append(frame_at(1, 3.6));
+    recorder.add_event(event_at(3.6, recording::kSourceEndedEvent));
+    recorder.add_event(event_at(38.6, recording::kDrilledEvent, "achieved.json"));
+    recorder.finish();
+  }
+  operation::AchievedTunnel achieved;
+  achieved.timestamp_ns = 3'500'000'000;
+  EXPECT_EQ(seen_and_said(recording::RecordedSession(folder.path()), achieved),
+            ", the last at 0:03.5; said to be drilled at 0:38.6, after the pictures had ended");
 }
 
 }  // namespace

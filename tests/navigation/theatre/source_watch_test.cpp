@@ -281,5 +281,44 @@ TEST_F(SourceWatchTest, WhatIsLateByItselfIsNotBlamedOnItsRate) {
   EXPECT_THAT(watch_.words(), HasSubstr("end other programs"));
 }
 
+// A record keeps the words: what they tell of is found again, of every one that is said.
+TEST_F(SourceWatchTest, ItsWordsTellWhatIsWrong) {
+  std::vector<SourceTrouble> told;
+  const auto tell = [&] {
+    EXPECT_EQ(trouble_of(watch_.words()), watch_.trouble()) << watch_.words();
+    told.push_back(watch_.trouble());
+  };
+  pictures(well_, 1000);
+  tell();
+  silence(600);
+  tell();
+  silence(1200, "tower: broke off");
+  tell();
+  const auto show = [&](const auto& change, double guidance_ms = 5) {
+    pipeline::PictureObservation view;
+    change(view);
+    pictures(well_, 5000);
+    pictures(view, 200, guidance_ms);
+    tell();
+  };
+  show([](auto& view) { view.is_blank = true; });
+  show([](auto& view) { view.is_frozen = true; });
+  show([](auto& view) { view.is_torn = true; });
+  show([](auto& view) { view.repeat_share = 0.8; });
+  show([](auto&) {}, 150);
+  for (int i = 0; i < 6; ++i) watch_.shown_until(150, now_ns_);
+  pictures(well_, 200);
+  tell();
+  for (int i = 0; i < 12; ++i)
+    watch_.shown_until(150, now_ns_ += 120 * kMs), (void)watch_.picture(well_, 5, now_ns_);
+  tell();
+  watch_ = {};
+  (void)watch_.picture(well_, 5, now_ns_, "udp://tower: 3 pictures were lost");
+  tell();
+  using enum SourceTrouble;
+  EXPECT_EQ(told, (std::vector<SourceTrouble>{None, NoPicture, NoPicture, Plain, Frozen, Torn, Repeated, Late,
+                                              Slow, Slow, Lost}));
+}
+
 }  // namespace
 }  // namespace arthronaut::theatre
