@@ -279,6 +279,8 @@ TEST_F(OperationRules, Hazard5NumbersOfAnotherPlanOrRegistrationAreGoneAtOnce) {
   EXPECT_TRUE(run_.state()->frame.guidance.is_valid()) << "the plan in force is the old one";
   run_.apply(TakePlanOver{});
   EXPECT_FALSE(run_.state()->frame.guidance.is_valid());
+  run_.apply(ConfirmTimeOut{});
+  EXPECT_FALSE(run_.state()->frame.guidance.is_valid()) << "the picture's numbers are of the plan before";
   run_.show_guide(-4);
   ASSERT_TRUE(run_.state()->frame.guidance.is_valid());
   run_.apply(MarkerPlacedAnew{});
