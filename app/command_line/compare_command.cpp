@@ -124,7 +124,9 @@ void add_compare_command(CLI::App& app, Context& context) {
                   "CT after the operation: DICOM (folder, DICOMDIR or enhanced file) or volume (NIfTI, NRRD, "
                   "MetaImage); also a label map, or a mesh of the drilled bone")
       ->required();
-  sub->add_option("-o,--output", arguments->output, "achieved.json to write; CASE/achieved.json keeps it in the case, where report and Review have it; - is "
+  sub->add_option("-o,--output", arguments->output,
+                  "achieved.json to write; CASE/achieved.json keeps it in the case, where report and Review "
+                  "have it; - is "
                   "standard output")
       ->required()
       ->check(a_name());

@@ -261,8 +261,11 @@ void add_plan_command(CLI::App& app, Context& context) {
   sub->add_option("case", arguments->case_folder, "Case folder")->required();
   auto* bone =
       sub->add_option("--bone", arguments->bone, "femur or tibia")->check(CLI::IsMember({"femur", "tibia"}));
-  auto* entry = add_vector_option(*sub, "--entry", arguments->entry_mm, "Entry on the joint side, mm, LPS; up to 5 mm off the bone it is moved onto it, and that is said")
-                    ->needs(bone);
+  auto* entry =
+      add_vector_option(
+          *sub, "--entry", arguments->entry_mm,
+          "Entry on the joint side, mm, LPS; up to 5 mm off the bone it is moved onto it, and that is said")
+          ->needs(bone);
   auto* direction =
       add_vector_option(*sub, "--direction", arguments->direction, "Direction of drilling, into the bone")
           ->needs(bone);

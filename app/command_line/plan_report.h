@@ -19,8 +19,8 @@ struct PlanVerdict {
   std::string source, place;  // as default_plan::DefaultTunnel has them; empty where no default was made
   double off_norm_mm = 0;
   std::optional<Eigen::Vector3d> passing_entry_mm;  // see DefaultTunnel
-  double entry_moved_mm = 0;  // of one that was placed now, onto the bone
-  int kept_version = 0;       // of the plan that the default took the place of; 0: it took none's
+  double entry_moved_mm = 0;                        // of one that was placed now, onto the bone
+  int kept_version = 0;  // of the plan that the default took the place of; 0: it took none's
 };
 
 // The same with what speaks against the tunnel whether it was made now or years ago: checks that are wrong,

@@ -40,8 +40,8 @@ using CalibrateRunStatus = RunStatus<CalibrateStatus>;
 
 // What the station knows beside the run.
 struct CalibrateContext {
-  bool is_adopted = false;        // this very result stands in the case already
-  std::string kept_because = "";  // why the case's camera.json may not be replaced; empty: it may
+  bool is_adopted = false;              // this very result stands in the case already
+  std::string kept_because = "";        // why the case's camera.json may not be replaced; empty: it may
   double result_stands_s = kReading_s;  // on the screen
 };
 

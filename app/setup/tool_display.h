@@ -27,8 +27,8 @@ using ToolRunStatus = RunStatus<ToolStatus>;
 
 // What the station knows beside the run.
 struct ToolContext {
-  bool is_adopted = false;        // the result shown stands in the case already
-  std::string kept_because = "";  // why the case's tools.json may not be changed; empty: it may
+  bool is_adopted = false;              // the result shown stands in the case already
+  std::string kept_because = "";        // why the case's tools.json may not be changed; empty: it may
   double result_stands_s = kReading_s;  // usable, on the screen
   std::string next_tool = "";           // what the same source can measure next; empty: nothing
 };

@@ -225,8 +225,10 @@ void ToolStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (run_ != nullptr) status_ = run_->status();
   const bool is_adopted = adopted_result_ != nullptr && adopted_result_ == status_.job.result;
   const double now_s = steady_now_s();
-  if (status_.job.result == nullptr || !status_.job.result->is_usable()) usable_since_s_.reset();
-  else if (!usable_since_s_) usable_since_s_ = now_s;
+  if (status_.job.result == nullptr || !status_.job.result->is_usable())
+    usable_since_s_.reset();
+  else if (!usable_since_s_)
+    usable_since_s_ = now_s;
   const auto next = next_unmeasured();
   const ToolContext context{is_adopted, kept_because_, now_s - usable_since_s_.value_or(now_s),
                             next ? name_of(choices_[*next]) : ""};

@@ -286,11 +286,11 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
       }
       if (named.empty() || (options.kind && !named.contains(*options.kind))) {
         const auto labels = labels_of(volume);
-        throw refusal(
-            source,
-            "is a label map with the labels " + list_of(labels, volume.segments) +
-                ": say which are the bones: --label femur=NUMBER" + (labels.size() > 2 ? ",tibia=NUMBER" : ""),
-            {.reason = FailureReason::NeedsLabels, .labels = found_labels(volume)});
+        throw refusal(source,
+                      "is a label map with the labels " + list_of(labels, volume.segments) +
+                          ": say which are the bones: --label femur=NUMBER" +
+                          (labels.size() > 2 ? ",tibia=NUMBER" : ""),
+                      {.reason = FailureReason::NeedsLabels, .labels = found_labels(volume)});
       }
       import_labels(images_of_bones, named, options, result, tell);
     } else {

@@ -33,8 +33,8 @@ AchievedBone told(const FoundBone& found) {
 }
 
 double offset_across_mm(const tunnels::Tunnel& achieved, const tunnels::Tunnel& plan) {
-  const double along_mm = (plan.entry_mm - achieved.entry_mm).dot(plan.direction) /
-                          achieved.direction.dot(plan.direction);
+  const double along_mm =
+      (plan.entry_mm - achieved.entry_mm).dot(plan.direction) / achieved.direction.dot(plan.direction);
   return (achieved.entry_mm + along_mm * achieved.direction - plan.entry_mm).norm();
 }
 

@@ -53,7 +53,7 @@ struct AchievedTunnel {
   // From the planned entry to where the axis crosses the plane through it across the plan: what guidance
   // calls the offset. Infinite where a file doesn't say.
   double offset_across_mm = std::numeric_limits<double>::infinity();
-  double angle_rad = 0;     // between the axes
+  double angle_rad = 0;  // between the axes
   // One sigma each; infinite where a file doesn't say, or it is not known. Of entry and direction by the
   // scatter of the grey and the bone's pose. Of the diameter, and of the length: by the grey, and for an end
   // within the bone by how grainy the marrow about it is.

@@ -316,8 +316,8 @@ TEST_F(PlanCommand, AnEntryThatIsMovedOntoTheBoneIsTold) {
   const auto placed_at = [&](const Eigen::Vector3d& at) {
     std::ostringstream text;
     text << std::setprecision(12) << at.x() << ',' << at.y() << ',' << at.z();
-    return std::vector<std::string>{"plan", "--bone", "tibia", "--entry=" + text.str(), "--direction",
-                                    direction};
+    return std::vector<std::string>{"plan",        "--bone", "tibia", "--entry=" + text.str(),
+                                    "--direction", direction};
   };
   EXPECT_THAT(run(placed_at(on_bone)).output, Not(HasSubstr("was moved")));
   const Eigen::Vector3d asked = on_bone + Eigen::Vector3d(0, 0, 3);

@@ -125,7 +125,8 @@ TEST(CameraChoice, RefusesAKindOfAddressThatNobodyKnowsBeforeAnythingIsOpened) {
   CameraChoice choice;
   choice.open({}, {});
   EXPECT_FALSE(choice.take_address("rstp://nurse:secret@tower/scope"));
-  EXPECT_NE(choice.trouble().find("rstp://tower/scope: no address of a kind that can be opened"), std::string::npos)
+  EXPECT_NE(choice.trouble().find("rstp://tower/scope: no address of a kind that can be opened"),
+            std::string::npos)
       << choice.trouble();
   EXPECT_TRUE(choice.is_open());
 }

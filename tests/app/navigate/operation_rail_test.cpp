@@ -282,11 +282,13 @@ TEST(OperationRail, NamesWhatIsMissing) {
   EXPECT_EQ(missing_of(nominal.rail(), Step::Guide), Missing::GuideCheck);
 }
 
-// That there are tools is no tick for tools of which nobody measured one that registers or guides. The simulator's
-// are as they were designed.
+// That there are tools is no tick for tools of which nobody measured one that registers or guides. The
+// simulator's are as they were designed.
 TEST(OperationRail, ToolsThatNobodyMeasuredAreNoTick) {
   using Verdict = tunnels::PlanCheck::Verdict;
-  const auto verdict_of = [](const Rail& rail) { return rail[static_cast<std::size_t>(Step::Tools)].verdict; };
+  const auto verdict_of = [](const Rail& rail) {
+    return rail[static_cast<std::size_t>(Step::Tools)].verdict;
+  };
   Course course;
   course.context.simulates = false;
   for (tools::Tool& tool : course.tools.tools) tool.provenance.origin = provenance::Origin::Measured;

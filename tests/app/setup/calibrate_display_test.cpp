@@ -119,8 +119,8 @@ TEST(CalibrateDisplay, LeadsToAdoption) {
   EXPECT_FALSE(calibrate_display(done, {.is_adopted = true}, kNow_s).can_adopt);
 }
 
-// A foot that bounces presses again before anybody has read the result: it adopts nothing. Whoever means it can
-// take it at once.
+// A foot that bounces presses again before anybody has read the result: it adopts nothing. Whoever means it
+// can take it at once.
 TEST(CalibrateDisplay, APedalAdoptsOnlyWhatCouldBeRead) {
   const CalibrateRunStatus done = calibrated(CalibrationSummary::Outcome::Ok, {});
   const CalibrateDisplay fresh = calibrate_display(done, {.result_stands_s = 0.3}, kNow_s);

@@ -94,9 +94,9 @@ TEST(ToolDisplay, APedalAdoptsOnlyWhatCouldBeRead) {
 TEST(ToolDisplay, GoesOnToWhatNobodyMeasured) {
   const ToolRunStatus good = with_tip(PivotCalibrationSummary::Outcome::Ok, {});
   EXPECT_EQ(tool_display(good, kProbe, {.is_adopted = true}, kNow_s).next_text, "go on to the fluid check");
-  EXPECT_EQ(tool_display(good, kProbe, {.is_adopted = true, .next_tool = "femoral guide: axis"}, kNow_s)
-                .next_text,
-            "go on to the femoral guide: axis");
+  EXPECT_EQ(
+      tool_display(good, kProbe, {.is_adopted = true, .next_tool = "femoral guide: axis"}, kNow_s).next_text,
+      "go on to the femoral guide: axis");
 }
 
 // A simulated tip does not replace what a case knows of real tools.

@@ -104,8 +104,7 @@ TEST_F(Achieved, TunnelsAreFoundAwayFromThePlan) {
       return (tunnel.entry_mm + at_mm * tunnel.direction - plan(bone).entry_mm).dot(plan(bone).direction);
     };
     const double crossing_mm = 20 * height_mm(0) / (height_mm(0) - height_mm(20));
-    const double across_mm =
-        (tunnel.entry_mm + crossing_mm * tunnel.direction - plan(bone).entry_mm).norm();
+    const double across_mm = (tunnel.entry_mm + crossing_mm * tunnel.direction - plan(bone).entry_mm).norm();
     EXPECT_NEAR(comparison.tunnel.offset_across_mm, across_mm, 0.15);
     EXPECT_NEAR(comparison.tunnel.angle_rad,
                 geometry::angle_between_rad(tunnel.direction, plan(bone).direction), 0.006);
