@@ -362,7 +362,7 @@ void ReviewView::draw_origin(const widgets::Ui& ui, const widgets::Rect& area) c
   const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str());
   const float margin = ui.theme.px(14);
   const widgets::Rect plate{area.x, area.y, size.x + 2 * margin, area.height};
-  draw.AddRectFilled(plate.min(), plate.max(), widgets::banner_color(sources::SourceKind::Recording),
+  draw.AddRectFilled(plate.min(), plate.max(), widgets::banner_color(sources::SourceKind::Recording, true),
                      ui.theme.px(6));
   draw.AddText(font, font->FontSize, {plate.x + margin, plate.center().y - size.y / 2}, widgets::kBackground,
                words.c_str());
