@@ -90,8 +90,11 @@ std::vector<std::string> all_words() {
     words.push_back(words_of(static_cast<operation::NextAction>(i)));
   for (int i = 0; i <= static_cast<int>(Repeat::NothingNow); ++i)
     words.push_back(words_of(static_cast<Repeat>(i), operation::Step::Calibrate));
+  const FinishedBone unverified{
+      bones::BoneKind::Femur, {{bones::BoneKind::Femur, true, operation::AchievedTunnel(), false}}, true};
   for (int i = 0; i <= static_cast<int>(FinishAction::Nothing); ++i)
-    words.push_back(words_of(static_cast<FinishAction>(i), bones::BoneKind::Femur));
+    for (const std::vector<FinishedBone>& finished : {std::vector<FinishedBone>(), {unverified}})
+      words.push_back(words_of(static_cast<FinishAction>(i), finished, bones::BoneKind::Femur));
   return words;
 }
 
