@@ -15,14 +15,21 @@ namespace {
 
 class ResumeOfferTest : public recording::ResumableTest {
  protected:
-  // An operation that was cut off in this case; returns its session's folder.
+  // An operation whose program was killed: a copy of a record that nobody finishes. Returns its folder.
   std::filesystem::path cut_off_operation() {
     operation::OperationSetup setup = test::phantom_setup();
     setup.mesh_sha256 = model_.mesh_sha256(bones::BoneKind::Femur);
     test::PhantomOperation run(setup);
+    continues_.clear();
     operate(run, test::scripted_source(sources::SourceKind::Simulation));
-    record_.reset();
-    return cases::session_folders(folder_.path()).back();
+    // The record is committed twice a second.
+    EXPECT_TRUE(becomes([&] { return found(setup.mesh_sha256).has_value(); }, 60));
+    const std::filesystem::path from = cases::session_folders(folder_.path()).back();
+    const std::filesystem::path killed = killed_.path() / "sessions" / from.filename();
+    std::filesystem::create_directories(killed.parent_path());
+    std::filesystem::copy(from, killed, std::filesystem::copy_options::recursive);
+    end(run);
+    return killed;
   }
   // Whether it is so before as much time has gone.
   template <typename IsSo>
@@ -43,6 +50,7 @@ class ResumeOfferTest : public recording::ResumableTest {
 
   const open_case::PlanModel model_{
       phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "test")};
+  const test::TemporaryFolder killed_;  // the case
   ResumeOffer offer_{[] {}};
 };
 
@@ -51,7 +59,7 @@ class ResumeOfferTest : public recording::ResumableTest {
 TEST_F(ResumeOfferTest, Hazard12WhatAKilledProgramStillHeldIsOfferedOnceItLetsGo) {
   const std::filesystem::path session = cut_off_operation();
   std::optional<recording::RecordingLock> killed(session);
-  offer_.open(model_, folder_.path(), false, "");
+  offer_.open(model_, killed_.path(), false, "");
   ASSERT_TRUE(has_looked());
   EXPECT_FALSE(cut_off()) << "it may be going on";
   killed.reset();
@@ -62,7 +70,7 @@ TEST_F(ResumeOfferTest, Hazard12WhatAKilledProgramStillHeldIsOfferedOnceItLetsGo
 TEST_F(ResumeOfferTest, WhatWasDeclinedWhileItWasHeldIsNotOfferedAgain) {
   const std::filesystem::path session = cut_off_operation();
   std::optional<recording::RecordingLock> killed(session);
-  offer_.open(model_, folder_.path(), false, "");
+  offer_.open(model_, killed_.path(), false, "");
   ASSERT_TRUE(has_looked());
   ASSERT_NE(offer_.of(bones::BoneKind::Femur), nullptr);
   offer_.decline(bones::BoneKind::Femur);
@@ -74,9 +82,8 @@ TEST_F(ResumeOfferTest, WhatWasDeclinedWhileItWasHeldIsNotOfferedAgain) {
 // it is not what was left.
 TEST_F(ResumeOfferTest, ASessionThatIsBegunSinceIsNotWhatWasLeft) {
   std::optional<recording::RecordingLock> elsewhere(cut_off_operation());
-  offer_.open(model_, folder_.path(), false, "");
+  offer_.open(model_, killed_.path(), false, "");
   ASSERT_TRUE(has_looked());
-  continues_.clear();
   const recording::RecordingLock next(cut_off_operation());
   elsewhere.reset();
   EXPECT_TRUE(becomes([&] { return offer_.of(bones::BoneKind::Femur) == nullptr; }, 60));

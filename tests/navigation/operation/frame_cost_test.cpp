@@ -17,6 +17,7 @@ TEST(FrameCost, AnHourOfDrawingIsFlat) {
   constexpr int kMinute = 3600, kMinutes = 60;
   Operation operation(test::phantom_setup());
   operation.start_source(test::scripted_source());
+  operation.apply(ConfirmTimeOut{});  // no stroke is taken before
   pipeline::FrameResult frame;
   frame.camera_from_world.is_valid = frame.tip_is_valid = true;
   std::vector<long> allocations;

@@ -162,6 +162,7 @@ TEST_F(RegistrationRules, ARegistrationOfOldStrokesHasNoEffect) {
     Operation operation(test::phantom_setup());
     RegistrationWork work([] { return phantom_bone().prepared; }, work_options(operation.setup()));
     operation.start_source(test::scripted_source());
+    operation.apply(ConfirmTimeOut{});  // no stroke is taken before
     pipeline::FrameResult frame;
     frame.tip_is_valid = frame.camera_from_world.is_valid = true;
     int curve = 0;
@@ -186,6 +187,7 @@ TEST_F(RegistrationRules, ARegistrationOfOldStrokesHasNoEffect) {
 TEST_F(RegistrationRules, StrokesThatWereDrawnBeforeTheBoneWasReadyConfirm) {
   Operation operation(test::phantom_setup());
   operation.start_source(test::scripted_source());
+  operation.apply(ConfirmTimeOut{});  // no stroke is taken before
   pipeline::FrameResult frame;
   frame.tip_is_valid = frame.camera_from_world.is_valid = true;
   int curve = 0;
@@ -230,6 +232,7 @@ TEST_F(RegistrationRules, ABoneThatFailsSaysWhy) {
 TEST_F(RegistrationRules, AFitThatWaitsForABoneThatFailsIsGivenUp) {
   Operation operation(test::phantom_setup());
   operation.start_source(test::scripted_source());
+  operation.apply(ConfirmTimeOut{});  // no stroke is taken before
   pipeline::FrameResult frame;
   frame.tip_is_valid = frame.camera_from_world.is_valid = true;
   for (const strokes::CurvePoint& point : part(0, 0.1)) {
