@@ -78,7 +78,7 @@ TEST(TimeOutCard, SaysWhatSpeaksAgainstThePlan) {
   const CardLine wrong = line_of(
       time_out_card(state, "", {.wrong = {"Wall: -3.5 mm"}, .look = {"Bone: check the side"}}), "Plan");
   EXPECT_EQ(wrong.severity, Severity::Bad);
-  EXPECT_EQ(wrong.text, "8.5 mm wide, 31.2 mm long; WRONG: Wall: -3.5 mm (and 1 more)");
+  EXPECT_EQ(wrong.text, "8.5 mm wide, 31.2 mm long; WRONG: Wall: -3.5 mm (and 1 to look at)");
   const CardLine look = line_of(time_out_card(state, "", {.look = {"Bone: check the side"}}), "Plan");
   EXPECT_EQ(look.severity, Severity::Caution);
   EXPECT_EQ(look.text, "8.5 mm wide, 31.2 mm long; look: Bone: check the side");
