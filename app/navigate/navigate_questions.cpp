@@ -51,6 +51,13 @@ void NavigateView::judge_plans() {
   judged_edited_.judge(*model_, live_->operation->edited_plan);
 }
 
+std::string NavigateView::words_of_verdict() const {
+  const plan_review::TunnelVerdict& verdict = judged_.verdict();
+  return verdict.is_fine() ? ""
+                           : (verdict.is_wrong() ? "the plan is wrong: " : "the plan is to be looked at: ") +
+                                 verdict.in_short();
+}
+
 bool NavigateView::draw_questions(const widgets::Ui& ui, const TheatreLayout& layout) {
   const widgets::Rect& area = layout.block;
   switch (choices_.asked) {
