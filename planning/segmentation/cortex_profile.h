@@ -6,8 +6,9 @@
 // fitting a blurred layer to each profile,
 //   v(x) = s + (c - s) P((x - x0) / sigma) + (m - c) P((x - x0 - w) / sigma),
 // P the normal distribution, x inwards, s, c, m outside, cortex and marrow, w the thickness, with one c for
-// the whole bone. Here the noise is averaged away first: profiles of alike rise are laid over each other,
-// c and sigma are one for all of them, and the fit gives for each rise at which share of it the edge lies.
+// the whole bone. Here the noise is averaged away first: profiles of alike rise are laid over each other, c
+// is one for all of them and sigma about one, and the fit gives for each rise at which share of it the edge
+// lies.
 #pragma once
 
 #include <vector>
@@ -30,7 +31,7 @@ class EdgeShare {
 
   [[nodiscard]] float at(float rise) const;  // high - low, HU; between the fitted rises by a straight line
   [[nodiscard]] bool is_fitted() const { return !fitted_.empty(); }
-  [[nodiscard]] double blur_mm() const { return blur_mm_; }      // sigma; 0 unless fitted
+  [[nodiscard]] double blur_mm() const { return blur_mm_; }  // sigma, about the middle one; 0 unless fitted
   [[nodiscard]] double cortex_hu() const { return cortex_hu_; }  // of a cortex thick enough; 0 unless fitted
 
  private:
