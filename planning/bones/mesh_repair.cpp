@@ -137,10 +137,43 @@ void fill_by_cone(Halfedge border, SurfaceMesh& mesh) {
   mesh.point(mesh.target(center)) = Point(sum.x(), sum.y(), sum.z());
 }
 
-void fill_holes(SurfaceMesh& mesh, MeshRepairReport& report) {
+using Edge = std::vector<Eigen::Vector3d>;
+
+Edge edge_of(Halfedge border, const SurfaceMesh& mesh) {
+  Edge edge;
+  for (const Halfedge h : CGAL::halfedges_around_face(border, mesh)) {
+    const Point& p = mesh.point(mesh.target(h));
+    edge.emplace_back(p.x(), p.y(), p.z());
+  }
+  return edge;
+}
+
+FilledHole filled_hole(const Edge& edge, const geometry::TriangleMesh& mesh) {
+  FilledHole hole;
+  for (const Eigen::Vector3d& p : edge) hole.at_mm += p / static_cast<double>(edge.size());
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < edge.size(); ++i) {
+    const Eigen::Vector3d from = edge[i] - hole.at_mm, to = edge[(i + 1) % edge.size()] - hole.at_mm;
+    hole.across_mm = std::max(hole.across_mm, 2 * from.norm());
+    normal += from.cross(to);
+  }
+  if (!(normal.norm() > 0)) return hole;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : mesh.vertices_mm) middle += p;
+  middle /= static_cast<double>(mesh.vertices_mm.size());
+  hole.out = normal.normalized() * (normal.dot(hole.at_mm - middle) < 0 ? -1 : 1);
+  for (const Eigen::Vector3d& p : mesh.vertices_mm)
+    hole.beyond_mm = std::max(hole.beyond_mm, hole.out.dot(p - hole.at_mm));
+  return hole;
+}
+
+// Returns the edges of what was filled.
+std::vector<Edge> fill_holes(SurfaceMesh& mesh, MeshRepairReport& report) {
+  std::vector<Edge> edges;
   std::vector<Halfedge> borders;
   pmp::extract_boundary_cycles(mesh, std::back_inserter(borders));
   for (const Halfedge border : borders) {
+    edges.push_back(edge_of(border, mesh));
     report.largest_hole_mm = std::max(report.largest_hole_mm, border_length(border, mesh));
     ++report.holes_filled;
     std::vector<Face> added;
@@ -151,6 +184,7 @@ void fill_holes(SurfaceMesh& mesh, MeshRepairReport& report) {
                               .do_not_use_cubic_algorithm(true));
     if (mesh.is_border(border)) fill_by_cone(border, mesh);
   }
+  return edges;
 }
 
 geometry::TriangleMesh plain_mesh(SurfaceMesh& mesh) {
@@ -209,7 +243,7 @@ MeshRepair mend(const geometry::TriangleMesh& mesh) {
   std::size_t flips = 0;
   for (const Face f : surface.faces()) flips += was_flipped[f];
   const std::size_t kept = surface.number_of_faces();
-  fill_holes(surface, report);
+  const std::vector<Edge> filled = fill_holes(surface, report);
   const double area = pmp::area(surface);
   report.filled_area_fraction = area > 0 ? std::max(0.0, area - found_area) / area : 0;
   report.is_closed = CGAL::is_closed(surface);
@@ -224,6 +258,7 @@ MeshRepair mend(const geometry::TriangleMesh& mesh) {
   result.mesh = plain_mesh(surface);
   report.vertices_now = result.mesh.vertices_mm.size();
   report.triangles_now = result.mesh.triangles.size();
+  for (const Edge& edge : filled) result.filled.push_back(filled_hole(edge, result.mesh));
   return result;
 }
 

@@ -34,9 +34,20 @@ struct MeshRepairReport {
   [[nodiscard]] std::vector<std::string> doubts() const;
 };
 
+// A hole of the mesh: what closes it now no scanner saw.
+struct FilledHole {
+  Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();  // the middle of its edge
+  double across_mm = 0;                             // of a circle about it that holds its edge
+  // Of its edge's plane, away from the rest of the mesh; zero where the edge has none.
+  Eigen::Vector3d out = Eigen::Vector3d::Zero();
+  double beyond_mm =
+      0;  // so far the mesh goes on beyond that plane: nothing where something was cut off flat
+};
+
 struct MeshRepair {
   geometry::TriangleMesh mesh;
   MeshRepairReport report;
+  std::vector<FilledHole> filled;
 };
 
 // Merges equal points, drops what has no area, keeps the largest part, fills its holes and turns it outwards.

@@ -12,9 +12,11 @@
 #include "planning/import/bone_labels.h"
 #include "planning/import/cut_check.h"
 #include "planning/import/failure_reason.h"
+#include "planning/import/filled_check.h"
 #include "planning/import/hole_check.h"
 #include "planning/import/import_side.h"
 #include "planning/import/shape_check.h"
+#include "planning/import/slice_check.h"
 #include "planning/segmentation/anatomy_check.h"
 #include "planning/segmentation/ct_bones.h"
 #include "planning/segmentation/label_surface.h"
@@ -87,6 +89,7 @@ ImportedBone finished(BoneKind kind, const std::string& source, const geometry::
   // Of a mesh that is no bone at all there is enough to say already.
   if (!imported.doubts.empty()) return imported;
   imported.doubts = segmentation::anatomy_doubts(imported.bone.mesh, kind, image_ends);
+  for (std::string& doubt : filled_doubts(repair.filled, kind)) imported.doubts.push_back(std::move(doubt));
   return imported;
 }
 
@@ -322,9 +325,12 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
     result.bones.front().doubts.push_back(
         std::string("the volume shows no ") +
         (result.bones.front().bone.kind == BoneKind::Femur ? "tibia" : "femur"));
-  for (ImportedBone& imported : result.bones)
+  const std::string of_slices = is_ct ? slice_doubt(volume) : "";
+  for (ImportedBone& imported : result.bones) {
     for (const ImageCut& cut : images_of_bones.cuts[imported.bone.kind])
       imported.doubts.push_back(cut_doubt(cut));
+    if (!of_slices.empty()) imported.doubts.push_back(of_slices);
+  }
 }
 
 }  // namespace
