@@ -6,15 +6,13 @@ namespace arthronaut::importing {
 
 namespace {
 
-constexpr double kMostApart_mm = 1.3;
-// What a header gives as 1.3 mm is not more by its rounding.
-constexpr double kRounding_mm = 0.01;
+constexpr double kMostApart_mm = 1.6;  // 1.5, and what a header rounds that to
 
 }  // namespace
 
 std::string slice_doubt(const images::Volume& ct) {
   const double apart_mm = ct.spacing_mm().maxCoeff();
-  if (apart_mm <= kMostApart_mm + kRounding_mm) return "";
+  if (apart_mm <= kMostApart_mm) return "";
   return files::format(
       "its slices are %.1f mm apart: where the bone ends between two of them, as about the entries, its "
       "surface may be off by %.1f mm or more",

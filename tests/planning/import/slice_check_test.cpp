@@ -40,10 +40,10 @@ TEST(SliceCheck, BonesOfThickSlicesAreDoubted) {
 
 TEST(SliceCheck, TheLimitIsTheMeasuredOne) {
   images::Volume ct;
-  ct.lps_from_index.linear() = Eigen::Vector3d(0.6, 0.6, 1.304).asDiagonal();
+  ct.lps_from_index.linear() = Eigen::Vector3d(0.6, 0.6, 1.504).asDiagonal();
   EXPECT_EQ(slice_doubt(ct), "");
-  ct.lps_from_index.linear() = Eigen::Vector3d(0.6, 0.6, 1.5).asDiagonal();
-  EXPECT_THAT(slice_doubt(ct), HasSubstr("1.5 mm apart"));
+  ct.lps_from_index.linear() = Eigen::Vector3d(0.6, 0.6, 2).asDiagonal();
+  EXPECT_THAT(slice_doubt(ct), HasSubstr("2.0 mm apart"));
   ct.lps_from_index.linear() = Eigen::Vector3d(2, 0.6, 0.6).asDiagonal();  // sagittal ones
   EXPECT_NE(slice_doubt(ct), "");
 }
