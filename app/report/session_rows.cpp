@@ -251,7 +251,8 @@ std::vector<Step> steps_of(const recording::RecordedSession& session) {
   for (const Run& run : runs) {
     std::string words = run.words;
     if (run.more > 0)
-      words += ", and " + std::to_string(run.more) + " times more until " + clock_text(run.last_s);
+      words += ", and " + std::to_string(run.more) +
+               (run.more == 1 ? " time more until " : " times more until ") + clock_text(run.last_s);
     else if (run.for_s > 0)
       words += files::format(", for %.1f s", run.for_s);
     steps.push_back({run.first_s, std::move(words)});
