@@ -17,20 +17,26 @@ importing::SaidSide say_side(const fs::path& case_folder, bones::Side side) {
   for (const fs::path& folder : cases::session_folders(case_folder)) {
     const library::SessionFacts facts = recording::read_session_facts(folder);
     if (facts.is_exercise) continue;
+    if (!facts.problem.empty())
+      throw InvalidInput(
+          case_folder, "",
+          "its session " + facts.id + " cannot be read, and may have drilled by the plan of a " + was +
+              " knee: its side stays. Import the bones into another case, as a " + is + " knee");
     if (facts.is_drilled())
       throw InvalidInput(case_folder, "",
                          "its session " + facts.id + " drilled a tunnel by the plan of a " + was +
                              " knee: its side stays. Import the bones into another case, as a " + is +
                              " knee");
-    ++session_count;
+    if (facts.side == was) ++session_count;
   }
   importing::SaidSide said = importing::say_side_of_case(case_folder, side);
   if (session_count > 0)
-    said.lines.push_back((session_count == 1 ? "a session" : std::to_string(session_count) + " sessions") +
-                         " of it stay recorded as of a " + was + " knee, and Review and report say so");
+    said.lines.push_back((session_count == 1 ? "a session of it stays"
+                                             : std::to_string(session_count) + " sessions of it stay") +
+                         " recorded as of a " + was + " knee, and Review and report say so");
   for (const char* made : {"report.pdf", "export"})
     if (fs::exists(case_folder / made))
-      said.lines.push_back(std::string(made) + ", which is in the case, is of the " + was + " knee");
+      said.lines.push_back(std::string(made) + ", which is in the case, is of the side that it had then");
   return said;
 }
 

@@ -50,7 +50,7 @@ void PlanHistory::take_up_steps() {
   try {  // a file of the case, of which nothing but the steps is lost
     cases::StepHistory kept = cases::load_step_history(case_folder_);
     const auto position = kept.position_of(state());
-    if (!position) return;
+    if (!position || kept.side != model_->knee().side) return;
     steps_ = std::move(kept.steps);
     position_ = *position;
     describe();
@@ -63,7 +63,7 @@ void PlanHistory::take_up_steps() {
 void PlanHistory::keep_steps() {
   steps_not_kept_.clear();
   try {
-    cases::save_step_history(case_folder_, {steps_, position_});
+    cases::save_step_history(case_folder_, {steps_, position_, model_->knee().side});
   } catch (const std::runtime_error& error) {  // what counts is the plan
     steps_not_kept_ = error.what();
   }

@@ -29,6 +29,13 @@ VersionOptions add_version_options(CLI::App& plan, VersionArguments& arguments) 
 void refuse_words_of_nothing(const VersionArguments& arguments) {
   if (arguments.words != cases::VersionWords{} && !arguments.writes())
     throw CLI::RequiredError("beside --name and --note, --keep or --name-version");
+  // Before anything is planned.
+  if (arguments.words.name.size() > cases::kLongestVersionName)
+    throw CLI::ValidationError("--name",
+                               "is at most " + std::to_string(cases::kLongestVersionName) + " bytes long");
+  if (arguments.words.note.size() > cases::kLongestVersionNote)
+    throw CLI::ValidationError("--note",
+                               "is at most " + std::to_string(cases::kLongestVersionNote) + " bytes long");
 }
 
 int keep_replaced(const std::string& case_folder, const cases::Plan& before, const cases::Case& now,

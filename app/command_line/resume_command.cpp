@@ -94,7 +94,9 @@ void resume(Context& context, const ResumeArguments& arguments) {
     say(context, *search.left);
   if (!arguments.json)
     for (const std::string& broken : search.passed_over) context.say("passed over: " + broken);
-  if (!search.left && !arguments.json)
+  if (!search.left && !search.passed_over.empty())
+    context.say_unreliable("what can be resumed", {"nothing is found, and some of it cannot be read"});
+  else if (!search.left && !arguments.json)
     context.say("Nothing was left in the middle: " + search.why_none + ".");
   if (search.left && !search.left->refusal.empty())
     context.say_unreliable("the registration", {"is not brought back: " + search.left->refusal});

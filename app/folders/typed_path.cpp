@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
 #include <optional>
 #include <system_error>
@@ -27,12 +28,26 @@ fs::path absolute_path(const std::string& text, const fs::path& from) {
   return from / text;  // an absolute one takes the place of `from`
 }
 
+// As other programs copy one: "/data/Knee%201.arthro".
+std::string of_address(const std::string& address) {
+  std::string path;
+  for (std::size_t i = 0; i < address.size(); ++i) {
+    unsigned value = 0;
+    const char* const digits = address.data() + i + 1;
+    const bool is_coded = address[i] == '%' && i + 2 < address.size() &&
+                          std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2;
+    path += is_coded ? static_cast<char>(value) : address[i];
+    if (is_coded) i += 2;
+  }
+  return path;
+}
+
 }  // namespace
 
 TypedPath typed_path(const std::string& text, const fs::path& from) {
   std::string meant = without(text, " \t\r\n\"'");
   constexpr std::string_view kScheme = "file://";
-  if (meant.starts_with(kScheme)) meant.erase(0, kScheme.size());
+  if (meant.starts_with(kScheme)) meant = of_address(meant.substr(kScheme.size()));
   if (meant.empty()) return {from, "Type a folder or a file"};
   TypedPath typed{absolute_path(meant, from).lexically_normal(), ""};
   std::error_code error;
@@ -70,8 +85,11 @@ std::string completed_path(const std::string& text, const fs::path& from) {
       common = name;
       continue;
     }
-    const auto differs = std::ranges::mismatch(*common, name).in1;
-    common->erase(differs, common->end());
+    auto alike = static_cast<std::size_t>(std::ranges::mismatch(*common, name).in1 - common->begin());
+    // No half of a letter that takes several bytes.
+    while (alike > 0 && alike < name.size() && (static_cast<unsigned char>(name[alike]) & 0xC0U) == 0x80U)
+      --alike;
+    common->resize(alike);
   }
   if (!common || common->size() < last.size()) return text;
   return begun + *common + (count == 1 && is_folder ? "/" : "");

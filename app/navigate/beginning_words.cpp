@@ -1,7 +1,5 @@
 #include "app/navigate/beginning_words.h"
 
-#include <algorithm>
-#include <array>
 #include <regex>
 
 #include "navigation/camera/medium.h"
@@ -75,12 +73,12 @@ CardLine registration_line(const recording::Resumable& left) {
               (left.was_verified ? ", was verified" : "") + "; guides after one touch on the bone"};
 }
 
-// Of those that register and guide, one that nobody measured.
+// Of the probe's tip and the guide's axis, one that nobody measured.
 bool has_nominal_tool(const pipeline::PipelineOptions& of) {
-  return std::ranges::any_of(std::array{of.probe_name, of.guide_name}, [&](const std::string& name) {
-    const tools::Tool* const tool = of.tools.find_tool(name);
-    return tool != nullptr && tool->provenance.origin == provenance::Origin::Nominal;
-  });
+  const tools::Tool *const probe = of.tools.find_tool(of.probe_name), *const guide =
+                                                                          of.tools.find_tool(of.guide_name);
+  return (probe != nullptr && tools::nominal_parts(*probe).tip) ||
+         (guide != nullptr && tools::nominal_parts(*guide).axis);
 }
 
 }  // namespace

@@ -119,11 +119,16 @@ std::string NavigateView::missing_now(const Rail& rail) {
   if (asks_otherwise) return "";
   if (choices_.looked_at) {
     const RailStep& step = rail[static_cast<std::size_t>(*choices_.looked_at)];
-    return step.verdict == tunnels::PlanCheck::Verdict::Fine ? hindrance_of(step, true) : words_of_verdict();
+    if (step.verdict == tunnels::PlanCheck::Verdict::Fine) return hindrance_of(step, true);
+    return step.step == operation::Step::Tools
+               ? "nobody measured the probe or the guide: they are as designed"
+               : words_of_verdict();
   }
   if (finishes()) return "";
   // What a press would put in force, before it is pressed.
-  if (waits_for_take_over()) return words_of_edited(live_->operation->edited_plan, judged_edited_.verdict());
+  const bool shows_nothing =
+      awaits_picture(*live_) || is_in_wrong_medium() || !words_without_pictures().empty();
+  if (waits_for_take_over() && !shows_nothing) return words_of_edited_plan();
   const bool has_pictures = is_running() && !awaits_picture(*live_) && words_without_pictures().empty();
   if (has_pictures && !is_in_wrong_medium())
     if (const std::string words = hindrance_of(*live_->operation, live_->trouble); !words.empty())
@@ -141,7 +146,7 @@ std::string NavigateView::missing_now(const Rail& rail) {
 // the screen for long enough to be read: a second press of a foot that slipped, and one that was meant for
 // what stood there before, say nothing.
 bool NavigateView::was_read() {
-  return next_step() == choices_.next &&
+  return next_step() + words_of_edited_plan() == choices_.next &&
          theatre::LiveOperation::now_s() - choices_.next_since_s >= kReadable_s;
 }
 

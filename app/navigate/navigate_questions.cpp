@@ -38,17 +38,21 @@ Question NavigateView::question() {
   return finishes() && looks_at_finish && !depth_.is_open() ? Question::Finish : Question::None;
 }
 
-// By which it is guided, would be after resuming, or is when an operation begins.
+// What would be in force after resuming, is, or will be when an operation begins.
 std::optional<operation::PlannedTunnel> NavigateView::plan_in_question() {
+  if (const LeftBehind* const left = left_behind()) return left->found.operation.plan;
   if (const auto& in_force = live_->operation->plan) return in_force;
-  if (const LeftBehind* const left = left_behind(); left != nullptr && left->found.operation.plan)
-    return left->found.operation.plan;
   return bones_.plan_of(choices_.bone);
 }
 
 void NavigateView::judge_plans() {
   judged_.judge(*model_, plan_in_question());
   judged_edited_.judge(*model_, live_->operation->edited_plan);
+}
+
+std::string NavigateView::words_of_edited_plan() const {
+  return waits_for_take_over() ? words_of_edited(live_->operation->edited_plan, judged_edited_.verdict())
+                               : "";
 }
 
 std::string NavigateView::words_of_verdict() const {

@@ -293,7 +293,7 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
   screen.undistorts = choices_.undistorts;
   screen.next_step = next_step();
   screen.is_exercise = !lent_step().empty();
-  choices_.note_next(screen.next_step, now_s);
+  choices_.note_next(screen.next_step + words_of_edited_plan(), now_s);
   screen.pedal_acts = pedal_acts();
   screen.rail = rail();
   if (screen.is_exercise)  // none of the operation's steps is to be done now
@@ -304,7 +304,8 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
   const std::string& missing = choices_.missing.follow(missing_now(screen.rail), now_s);
   screen.missing = refusal_notice(*live_, now_s);
   if (screen.missing.empty()) screen.missing = missing;
-  screen.is_wrong = judged_.verdict().is_wrong() && screen.missing == words_of_verdict();
+  screen.is_wrong = (judged_.verdict().is_wrong() && screen.missing == words_of_verdict()) ||
+                    (judged_edited_.verdict().is_wrong() && screen.missing == words_of_edited_plan());
   screen.patient = patient_;
   screen.verdict = &judged_.verdict();
   follow_reached(display, now_s);

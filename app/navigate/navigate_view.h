@@ -137,7 +137,8 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] std::string missing_now(const Rail& rail);
   [[nodiscard]] std::optional<operation::PlannedTunnel> plan_in_question();
   void judge_plans();  // that in force, and the one that waits to be taken over
-  [[nodiscard]] std::string words_of_verdict() const;  // of the plan; empty: nothing speaks against it
+  [[nodiscard]] std::string words_of_edited_plan() const;  // that waits to be taken over; empty: none does
+  [[nodiscard]] std::string words_of_verdict() const;      // of the plan; empty: nothing speaks against it
   [[nodiscard]] std::string lent_step() const { return lent_ && lent_->next_step ? lent_->next_step() : ""; }
   [[nodiscard]] bool can_simulate() const;
   [[nodiscard]] bool is_running() const;

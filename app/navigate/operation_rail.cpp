@@ -91,11 +91,10 @@ Missing missing_of_tools(const Known& known) {
 // Numbers of a drawing, that nobody measured on these tools, are no tick.
 tunnels::PlanCheck::Verdict verdict_of_tools(const Known& known) {
   using Verdict = tunnels::PlanCheck::Verdict;
-  const auto is_nominal = [](const tools::Tool* tool) {
-    return tool != nullptr && tool->provenance.origin == provenance::Origin::Nominal;
-  };
-  return known.are_real() && (is_nominal(known.probe()) || is_nominal(known.guide())) ? Verdict::Look
-                                                                                      : Verdict::Fine;
+  const tools::Tool *const probe = known.probe(), *const guide = known.guide();
+  const bool are_nominal = (probe != nullptr && tools::nominal_parts(*probe).tip) ||
+                           (guide != nullptr && tools::nominal_parts(*guide).axis);
+  return known.are_real() && are_nominal ? Verdict::Look : Verdict::Fine;
 }
 
 // What was registered before patient, knee and plan were confirmed counts from then on.

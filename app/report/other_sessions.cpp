@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "app/report/plans_in_force.h"
 #include "app/report/report_words.h"
 #include "app/report/session_rows.h"
 #include "navigation/operation/achieved_tunnel.h"
@@ -107,6 +108,8 @@ void add_others(const std::vector<std::filesystem::path>& sessions, Content& con
       other.bone = session.header().bone;
       other.safety = safety_rows(
           session, recording::cut_short_in_words(session.was_finished(), session.events(), false));
+      other.plans = plans_in_words(plans_in_force(session));
+      other.plan_warnings = plan_warnings(session, content);
       try {  // the rest of it is told all the same
         other.registration = registration_that_counts(session);
       } catch (const InvalidInput&) {
@@ -152,6 +155,7 @@ void draw_other_sessions(FlowingPages& pages, const Content& content) {
                (other.registration->has_pose ? ", predicted error at the target, one sigma " +
                                                    number(other.registration->predicted_tre_mm, " mm", 2)
                                              : "")});
+    if (!other.plans.empty()) rows.insert(rows.begin() + 1, {"Plan in force", other.plans});
     if (other.has_broken_registration) rows.push_back({"Registration", "NOT READABLE"});
     rows.insert(rows.end(), other.safety.begin(), other.safety.end());
     pages.table({70, 100}, rows);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "app/report/session_rows.h"
+#include "planning/bones/mesh_hash.h"
 #include "planning/files/format.h"
 
 namespace arthronaut::report {
@@ -39,21 +40,23 @@ std::string plans_in_words(const std::vector<PlanInForce>& plans) {
   return words;
 }
 
-std::vector<std::string> plan_warnings(const Content& content) {
+std::vector<std::string> plan_warnings(const recording::RecordedSession& session, const Content& content) {
   std::vector<std::string> warnings;
-  if (content.session == nullptr) return warnings;
   std::map<tunnels::TunnelKey, operation::PlannedTunnel> last;
-  for (const PlanInForce& next : plans_in_force(*content.session)) {
+  for (const PlanInForce& next : plans_in_force(session)) {
     const tunnels::TunnelKey key = next.plan.tunnel.key();
     if (const auto before = last.find(key); before != last.end() && before->second != next.plan)
       warnings.push_back("THE PLAN WAS CHANGED IN THE SESSION, at " + clock_text(next.since_s) + ": from " +
                          in_words(before->second) + ", to " + in_words(next.plan) + ".");
     last.insert_or_assign(key, next.plan);
   }
-  if (content.is_of_another_surface) return warnings;
+  const auto bone = content.knee.bones.find(session.header().bone);
+  if (bone == content.knee.bones.end() ||
+      recording::is_of_another_surface(session.header(), bones::mesh_sha256(bone->second.mesh)))
+    return warnings;
   for (const auto& [key, plan] : last)
     if (const std::string by = difference_from_now(content, plan.tunnel); !by.empty())
-      warnings.push_back("THE PLAN IS ANOTHER ONE NOW: the session guided to the " + in_words(plan) +
+      warnings.push_back("THE PLAN IS ANOTHER ONE NOW: the session was planned to the " + in_words(plan) +
                          "; this tunnel was " + by + ".");
   return warnings;
 }

@@ -24,6 +24,7 @@ struct PlanInForce {
 [[nodiscard]] std::string plans_in_words(const std::vector<PlanInForce>& plans);
 // That it was changed in the session, and that the case's plan is not the one any more that guided there: a
 // sentence each.
-[[nodiscard]] std::vector<std::string> plan_warnings(const Content& content);
+[[nodiscard]] std::vector<std::string> plan_warnings(const recording::RecordedSession& session,
+                                                     const Content& content);
 
 }  // namespace arthronaut::report

@@ -194,7 +194,12 @@ void blank_for_strangers(Content& content) {
   content.started_utc.clear();
   if (!content.cut_short.empty()) content.cut_short = std::string("why is ") + kNotTold;
   for (Content::Earlier& earlier : content.earlier) earlier.session.clear();
-  for (Content::Other& other : content.others) other.session.clear();
+  for (Content::Other& other : content.others) {
+    other.session.clear();
+    for (std::vector<std::string>& row : other.safety)
+      if (row[0] == kRecordRow && row[1].starts_with(kCutShort))
+        row[1] = std::string(kCutShort) + "why is " + kNotTold;
+  }
   for (Content::ByWord& said : content.by_word) said.session.clear();
   if (content.camera && !content.camera->date_utc.empty()) content.camera->date_utc = kNotTold;
   for (auto& [session, reason] : content.unreadable) {

@@ -54,6 +54,8 @@ struct Content {
     std::optional<registration::RegistrationSummary> registration = {};
     bool has_broken_registration = false;
     std::vector<std::vector<std::string>> safety = {};  // see safety_rows()
+    std::string plans = {};                             // plans_in_words()
+    std::vector<std::string> plan_warnings = {};
   };
   std::vector<Other> others = {};
   // Those of which the last that was said, in `session` or before it, is that they are drilled, and no pose

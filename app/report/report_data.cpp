@@ -93,6 +93,9 @@ ordered_json others_of(const Content& content) {
   for (const Content::Other& other : content.others) {
     ordered_json node = {{"id", if_told(other.session)}, {"bone", bones::to_text(other.bone)}};
     node["registration"] = other.registration ? json_of(*other.registration) : ordered_json();
+    node["registration_is_broken"] = other.has_broken_registration;
+    node["plans"] = other.plans;
+    node["plan_warnings"] = other.plan_warnings;
     node["safety"] = ordered_json::object();
     for (const auto& row : other.safety) node["safety"][row[0]] = row[1];
     all.push_back(std::move(node));
@@ -139,7 +142,7 @@ ordered_json session_of(const Content& content) {
     plan["length_mm"] = in_force.plan.length_mm;
     node["plans"].push_back(std::move(plan));
   }
-  node["plan_warnings"] = plan_warnings(content);
+  node["plan_warnings"] = plan_warnings(session, content);
   node["safety"] = ordered_json::object();
   for (const auto& row : safety_rows(session, content.cut_short)) node["safety"][row[0]] = row[1];
   node["steps"] = ordered_json::array();

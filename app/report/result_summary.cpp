@@ -118,8 +118,12 @@ void draw_result_summary(FlowingPages& pages, const Content& content) {
   pages.heading("Result");
   if (content.session && content.session->header().source_kind == "simulation")
     pages.sentence("SIMULATION: nobody's knee.", {.bold = true, .ink = kWarning});
-  for (const std::string& warning : plan_warnings(content))
-    pages.sentence(warning, {.bold = true, .ink = kWarning});
+  std::vector<std::string> warnings;
+  for (const Content::Other& other : content.others)
+    warnings.insert(warnings.end(), other.plan_warnings.begin(), other.plan_warnings.end());
+  if (content.session)
+    std::ranges::move(plan_warnings(*content.session, content), std::back_inserter(warnings));
+  for (const std::string& warning : warnings) pages.sentence(warning, {.bold = true, .ink = kWarning});
   std::vector<std::vector<std::string>> rows = {
       {"Tunnel", "Navigation, off the plan", "CT after, off the plan", "CT against navigation"}};
   for (const TunnelResult& result : results)

@@ -145,7 +145,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
   if (confirmed != nullptr && *confirmed != *plan) time_out += "; NOT CONFIRMED of the plan after it";
   if (!beside.empty()) time_out += "; " + beside;
   return {
-      {"Record", cut_short.empty() ? "from beginning to end" : "CUT SHORT: " + cut_short},
+      {kRecordRow, cut_short.empty() ? "from beginning to end" : kCutShort + cut_short},
       {kVerificationRow, verified + (was_skipped ? "; guidance began without it" : "")},
       {"Time-out", is_confirmed   ? time_out
                    : is_live      ? "not confirmed in this session"
@@ -222,7 +222,8 @@ std::vector<Step> steps_of(const recording::RecordedSession& session) {
   };
   std::vector<Run> runs;
   const auto add = [&](std::string words, double at_s, double for_s) {
-    if (!runs.empty() && runs.back().words == words) {
+    // Each loss of the source keeps its own time.
+    if (!runs.empty() && for_s == 0 && runs.back().words == words) {
       runs.back().last_s = at_s;
       ++runs.back().more;
     } else {

@@ -25,8 +25,10 @@ namespace arthronaut::report {
 // out, and nothing is registered any more. Throws IoError or InvalidInput where its file cannot be read.
 [[nodiscard]] std::optional<registration::RegistrationSummary> registration_that_counts(
     const recording::RecordedSession& session);
+inline constexpr const char* kRecordRow = "Record";
 inline constexpr const char* kVerificationRow = "Verification";
 inline constexpr const char* kAlarmsRow = "Alarms, void registrations";
+inline constexpr const char* kCutShort = "CUT SHORT: ";  // begins the record's row of one that was
 // A registration of it by its event.
 [[nodiscard]] recording::ReadRegistration registrations_of(const recording::RecordedSession& session);
 // What was asked before the guide was followed, and what spoke against it, as the session's events say it: a

@@ -44,6 +44,7 @@ class SetupView : public mode::Mode {
   [[nodiscard]] bool is_busy() const override;
   [[nodiscard]] bool has_running_work() const override;
   [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
+  [[nodiscard]] bool pictures_are_of_now() const override { return step().station->is_of_now(); }
 
  private:
   struct Step {

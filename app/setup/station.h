@@ -64,6 +64,7 @@ class Station {
   [[nodiscard]] virtual bool has_run() const = 0;           // a source was started
   [[nodiscard]] virtual bool is_busy() const = 0;           // pictures or a result are to come
   [[nodiscard]] virtual bool gives_pictures() const = 0;    // at least one came, and it has not ended
+  [[nodiscard]] virtual bool is_of_now() const = 0;         // what is shown is what the source sees now
   [[nodiscard]] virtual std::string next_step() const = 0;  // in words, once has_run()
   [[nodiscard]] virtual Row adopted() const = 0;            // what the case has of this step
 };
@@ -76,6 +77,7 @@ class JobStation : public Station {
   [[nodiscard]] bool gives_pictures() const final {
     return run_ != nullptr && status_.phase == FeedPhase::Running;
   }
+  [[nodiscard]] bool is_of_now() const final { return gives_pictures() && status_.is_of_now(steady_now_s()); }
 
  protected:
   using Run = LiveRun<Job>;

@@ -83,6 +83,7 @@ std::optional<std::size_t> ToolStation::next_unmeasured() const {
 
 // As they were designed: nobody measured them, and who is guided by them is told so.
 void ToolStation::take_built_in() {
+  if (std::filesystem::exists(cases::tools_file(case_folder_))) return read_adopted();  // another program's
   try {
     tools::write_tools_file(cases::tools_file(case_folder_), tools::standard_tools());
     read_adopted();
@@ -169,6 +170,7 @@ Then ToolStation::take_next_step() {
   if (display_.next == ToolStep::Done) {
     const auto next = next_unmeasured();
     if (!next) return Then::GoOn;
+    stop();
     chosen_ = *next;
     return Then::StartAgain;
   }

@@ -259,7 +259,10 @@ bool MarkerTrack::measure_smeared(const TrackedFrame& frame, const SquareSearch:
                                   SmearSearch& search, std::span<const ExposedPose> motions,
                                   MarkerObservation& observation) {
   if (motions.empty()) return false;
-  const double reach_px = kSmearedReachCells * cell_px(frame, motions.front().camera_from_marker);
+  const double cell = cell_px(frame, motions.front().camera_from_marker);
+  // The likeliest motion is of use to a direct fit alone.
+  if (cell < options_.min_direct_cell_px || !frame.direct || frame.fits_left <= 0) return false;
+  const double reach_px = kSmearedReachCells * cell;
   const SmearedPlace place = search.find(small, frame.camera, code_, marker_.size_mm,
                                          {frame.smear.sigma_px, frame.smear.gamma}, motions, reach_px);
   if (place.score < kMinSmearedScore) return false;

@@ -64,7 +64,9 @@ void append_pose_line(const PoseRow& row, std::string& text) {
                 t.x(), t.y(), t.z(), row.rms_px);
   text += line;
   if (row.mark_angle_deg) {
-    std::snprintf(line, sizeof line, "%.6f", *row.mark_angle_deg);
+    // What rounds to a whole turn is none.
+    const double angle_deg = *row.mark_angle_deg < 360 - 5e-7 ? *row.mark_angle_deg : 0;
+    std::snprintf(line, sizeof line, "%.6f", angle_deg);
     text += line;
   }
   text += ',';

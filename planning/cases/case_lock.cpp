@@ -147,9 +147,8 @@ std::string obstacle(const LockFile& lock, const fs::path& file, bool kernel_loc
   if (lock.holder.host != host_name()) {
     return "is open elsewhere: " + lock.holder.in_words() +
            ". If that program is gone, or this folder is a copy of its case, take it over: hold Ctrl+T in "
-           "the "
-           "window, or \"arthronaut cases --take-over " +
-           file.parent_path().string() + "\"";
+           "the window, or \"arthronaut cases --take-over '" +
+           file.parent_path().string() + "'\"";
   }
   // Where the kernel locks no folders, as on some mounts, neither are the folders' numbers to be relied on.
   if (kernel_locks && is_of_a_copy(lock, file)) return "";
@@ -272,6 +271,7 @@ CaseLock::CaseLock(const fs::path& case_folder, LockTaking taking) {
         if (before && is_of_a_copy(*before, file) && lives_here(*before)) {
           notice_ = "A copy of a case that was open: " + before->holder.in_words();
         } else if (is_taken_over) {
+          dead_since_utc_ = before->holder.since_utc;
           notice_ = "Taken over from " + before->holder.in_words() + ", as somebody said that it is gone";
         } else if (before) {
           dead_since_utc_ = before->holder.since_utc;

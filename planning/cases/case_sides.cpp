@@ -6,6 +6,7 @@
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/landmark_json.h"
 #include "planning/cases/plan_file.h"
+#include "planning/cases/step_history.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 
@@ -101,6 +102,16 @@ MeshHashes hashes_of(const Case& contents) {
   return hashes;
 }
 
+// Whether the case holds nothing but what was put aside of its side when the change began. The plan may be
+// gone: that is the change's first step.
+bool is_as_it_was_left(const Case& knee, const Sides& sides) {
+  const auto kept = sides.kept.find(knee.side);
+  if (kept == sides.kept.end()) return knee.plan.tunnels.empty();
+  const SideContents& left = kept->second.contents;
+  return (knee.plan.tunnels.empty() || is_same_plan(with_named_meshes(knee), left.plan)) &&
+         knee.landmarks == left.landmarks;
+}
+
 }  // namespace
 
 fs::path sides_file(const fs::path& case_folder) { return case_folder / "sides.json"; }
@@ -131,7 +142,18 @@ void change_side(const fs::path& case_folder, bones::Side side, const SideConten
   sides.kept[side] = {contents, meshes};
   sides.changing_to = side;
   save_sides(case_folder, sides);
-  (void)finish_side_change(case_folder);
+  try {
+    (void)finish_side_change(case_folder);
+  } catch (const std::runtime_error&) {
+    // As it was, so that nothing that is planned from here on is put aside by whoever takes the case next;
+    // unless it has the new side already: then that one goes on.
+    if (load_case(case_folder).side == before.side) {
+      save_plan(case_folder, before.plan);
+      sides.changing_to.reset();
+      save_sides(case_folder, sides);
+    }
+    throw;
+  }
 }
 
 bool finish_side_change(const fs::path& case_folder) {
@@ -140,6 +162,12 @@ bool finish_side_change(const fs::path& case_folder) {
   const bones::Side side = *sides.changing_to;
   const SideContents& contents = sides.kept.at(side).contents;
   Case knee = load_case(case_folder);
+  if (knee.side != side && !is_as_it_was_left(knee, sides)) {
+    // Somebody went on with the side that it has: that counts, and not a change that came to nothing.
+    sides.changing_to.reset();
+    save_sides(case_folder, sides);
+    return false;
+  }
   if (knee.side != side) {
     knee.side = side;
     knee.landmarks = contents.landmarks;

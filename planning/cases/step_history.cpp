@@ -126,6 +126,11 @@ StepHistory load_step_history(const fs::path& case_folder) {
   if (position < 0 || static_cast<std::size_t>(position) > history.steps.size())
     root.fail("position", "is beyond the steps");
   history.position = static_cast<std::size_t>(position);
+  try {
+    history.side = bones::side_from_text(root.text("side"));
+  } catch (const InvalidInput&) {
+    root.fail("side", "must be left or right");
+  }
   return history;
 }
 
@@ -143,6 +148,7 @@ void save_step_history(const fs::path& case_folder, const StepHistory& history) 
   }
   files::write_json(step_history_file(case_folder), {{"format", kHistoryFormat},
                                                      {"version", kHistoryVersion},
+                                                     {"side", bones::to_text(history.side)},
                                                      {"position", history.position},
                                                      {"landmarks", std::move(landmark_sets)},
                                                      {"measurements", std::move(measured)},

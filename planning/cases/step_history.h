@@ -36,8 +36,9 @@ struct PlanStep {
 };
 
 struct StepHistory {
-  std::vector<PlanStep> steps;  // the oldest first
-  std::size_t position = 0;     // so many of them are done, the others undone
+  std::vector<PlanStep> steps;            // the oldest first
+  std::size_t position = 0;               // so many of them are done, the others undone
+  bones::Side side = bones::Side::Right;  // of the knee that was planned
   // The position in which a case is that is in this state, the nearest to `position`; nullopt: in none.
   [[nodiscard]] std::optional<std::size_t> position_of(const PlanState& state) const;
 };

@@ -32,7 +32,7 @@ bool tells(const std::string& sentence, Side side, Side of_case) {
        {other_side_by_fibula(side, of_case), other_side_by_shape(side, of_case, true),
         other_side_by_shape(side, of_case, false), other_side_in_images(side, of_case)})
     if (sentence.starts_with(without_question(told))) return true;
-  return sentence == side_by_shape_alone(of_case);
+  return false;
 }
 
 // Of a side that was checked. That shapes alone had told it is a doubt no more.
@@ -52,8 +52,10 @@ bool settle(cases::BoneDoubts& doubts, Side side) {
 
 cases::BoneDoubts doubts_as(const cases::Case& knee, cases::BoneDoubts doubts, Side side) {
   std::size_t told = 0;
-  for (auto& [bone, sentences] : doubts)
+  for (auto& [bone, sentences] : doubts) {
     told += std::erase_if(sentences, [&](const auto& one) { return tells(one, side, knee.side); });
+    std::erase(sentences, side_by_shape_alone(knee.side));  // it spoke for the side that is left
+  }
   (void)settle(doubts, side);
   if (told == 0 && !knee.bones.empty())
     doubts[knee.bones.begin()->first].push_back(
@@ -83,7 +85,7 @@ SaidSide say_side_of_case(const fs::path& case_folder, Side side) {
     said.lines.push_back("it is a " + knee_of(side) +
                          (is_settled
                               ? ", as you say: that somebody looked stands beside what spoke against it"
-                              : " already, and nothing is said against that"));
+                              : " already, and nothing asks for its side to be checked"));
     return said;
   }
   refuse_achieved(case_folder, side);

@@ -101,7 +101,7 @@ TEST_F(CasesCommand, TakesACaseOverFromAnotherMachine) {
           "since_utc": "2026-01-31T12:00:00Z"})");
   const auto refused = cases({"--note", a_, "--text", "x"});
   EXPECT_EQ(refused.exit_code, 3);
-  EXPECT_THAT(refused.errors, HasSubstr("arthronaut cases --take-over " + a_.string()));
+  EXPECT_THAT(refused.errors, HasSubstr("arthronaut cases --take-over '" + a_.string() + "'"));
   const auto taken = cases({"--take-over", a_});
   EXPECT_EQ(taken.exit_code, 0) << taken.errors;
   EXPECT_THAT(taken.output, HasSubstr("Taken over from anna on theatre-2 (process 4711)"));

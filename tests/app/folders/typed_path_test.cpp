@@ -32,6 +32,8 @@ TEST_F(TypedPathTest, IsTakenFromWhereOneLooks) {
   const std::string whole = (folder_ / "imagine.stl").string();
   for (const std::string& text : {whole, "  " + whole + "\n", "\"" + whole + "\"", "file://" + whole})
     EXPECT_EQ(typed_path(text, "/").path, whole) << text;
+  EXPECT_EQ(typed_path("file://" + (folder_ / "images/knee%20left").string(), "/").path,
+            folder_ / "images/knee left");
   EXPECT_EQ(typed_path("images/../imagine.stl", folder_.path()).path, whole);
   ::setenv("HOME", folder_.path().c_str(), 1);
   EXPECT_EQ(typed_path("~/images", "/").path, folder_ / "images");
@@ -56,6 +58,10 @@ TEST_F(TypedPathTest, IsCompletedAsFarAsTheNamesAgree) {
   EXPECT_EQ(completed(".h"), ".hidden/");
   EXPECT_EQ(completed((folder_ / "imagi").string()), (folder_ / "imagine.stl").string());
   EXPECT_EQ(completed("~"), "~/");
+  // Both letters begin with the same byte.
+  std::ofstream(folder_ / "Knie_\u00E4rztlich") << "a";
+  std::ofstream(folder_ / "Knie_\u00F6stlich") << "b";
+  EXPECT_EQ(completed("K"), "Knie_");
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ TEST_F(Report, ShowsNoAlarmAsTheRegistration) {
   const std::string text = pdf_text();
   expect_contains(text, "0:00.3: registered");
   for (const char* const step :
-       {"bone registered, and 1 times more until", "ALARM: the control point has moved", "alarm is over",
+       {"bone registered, and 1 time more until", "ALARM: the control point has moved", "alarm is over",
         "nothing is registered any more"})
     expect_contains(text, step);
 }

@@ -107,6 +107,7 @@ TEST_F(OperationRunTest, Hazard3NoTouchAndNoStrokeIsTakenOfAnOldPicture) {
     }
   };
   step_to(4);
+  run.apply(operation::ConfirmTimeOut{});  // without it a live source takes none of any picture
   run.apply(operation::TakeTouch{});
   EXPECT_EQ(run.state()->touch_refusal, operation::TouchRefusal::TipUnknown) << "looked at, and no tip there";
   run.apply(operation::ForgetTouches{});

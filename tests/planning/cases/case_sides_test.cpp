@@ -128,6 +128,29 @@ TEST(CaseSides, Hazard52AfterAKillTheCaseIsWhollyOfOneSide) {
   EXPECT_GT(cut_off, 0) << "no change was ever cut off: the delays are of no use";
 }
 
+// A change that could not be made, as on a full disk, and that waits in the file: whoever went on with the
+// side that the case has keeps what was planned since.
+TEST(CaseSides, AChangeThatFailedTakesNothingThatWasDoneSince) {
+  const test::TemporaryFolder folder;
+  save_case(folder.path(), right_knee());
+  change_side(folder.path(), Side::Left, left_contents());
+  std::string waiting = files::read_text(sides_file(folder.path()));
+  const std::string before = "\"sides\":";
+  ASSERT_NE(waiting.find(before), std::string::npos);
+  waiting.insert(waiting.find(before), "\"changing_to\": \"right\", ");
+  files::write_atomically(sides_file(folder.path()), waiting);
+  Case since = load_case(folder.path());
+  ASSERT_EQ(since.side, Side::Left);
+  since.plan.tunnels.begin()->second.entry_mm.x() = -33;
+  save_plan(folder.path(), since.plan);
+  const CaseLock lock(folder.path());
+  ASSERT_TRUE(lock.is_held()) << lock.refusal();
+  const Case found = load_case(folder.path());
+  EXPECT_EQ(found.side, Side::Left);
+  EXPECT_TRUE(is_planned_at(found.plan, -33));
+  EXPECT_EQ(files::read_text(sides_file(folder.path())).find("changing_to"), std::string::npos);
+}
+
 TEST(CaseSides, AFileThatIsNoneIsRefusedByPlace) {
   const test::TemporaryFolder folder;
   files::write_atomically(
