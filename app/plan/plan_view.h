@@ -200,6 +200,7 @@ class PlanView : public mode::Mode {
 
   std::function<void()> paint_;
   std::function<std::vector<std::string>(bones::Side)> say_side_;
+  std::filesystem::path side_news_of_;
   std::string side_news_;  // what came of the side that was said, for when the case is open anew
   open_case::PlanModel* model_ = nullptr;  // null until a case is open
   open_case::PlanHistory history_;

@@ -33,6 +33,7 @@ void PlanView::say_side(Side side) {
   }
   try {  // a case on the disk
     side_news_.clear();
+    side_news_of_ = case_folder_;
     for (const std::string& line : say_side_(side)) side_news_ += (side_news_.empty() ? "" : "; ") + line;
   } catch (const std::runtime_error& error) {
     state_.hint = {error.what()};
@@ -44,6 +45,7 @@ void PlanView::say_side(Side side) {
 }
 
 void PlanView::take_side_news() {
+  if (side_news_of_ != case_folder_) side_news_.clear();  // of a case that did not open again
   if (side_news_.empty()) return;
   side_news_[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(side_news_[0])));
   state_.hint = {side_news_ + ".", true, model_->revision()};

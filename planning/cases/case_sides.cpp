@@ -6,6 +6,7 @@
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/landmark_json.h"
 #include "planning/cases/plan_file.h"
+#include "planning/cases/plan_versions.h"
 #include "planning/cases/step_history.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
@@ -135,6 +136,7 @@ void change_side(const fs::path& case_folder, bones::Side side, const SideConten
   const Case before = load_case(case_folder);
   if (before.side == side) throw InvalidInput(case_folder, "side", "is that one already");
   Sides sides = load_sides(case_folder);
+  name_side_of_versions(case_folder, before.side);
   const MeshHashes meshes = hashes_of(before);
   sides.kept[before.side] = {
       {before.landmarks, before.landmark_states, with_named_meshes(before), load_bone_doubts(case_folder)},

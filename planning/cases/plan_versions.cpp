@@ -105,6 +105,14 @@ void say_of_version(const fs::path& case_folder, int number, const VersionWords&
   write_version(case_folder, version);
 }
 
+void name_side_of_versions(const fs::path& case_folder, bones::Side side) {
+  for (PlanVersion& version : load_plan_versions(case_folder)) {
+    if (version.side) continue;
+    version.side = side;
+    write_version(case_folder, version);
+  }
+}
+
 std::string side_refusal(const PlanVersion& version, bones::Side of_case) {
   if (!version.side || *version.side == of_case) return "";
   return version.title() + " was planned in a " + std::string(bones::to_text(*version.side)) +

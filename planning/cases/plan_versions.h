@@ -40,6 +40,9 @@ PlanVersion keep_plan_version(const std::filesystem::path& case_folder, const Pl
 // The version has these words from then on, in place of those it had. Atomic. Throws as keep_plan_version();
 // InvalidInput where no version has that number.
 void say_of_version(const std::filesystem::path& case_folder, int number, const VersionWords& words);
+// Those of which nobody said the side are of this one, which the case has had so far. Throws as
+// load_plan_versions() and keep_plan_version().
+void name_side_of_versions(const std::filesystem::path& case_folder, bones::Side side);
 // Why a plan of the one side must not be taken in a knee of the other; empty where it may, or nobody knows.
 [[nodiscard]] std::string side_refusal(const PlanVersion& version, bones::Side of_case);
 

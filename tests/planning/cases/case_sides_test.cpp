@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "planning/cases/case_lock.h"
+#include "planning/cases/plan_versions.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "tests/message_of.h"
@@ -126,6 +127,20 @@ TEST(CaseSides, Hazard52AfterAKillTheCaseIsWhollyOfOneSide) {
     cut_off += static_cast<int>(is_left_now && WIFSIGNALED(status));
   }
   EXPECT_GT(cut_off, 0) << "no change was ever cut off: the delays are of no use";
+}
+
+// What was kept before sides were written down is of the side that the case had.
+TEST(CaseSides, KeptVersionsAreOfTheSideThatTheCaseHad) {
+  const test::TemporaryFolder folder;
+  save_case(folder.path(), right_knee());
+  (void)keep_plan_version(folder.path(), plan_at(5), std::nullopt);
+  change_side(folder.path(), Side::Left, left_contents());
+  (void)keep_plan_version(folder.path(), plan_at(-5), Side::Left);
+  const auto versions = load_plan_versions(folder.path());
+  ASSERT_EQ(versions.size(), 2U);
+  EXPECT_EQ(versions[0].side, Side::Right);
+  EXPECT_NE(side_refusal(versions[0], Side::Left), "");
+  EXPECT_EQ(versions[1].side, Side::Left);
 }
 
 // A change that could not be made, as on a full disk, and that waits in the file: whoever went on with the

@@ -97,7 +97,8 @@ TEST_F(CaseSide, ASideThatWasCheckedIsNotAskedForAgain) {
   EXPECT_THAT(doubts(), ElementsAre("cut off above"));
 }
 
-// Where the shapes alone had told the side that it had, nothing tells the one that is said: that stays a doubt.
+// Where the shapes alone had told the side that it had, nothing tells the one that is said: that stays a
+// doubt.
 TEST_F(CaseSide, WhatToldTheOldSideIsNoWordForTheNewOne) {
   doubt(side_by_shape_alone(Side::Right));
   EXPECT_TRUE(say_side_of_case(folder_.path(), Side::Left).is_changed);
