@@ -93,6 +93,7 @@ TEST_F(LiveOperationTest, Hazard3ASlowSourceAndARefusedTouchArePublished) {
     return now->trouble == SourceTrouble::Slow;
   }));
   EXPECT_EQ(live_.latest()->refusal.count, 0);
+  live_.apply(operation::ConfirmTimeOut{});  // a live source takes no touch before
   live_.apply(operation::TakeTouch{});
   ASSERT_TRUE(waits_for([&] { return live_.latest()->refusal.count == 1; }));
   EXPECT_EQ(live_.latest()->operation->touch_refusal, operation::TouchRefusal::TipUnknown);
