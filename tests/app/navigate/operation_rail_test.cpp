@@ -78,6 +78,7 @@ void expect_whole(const Rail& rail) {
 TEST(OperationRail, APlanIsAsGoodAsItsChecks) {
   using Verdict = tunnels::PlanCheck::Verdict;
   Course course;
+  course.source.kind = sources::SourceKind::Simulation;  // whose tools are as they were designed
   course.start();
   EXPECT_EQ(course.rail().front().verdict, Verdict::Fine);
   for (const Verdict verdict : {Verdict::Look, Verdict::Wrong}) {

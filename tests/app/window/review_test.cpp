@@ -334,7 +334,8 @@ TEST_F(ReviewWindow, SaysWhatEachSessionWas) {
   ASSERT_TRUE(app.wait_for_state("case", "open", 120));
   app.press("F3");
   EXPECT_TRUE(app.wait_for_state("session_line." + session_.filename().string(),
-                                 "femur, 3 s; not registered; 1 alarm"));
+                                 "femur, 3 s; not registered; 1 alarm"))
+      << app.state("session_line." + session_.filename().string());
   app.press("ctrl+q");
   EXPECT_EQ(app.wait_for_exit(30), 0);
 }

@@ -47,6 +47,10 @@ TEST(SettingUp, LeadsToAnAdoptedCameraAndTip) {
   ASSERT_TRUE(app.wait_for_state("setup_next", "calibrate")) << app.state("setup_next");
   app.press("equal space");
   ASSERT_TRUE(app.wait_for_state("setup_verdict", "Fit for guidance", 120));
+  // A foot that bounces adopts nothing that nobody has read.
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("setup_next", "adopt the calibration"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "camera.json"));
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("setup_verdict", "Adopted"));
   const camera::CalibrationRecord camera = camera::read_camera_file(folder / "camera.json");
@@ -63,6 +67,7 @@ TEST(SettingUp, LeadsToAnAdoptedCameraAndTip) {
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("setup_verdict", "Fit for guidance", 240)) << app.state("setup_band");
   ASSERT_TRUE(app.wait_for_widget("setup.motion"));
+  ASSERT_TRUE(app.wait_for_state("setup_next", "adopt the tip"));
   // Through another camera another tip would have been found.
   const std::string measured_through = files::read_text(folder / "camera.json");
   files::write_atomically(folder / "camera.json", measured_through + "\n");
