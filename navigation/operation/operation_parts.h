@@ -36,7 +36,7 @@
 //   the time-out's confirmation       | . x . x . . . . . . .
 //   the check of a nominal guide      | . x . . . . . . . x .
 //   why no touch was taken            | x x . . . . . . . . .
-//   that the probe draws              | x x x . . . . . . . .
+//   that the probe draws              | x x x x . . . . . . .
 //
 // Without a control point nothing of before can tell whether a marker that nobody saw sits where it sat; with
 // one, it is to be touched (place_doubt.h).
