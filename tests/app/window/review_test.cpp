@@ -33,7 +33,9 @@ class ReviewWindow : public ::testing::Test {
       GTEST_SKIP() << missing;
     test::put_built_in_case(case_folder_);
     session_ = cases::create_session_folder(case_folder_);
-    recording::SessionRecorder recorder(session_, test::session_header(), test::scripted_options());
+    recording::SessionHeader header = test::session_header();
+    header.side = bones::Side::Right;  // as the case is
+    recording::SessionRecorder recorder(session_, header, test::scripted_options());
     for (int i = 0; i < kFrames; ++i) {
       recorder.append_picture(std::make_shared<camera::Frame>(test::plain_frame(i, 80)));
       recorder.append(test::frame_result(i));
