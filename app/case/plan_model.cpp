@@ -38,6 +38,7 @@ PlanModel::PlanModel(cases::Case knee, const std::stop_token& stop,
       3 * std::ranges::count_if(knee_.bones, [](const auto& b) { return !b.second.mesh.empty(); });
   std::atomic<int> pieces_done = 0;
   const auto piece_done = [&] {
+    if (stop.stop_requested()) return;  // it was left, and not done
     const int done = ++pieces_done;
     if (tell) tell(static_cast<double>(done) / static_cast<double>(pieces));
   };
