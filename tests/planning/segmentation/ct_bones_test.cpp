@@ -203,6 +203,24 @@ double within_cortex(const CutFemur& cut, const CtBones& found, const std::vecto
 }
 
 // Its marrow is open to both ends of the volume at once, enclosed within neither.
+// Marrow is darker than the cortex about it in many places: that is no joint, and a whole bone stays whole.
+TEST(CtBones, OneBoneAloneIsNotPartedThroughItsMarrow) {
+  const auto knee = phantom::make_phantom_knee({.edge_length_mm = 1.5});
+  for (const auto* bone : {&knee.femur, &knee.tibia}) {
+    test::KnownCtOptions options;
+    options.spacing_mm = {0.6, 0.6, 1};
+    options.cortex_mm = 1.8;
+    options.cortex_hu = 1100;
+    options.marrow_hu = 280;
+    options.blur_mm = 0.4;
+    const CtBones found = bones_of_ct(test::known_ct({bone->mesh}, options), {});
+    ASSERT_EQ(found.bones.size(), 1U);
+    EXPECT_EQ(found.bones.front().kind, bone->kind);
+    for (const std::string& note : found.notes)
+      EXPECT_EQ(note.find("parted"), std::string::npos) << note;
+  }
+}
+
 TEST(CtBones, MarrowThatTwoEndsOfTheVolumeOpenIsClosedOff) {
   const CutFemur cut = cut_femur(nullptr);
   const CtBones found = bones_of_ct(cut.volume);
