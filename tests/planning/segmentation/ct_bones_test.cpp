@@ -216,8 +216,7 @@ TEST(CtBones, OneBoneAloneIsNotPartedThroughItsMarrow) {
     const CtBones found = bones_of_ct(test::known_ct({bone->mesh}, options), {});
     ASSERT_EQ(found.bones.size(), 1U);
     EXPECT_EQ(found.bones.front().kind, bone->kind);
-    for (const std::string& note : found.notes)
-      EXPECT_EQ(note.find("parted"), std::string::npos) << note;
+    for (const std::string& note : found.notes) EXPECT_EQ(note.find("parted"), std::string::npos) << note;
   }
 }
 
