@@ -18,7 +18,7 @@ constexpr double kRest_s = 0.5, kLookEvery_s = 1.0, kTryAgainEvery_s = 3.0;
 
 bool is_same(const std::optional<tunnels::Tunnel>& a, const std::optional<tunnels::Tunnel>& b) {
   if (!a || !b) return !a && !b;
-  return a->entry_mm == b->entry_mm && a->direction == b->direction && a->diameter_mm == b->diameter_mm;
+  return cases::is_same_tunnel(*a, *b);
 }
 
 }  // namespace

@@ -126,8 +126,7 @@ void add_compare_command(CLI::App& app, Context& context) {
       ->required();
   sub->add_option("-o,--output", arguments->output,
                   "achieved.json to write; CASE/achieved.json keeps it in the case, where report and Review "
-                  "have it; - is "
-                  "standard output")
+                  "have it; - is standard output")
       ->required()
       ->check(a_name());
   sub->add_option("--bone", arguments->bone, "femur or tibia; default: every bone with planned tunnels")

@@ -258,6 +258,13 @@ NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s
   return stands && (is_aimed_by || !state.draws) ? NavigateLayout::Guide : NavigateLayout::Register;
 }
 
+bool is_live(const theatre::LiveState* live, double now_s) {
+  if (live == nullptr || live->picture == nullptr || live->phase == Phase::NoSource ||
+      live->phase == Phase::Failed || live->phase == Phase::Ended)
+    return false;
+  return theatre::is_of_now(now_s - live->captured_s, live->trouble, live->stale_after_s);
+}
+
 NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   NavigateDisplay display;
   if (live == nullptr || live->phase == Phase::NoSource) {
@@ -284,7 +291,7 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   display.age_s = now_s - live->captured_s;
   // That a slow source has stopped is told by trouble.
   const bool is_slow = live->trouble == theatre::SourceTrouble::Slow;
-  if (!theatre::is_of_now(display.age_s, live->trouble, live->stale_after_s)) {
+  if (!is_live(live, now_s)) {
     const bool is_short = display.age_s < 1;
     // What is wrong with the source comes first; what lasts stays said while a busy machine is late with one.
     const bool is_late = live->trouble == theatre::SourceTrouble::Late || is_slow;

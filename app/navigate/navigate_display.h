@@ -51,6 +51,9 @@ enum class NavigateLayout { Register, Guide };
 // for a moment does not change the screen.
 [[nodiscard]] NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s);
 
+// Whether the newest picture is of this moment: NavigateDisplay::is_live, without its words.
+[[nodiscard]] bool is_live(const theatre::LiveState* live, double now_s);
+
 // now_s on the clock of theatre::LiveOperation::now_s(). live may be null: no bone was looked at yet.
 [[nodiscard]] NavigateDisplay display_of(const theatre::LiveState* live, double now_s);
 

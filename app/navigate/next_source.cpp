@@ -14,7 +14,7 @@ std::optional<sources::SourceKind> NavigateView::source_kind() const {
 }
 
 bool NavigateView::pictures_are_of_now() const {
-  return display_of(live_.get(), theatre::LiveOperation::now_s()).is_live;
+  return is_live(live_.get(), theatre::LiveOperation::now_s());
 }
 
 bool NavigateView::can_simulate() const {

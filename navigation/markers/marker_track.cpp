@@ -272,8 +272,7 @@ bool MarkerTrack::measure_smeared(const TrackedFrame& frame, const SquareSearch:
   is_beyond_edges_ = false;
   seen_motion_.reset();
   const RigidTransform& pose = start.camera_from_marker;
-  if (cell_px(frame, pose) < options_.min_direct_cell_px || !frame.direct || frame.fits_left <= 0)
-    return false;
+  if (cell_px(frame, pose) < options_.min_direct_cell_px) return false;
   DirectOptions near = options_.direct;
   near.max_way_cells = kSmearedWayCells;
   DirectPose direct = fit_directly(frame, pose, start.velocity, near, &start.change);

@@ -55,21 +55,25 @@ void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit
   const RigidTransform& pose = fit.pose.camera_from_marker;
   const double px_per_mm = cell_px(frame, pose) * cells_ / marker_.size_mm;
   const bool is_smeared = moved_px(fit.pose.velocity, px_per_mm) > options_.smeared_px;
-  const LinearTable light(fit.gamma);
-  const LinearImage in_its_light(frame.image.view(), light);
-  const RigidTransform mean = is_smeared ? pose * geometry::exp(1.0 / 24 * fit.pose.change) : pose;
+  const Smear picture{frame.smear.sigma_px, fit.pose.velocity};
   SmearTrend ignored;
-  look_at_edges(frame, is_smeared ? in_its_light : frame.image, mean,
-                {frame.smear.sigma_px, fit.pose.velocity}, {}, ignored);
-  is_inlier_.resize(measurements_.size());
-  for (std::size_t i = 0; i < measurements_.size(); ++i) {
-    EdgeMeasurement& measurement = measurements_[i];
-    is_inlier_[i] = measurement.state == EdgeState::Found && std::abs(measurement.offset_px) < kMaxEdgeRmsPx;
-    const EdgeSample& sample = samples_[measurement.sample];
-    const Eigen::Vector3d place(sample.x * marker_.size_mm, sample.y * marker_.size_mm, 0);
-    const auto there = frame.camera.project(pose * place), in_mean = frame.camera.project(mean * place);
-    if (is_smeared && there && in_mean) measurement.point_px += *there - *in_mean;
+  if (!is_smeared) {
+    look_at_edges(frame, frame.image, pose, picture, {}, ignored);
+  } else {
+    const LinearTable light(fit.gamma);
+    const RigidTransform mean = pose * geometry::exp(1.0 / 24 * fit.pose.change);
+    look_at_edges(frame, LinearImage(frame.image.view(), light), mean, picture, {}, ignored);
+    for (EdgeMeasurement& measurement : measurements_) {
+      const EdgeSample& sample = samples_[measurement.sample];
+      const Eigen::Vector3d place(sample.x * marker_.size_mm, sample.y * marker_.size_mm, 0);
+      const auto there = frame.camera.project(pose * place), in_mean = frame.camera.project(mean * place);
+      if (there && in_mean) measurement.point_px += *there - *in_mean;
+    }
   }
+  is_inlier_.resize(measurements_.size());
+  for (std::size_t i = 0; i < measurements_.size(); ++i)
+    is_inlier_[i] =
+        measurements_[i].state == EdgeState::Found && std::abs(measurements_[i].offset_px) < kMaxEdgeRmsPx;
   EdgePose edges;
   edges.camera_from_marker = pose;
   edges.bloom_px = is_smeared ? 0 : frame.smear.bloom.mean_px;

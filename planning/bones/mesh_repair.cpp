@@ -148,7 +148,8 @@ Edge edge_of(Halfedge border, const SurfaceMesh& mesh) {
   return edge;
 }
 
-FilledHole filled_hole(const Edge& edge, const geometry::TriangleMesh& mesh) {
+// middle: of the mesh.
+FilledHole filled_hole(const Edge& edge, const Eigen::Vector3d& middle) {
   FilledHole hole;
   for (const Eigen::Vector3d& p : edge) hole.at_mm += p / static_cast<double>(edge.size());
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -158,12 +159,7 @@ FilledHole filled_hole(const Edge& edge, const geometry::TriangleMesh& mesh) {
     normal += from.cross(to);
   }
   if (!(normal.norm() > 0)) return hole;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& p : mesh.vertices_mm) middle += p;
-  middle /= static_cast<double>(mesh.vertices_mm.size());
   hole.out = normal.normalized() * (normal.dot(hole.at_mm - middle) < 0 ? -1 : 1);
-  for (const Eigen::Vector3d& p : mesh.vertices_mm)
-    hole.beyond_mm = std::max(hole.beyond_mm, hole.out.dot(p - hole.at_mm));
   return hole;
 }
 
@@ -258,7 +254,10 @@ MeshRepair mend(const geometry::TriangleMesh& mesh) {
   result.mesh = plain_mesh(surface);
   report.vertices_now = result.mesh.vertices_mm.size();
   report.triangles_now = result.mesh.triangles.size();
-  for (const Edge& edge : filled) result.filled.push_back(filled_hole(edge, result.mesh));
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : result.mesh.vertices_mm)
+    middle += p / static_cast<double>(result.mesh.vertices_mm.size());
+  for (const Edge& edge : filled) result.filled.push_back(filled_hole(edge, middle));
   return result;
 }
 

@@ -40,8 +40,6 @@ struct FilledHole {
   double across_mm = 0;                             // of a circle about it that holds its edge
   // Of its edge's plane, away from the rest of the mesh; zero where the edge has none.
   Eigen::Vector3d out = Eigen::Vector3d::Zero();
-  double beyond_mm =
-      0;  // so far the mesh goes on beyond that plane: nothing where something was cut off flat
 };
 
 struct MeshRepair {

@@ -20,11 +20,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kHistoryFormat = "arthronaut.history";
 constexpr int kHistoryVersion = 1;
 
-bool is_same_tunnel(const tunnels::Tunnel& a, const tunnels::Tunnel& b) {
-  return a.key() == b.key() && a.entry_mm == b.entry_mm && a.direction == b.direction &&
-         a.diameter_mm == b.diameter_mm;
-}
-
 // A landmark of which no state is said is confirmed.
 bool has_same_landmarks(const PlanState& a, const PlanState& b) {
   if (a.landmarks != b.landmarks) return false;
@@ -69,6 +64,11 @@ const Thing& at_place(const std::vector<Thing>& things, const files::JsonObject&
 }
 
 }  // namespace
+
+bool is_same_tunnel(const tunnels::Tunnel& a, const tunnels::Tunnel& b) {
+  return a.key() == b.key() && a.entry_mm == b.entry_mm && a.direction == b.direction &&
+         a.diameter_mm == b.diameter_mm;
+}
 
 bool is_same_plan(const Plan& a, const Plan& b) {
   return a.mesh_sha256 == b.mesh_sha256 &&

@@ -27,6 +27,8 @@ struct PlanState {
   [[nodiscard]] bool operator==(const PlanState& other) const;
 };
 
+// The same to the bit.
+[[nodiscard]] bool is_same_tunnel(const tunnels::Tunnel& a, const tunnels::Tunnel& b);
 // The same tunnels to the bit, on the same meshes.
 [[nodiscard]] bool is_same_plan(const Plan& a, const Plan& b);
 

@@ -89,7 +89,8 @@ ImportedBone finished(BoneKind kind, const std::string& source, const geometry::
   // Of a mesh that is no bone at all there is enough to say already.
   if (!imported.doubts.empty()) return imported;
   imported.doubts = segmentation::anatomy_doubts(imported.bone.mesh, kind, image_ends);
-  for (std::string& doubt : filled_doubts(repair.filled, kind)) imported.doubts.push_back(std::move(doubt));
+  for (std::string& doubt : filled_doubts(repair.filled, imported.bone.mesh, kind))
+    imported.doubts.push_back(std::move(doubt));
   return imported;
 }
 

@@ -13,18 +13,24 @@ constexpr double kMostAcross_mm = 8;
 // A shaft's end may be cut askew, and its edge may be ragged.
 constexpr double kLeastAlongShaft = 0.7, kMostBeyond_mm = 3;
 
-bool is_end_of_shaft(const bones::FilledHole& hole, bones::BoneKind kind) {
+// The mesh goes on beyond the hole's plane nowhere: something was cut off flat there.
+bool is_end_of_shaft(const bones::FilledHole& hole, const geometry::TriangleMesh& mesh,
+                     bones::BoneKind kind) {
   const double along_shaft = kind == bones::BoneKind::Femur ? hole.out.z() : -hole.out.z();
-  return along_shaft > kLeastAlongShaft && hole.beyond_mm < kMostBeyond_mm;
+  return along_shaft > kLeastAlongShaft &&
+         std::ranges::all_of(mesh.vertices_mm, [&](const Eigen::Vector3d& p) {
+           return hole.out.dot(p - hole.at_mm) < kMostBeyond_mm;
+         });
 }
 
 }  // namespace
 
-std::vector<std::string> filled_doubts(const std::vector<bones::FilledHole>& filled, bones::BoneKind kind) {
+std::vector<std::string> filled_doubts(const std::vector<bones::FilledHole>& filled,
+                                       const geometry::TriangleMesh& mesh, bones::BoneKind kind) {
   const bones::FilledHole* widest = nullptr;
   std::size_t count = 0;
   for (const bones::FilledHole& hole : filled) {
-    if (hole.across_mm <= kMostAcross_mm || is_end_of_shaft(hole, kind)) continue;
+    if (hole.across_mm <= kMostAcross_mm || is_end_of_shaft(hole, mesh, kind)) continue;
     ++count;
     if (widest == nullptr || hole.across_mm > widest->across_mm) widest = &hole;
   }

@@ -9,10 +9,11 @@
 
 namespace arthronaut::importing {
 
-// A doubt for a hole that was filled and is wider than 8 mm: across it a bone as round as a condyle (16 mm)
-// is off by 0.5 mm, and one that is hollow there, as in the notch, by more. The cut end of a shaft (a
-// femur's above, a tibia's below) is no hole: there every scan ends.
+// mesh: the mended one. A doubt for a hole that was filled and is wider than 8 mm: across it a bone as round
+// as a condyle (16 mm) is off by 0.5 mm, and one that is hollow there, as in the notch, by more. The cut end
+// of a shaft (a femur's above, a tibia's below) is no hole: there every scan ends.
 [[nodiscard]] std::vector<std::string> filled_doubts(const std::vector<bones::FilledHole>& filled,
+                                                     const geometry::TriangleMesh& mesh,
                                                      bones::BoneKind kind);
 
 }  // namespace arthronaut::importing

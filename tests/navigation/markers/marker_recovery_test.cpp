@@ -45,6 +45,45 @@ class MarkerRecovery : public ::testing::Test {
     expect_near(seen[0], pose_);
     EXPECT_FALSE(seen[1].is_tracked());
   }
+  // beyond: pictures in which the shutter smears a cell over more than one and a quarter. squares: of how
+  // far off it is by its covariance, one for each direction.
+  struct Followed {
+    int tracked = 0, beyond = 0, tracked_beyond = 0;
+    double squares = 0;
+  };
+  struct MostOff {
+    double turned_deg, moved_mm;
+  };
+  // camera_from_marker at(time_s), at 30 pictures a second with the shutter open for this part of each.
+  template <class At>
+  [[nodiscard]] Followed follow(const At& at, int frames, double open, const MostOff& most) {
+    constexpr double kFrame_s = 1.0 / 30;
+    const double half_open_s = 0.5 * open * kFrame_s;
+    Followed followed;
+    for (int frame = 0; frame < frames; ++frame) {
+      const double time_s = frame * kFrame_s;
+      const RigidTransform truth = at(time_s);
+      const geometry::Vector6d first = geometry::log(truth.inverse() * at(time_s - half_open_s)),
+                               last = geometry::log(truth.inverse() * at(time_s + half_open_s));
+      PictureOptions options;
+      options.seed = static_cast<unsigned>(frame + 1);
+      const RenderedPicture shown(camera_, {{codes_[0], 4, truth, last - first, 4 * (first + last)}},
+                                  options);
+      const auto seen =
+          tracker_->track(shown.view(), camera_, static_cast<std::int64_t>(std::llround(1e9 * time_s)));
+      const bool is_beyond = (last - first).head<3>().norm() * 6 / 4 > 1.25;
+      followed.beyond += is_beyond;
+      EXPECT_FALSE(seen[1].is_tracked());
+      if (!seen[0].is_tracked()) continue;
+      ++followed.tracked;
+      followed.tracked_beyond += is_beyond;
+      const geometry::Vector6d off = geometry::log(seen[0].camera_from_marker.inverse() * truth);
+      EXPECT_LT(geometry::deg_from_rad(off.tail<3>().norm()), most.turned_deg) << "frame " << frame;
+      EXPECT_LT(off.head<3>().norm(), most.moved_mm) << "frame " << frame;
+      followed.squares += off.dot(seen[0].covariance.inverse() * off) / 6;
+    }
+    return followed;
+  }
 
   camera::CameraModel camera_ = small_scope();
   std::vector<MarkerCode> codes_ = codes_4x4_50();
@@ -266,40 +305,17 @@ TEST_F(MarkerRecovery, TakesNoUndeclaredMarkerForADeclaredOne) {
 // whole code, smeared as it moves, can. What stands is no farther off than two fifths of what is called
 // wrong.
 TEST_F(MarkerRecovery, FollowsAMarkerThatShakes) {
-  constexpr double kFrameS = 1.0 / 30, kExposureS = 0.6 * kFrameS;
   const auto at = [&](double time_s) -> RigidTransform {
     geometry::Vector6d twist;
     twist << 2.6 * std::cos(22 * time_s), 1.1 * std::cos(19 * time_s), 0.3 * std::sin(9 * time_s),
         0.02 * std::sin(7 * time_s), 0.02 * std::sin(8 * time_s), 0.15 * std::cos(21 * time_s);
     return pose_ * geometry::exp(twist);
   };
-  int tracked = 0, beyond = 0, tracked_beyond = 0;
-  double squares = 0;
-  for (int frame = 0; frame < 16; ++frame) {
-    const double time_s = frame * kFrameS;
-    const RigidTransform truth = at(time_s);
-    const geometry::Vector6d first = geometry::log(truth.inverse() * at(time_s - 0.5 * kExposureS)),
-                             last = geometry::log(truth.inverse() * at(time_s + 0.5 * kExposureS));
-    PictureOptions options;
-    options.seed = static_cast<unsigned>(frame + 1);
-    const RenderedPicture shown(camera_, {{codes_[0], 4, truth, last - first, 4 * (first + last)}}, options);
-    const auto seen =
-        tracker_->track(shown.view(), camera_, static_cast<std::int64_t>(std::llround(1e9 * time_s)));
-    const double moved_cells = (last - first).head<3>().norm() * 6 / 4;
-    beyond += moved_cells > 1.25;
-    EXPECT_FALSE(seen[1].is_tracked());
-    if (!seen[0].is_tracked()) continue;
-    ++tracked;
-    tracked_beyond += moved_cells > 1.25;
-    const geometry::Vector6d off = geometry::log(seen[0].camera_from_marker.inverse() * truth);
-    EXPECT_LT(geometry::deg_from_rad(off.tail<3>().norm()), 2) << "frame " << frame;
-    EXPECT_LT(off.head<3>().norm(), 0.4) << "frame " << frame;
-    squares += off.dot(seen[0].covariance.inverse() * off) / 6;
-  }
-  EXPECT_GE(beyond, 6);
-  EXPECT_GE(tracked_beyond, 0.8 * beyond);
-  EXPECT_GE(tracked, 14);
-  EXPECT_LT(squares / tracked, 2);
+  const Followed followed = follow(at, 16, 0.6, {.turned_deg = 2, .moved_mm = 0.4});
+  EXPECT_GE(followed.beyond, 6);
+  EXPECT_GE(followed.tracked_beyond, 0.8 * followed.beyond);
+  EXPECT_GE(followed.tracked, 14);
+  EXPECT_LT(followed.squares / followed.tracked, 2);
 }
 
 // A hand that trembles: the marker turns back every third picture, smeared over up to two cells and a half,
@@ -307,7 +323,6 @@ TEST_F(MarkerRecovery, FollowsAMarkerThatShakes) {
 // says nothing of where it goes on to; its smear does. What stands is no farther off than two fifths of what
 // is called wrong, and says so.
 TEST_F(MarkerRecovery, FollowsAMarkerThatTrembles) {
-  constexpr double kFrameS = 1.0 / 30, kExposureS = 0.75 * kFrameS;
   const RigidTransform rest = facing_pose(0.5, 0.3, 22, 20, 12, 25);
   const auto at = [&](double time_s) -> RigidTransform {
     geometry::Vector6d twist;
@@ -315,33 +330,11 @@ TEST_F(MarkerRecovery, FollowsAMarkerThatTrembles) {
         0.02 * std::sin(7 * time_s), 0.02 * std::sin(8 * time_s), 0.15 * std::cos(21 * time_s);
     return rest * geometry::exp(twist);
   };
-  int tracked = 0, beyond = 0, tracked_beyond = 0;
-  double squares = 0;
-  for (int frame = 0; frame < 24; ++frame) {
-    const double time_s = frame * kFrameS;
-    const RigidTransform truth = at(time_s);
-    const geometry::Vector6d first = geometry::log(truth.inverse() * at(time_s - 0.5 * kExposureS)),
-                             last = geometry::log(truth.inverse() * at(time_s + 0.5 * kExposureS));
-    PictureOptions options;
-    options.seed = static_cast<unsigned>(frame + 1);
-    const RenderedPicture shown(camera_, {{codes_[0], 4, truth, last - first, 4 * (first + last)}}, options);
-    const auto seen =
-        tracker_->track(shown.view(), camera_, static_cast<std::int64_t>(std::llround(1e9 * time_s)));
-    const double moved_cells = (last - first).head<3>().norm() * 6 / 4;
-    beyond += moved_cells > 1.25;
-    EXPECT_FALSE(seen[1].is_tracked());
-    if (!seen[0].is_tracked()) continue;
-    ++tracked;
-    tracked_beyond += moved_cells > 1.25;
-    const geometry::Vector6d off = geometry::log(seen[0].camera_from_marker.inverse() * truth);
-    EXPECT_LT(geometry::deg_from_rad(off.tail<3>().norm()), 2.5) << "frame " << frame;
-    EXPECT_LT(off.head<3>().norm(), 0.5) << "frame " << frame;
-    squares += off.dot(seen[0].covariance.inverse() * off) / 6;
-  }
-  EXPECT_GE(beyond, 12);
-  EXPECT_GE(tracked_beyond, 0.8 * beyond);
-  EXPECT_GE(tracked, 20);
-  EXPECT_LT(squares / tracked, 2);
+  const Followed followed = follow(at, 24, 0.75, {.turned_deg = 2.5, .moved_mm = 0.5});
+  EXPECT_GE(followed.beyond, 12);
+  EXPECT_GE(followed.tracked_beyond, 0.8 * followed.beyond);
+  EXPECT_GE(followed.tracked, 20);
+  EXPECT_LT(followed.squares / followed.tracked, 2);
 }
 
 // Where nothing is but tissue, nothing is read.
