@@ -4,7 +4,6 @@
 #include <dcmtk/dcmdata/dcistrmb.h>
 #include <dcmtk/dcmdata/dcistrmf.h>
 #include <dcmtk/dcmdata/dcrledrg.h>
-#include <dcmtk/dcmdata/dcspchrs.h>
 #include <dcmtk/dcmdata/dctk.h>
 #include <dcmtk/dcmjpeg/djdecode.h>
 #include <dcmtk/dcmjpls/djdecode.h>
@@ -125,20 +124,6 @@ std::string text_of(DcmItem& item, const DcmTagKey& key) {
   std::string text(found.c_str(), found.length());
   while (!text.empty() && text.back() == '\0') text.pop_back();
   return trimmed(text);
-}
-
-std::string utf8_text_of(DcmItem& dataset, const DcmTagKey& key) {
-  const std::string text = text_of(dataset, key);
-  // Japanese and Korean sets are told by escape sequences, which are ASCII.
-  const auto is_plain = [](char c) { return static_cast<unsigned char>(c) < 0x80 && c != '\x1b'; };
-  if (std::all_of(text.begin(), text.end(), is_plain)) return text;
-  DcmSpecificCharacterSet characters;
-  OFString converted;
-  // A set begins anew after these, within a name as well.
-  if (characters.selectCharacterSet(dataset).bad() ||
-      characters.convertString(text.c_str(), text.size(), converted, "\\^=").bad())
-    return text;
-  return {converted.c_str(), converted.length()};
 }
 
 std::optional<std::vector<double>> decimals_of(DcmItem& item, const DcmTagKey& key, std::size_t count) {

@@ -33,7 +33,8 @@ namespace arthronaut::images {
 
 // All values of the element, a backslash between them, without blanks around; empty when absent.
 [[nodiscard]] std::string text_of(DcmItem& item, const DcmTagKey& key);
-// The same in UTF-8, from the character set that the data set names. Text that is not of it stays as it is.
+// The same in UTF-8, from the character sets that the data set names, without control characters. Of text
+// that is not of them each byte beyond ASCII is a question mark.
 [[nodiscard]] std::string utf8_text_of(DcmItem& dataset, const DcmTagKey& key);
 // nullopt unless the element holds exactly `count` finite numbers.
 [[nodiscard]] std::optional<std::vector<double>> decimals_of(DcmItem& item, const DcmTagKey& key,

@@ -48,7 +48,7 @@ DicomSlice common_part(const std::filesystem::path& file, DcmDataset& dataset) {
   slice.file = file;
   slice.series_uid = text_of(dataset, DCM_SeriesInstanceUID);
   slice.series_number = text_of(dataset, DCM_SeriesNumber);
-  slice.description = text_of(dataset, DCM_SeriesDescription);
+  slice.description = utf8_text_of(dataset, DCM_SeriesDescription);
   slice.modality = text_of(dataset, DCM_Modality);
   slice.patient = {utf8_text_of(dataset, DCM_PatientName), utf8_text_of(dataset, DCM_PatientID),
                    text_of(dataset, DCM_PatientBirthDate)};

@@ -57,14 +57,35 @@ TEST(DicomOrigin, NamesAreInUtf8) {
   EXPECT_EQ(found.origin.referring_physician, "Häuser");
 }
 
-// Where the data set names no character set, or another than it is, the bytes stay.
-TEST(DicomOrigin, NamesOfAnUnknownCharacterSetStayAsTheyAre) {
+std::string name_in_utf8(const std::string& name, const std::string& character_set) {
   const test::TemporaryFolder folder;
   test::DicomSeriesForm form;
-  form.patient.name = "M\xfcller";
-  form.character_set = "ISO_IR 4711";
+  form.patient.name = name;
+  form.character_set = character_set;
   test::write_dicom_series(folder.path(), test::oblique_volume(), form);
-  EXPECT_EQ(read(folder.path()).volume.patient.name, "M\xfcller");
+  return read(folder.path()).volume.patient.name;
+}
+
+// The names of the standard's own examples (PS3.5, annexes H and I): kanji by escape sequences, after ASCII
+// and after katakana; hangul.
+TEST(DicomOrigin, NamesOfEastAsiaAreInUtf8) {
+  EXPECT_EQ(
+      name_in_utf8("Yamada^Tarou=\x1b$B;3ED\x1b(B^\x1b$BB@O:\x1b(B=\x1b$B$d$^$@\x1b(B^\x1b$B$?$m$&\x1b(B",
+                   "\\ISO 2022 IR 87"),
+      "Yamada^Tarou=山田^太郎=やまだ^たろう");
+  EXPECT_EQ(name_in_utf8("\xd4\xcf\xc0\xde^\xc0\xdb\xb3=\x1b$B;3ED\x1b(J^\x1b$BB@O:\x1b(J",
+                         "ISO 2022 IR 13\\ISO 2022 IR 87"),
+            "ﾔﾏﾀﾞ^ﾀﾛｳ=山田^太郎");
+  EXPECT_EQ(name_in_utf8("Hong^Gildong=\x1b$)C\xfb\xf3^\x1b$)C\xd1\xce\xd4\xd7", "\\ISO 2022 IR 149"),
+            "Hong^Gildong=洪^吉洞");
+}
+
+// Where the data set names no character set, or another than it is, nobody knows which letter was meant; what
+// is shown, stored and sent on is text all the same.
+TEST(DicomOrigin, LettersOfAnUnknownCharacterSetAreQuestionMarks) {
+  EXPECT_EQ(name_in_utf8("M\xfcller", "ISO_IR 4711"), "M?ller");
+  EXPECT_EQ(name_in_utf8("\x1b$B;", "\\ISO 2022 IR 87"), "$B;");
+  EXPECT_EQ(name_in_utf8("M\xc3\xbcller", "ISO_IR 4711"), "Müller");
 }
 
 // Some scanners mark each image, some the series; "B" and nothing are no side, nor are both.
