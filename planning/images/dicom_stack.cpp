@@ -1,7 +1,9 @@
 // From the slices of a series to the stack that a volume is made of.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <set>
 
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -15,6 +17,59 @@ namespace {
 
 // Slices lie where their positions say, to the rounding of scanners' headers; a missing slice is 100 % off.
 constexpr double kPositionTolerance_fraction = 0.05;
+
+std::string names_of(const DicomSlices& slices) {
+  constexpr std::size_t kMostNamed = 3;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(slices.size(), kMostNamed); ++i)
+    names += (i == 0 ? "" : ", ") + slices[i].name();
+  return slices.size() > kMostNamed ? names + ", ..." : names;
+}
+
+// Takes out what `is_out` says, which is given back in its order.
+template <class IsOut>
+DicomSlices taken_out(DicomSlices& slices, const IsOut& is_out) {
+  const auto out = std::stable_partition(slices.begin(), slices.end(),
+                                         [&](const DicomSlice& slice) { return !is_out(slice); });
+  DicomSlices taken(std::make_move_iterator(out), std::make_move_iterator(slices.end()));
+  slices.erase(out, slices.end());
+  return taken;
+}
+
+// A folder that was copied into itself holds images twice: the same image by its own name.
+void leave_out_copies(DicomSlices& slices, std::vector<std::string>& notes) {
+  std::set<std::string> seen;
+  const DicomSlices copies = taken_out(slices, [&](const DicomSlice& slice) {
+    const auto& uids = slice.origin->sop_instance_uids;
+    return slice.frames_in_file == 1 && !uids.empty() && !seen.insert(uids.front()).second;
+  });
+  if (copies.empty()) return;
+  notes.push_back("left out: " + std::to_string(copies.size()) + (copies.size() == 1 ? " copy" : " copies") +
+                  " of images that are there already (" + names_of(copies) + ")");
+}
+
+// Scouts often share the series of the slices that were planned on them: the few that lie across all others.
+void leave_out_scouts(DicomSlices& slices, std::vector<std::string>& notes) {
+  constexpr std::size_t kSlicesAScout = 4;  // as many others at least
+  const auto lie_across = [](const DicomSlice& a, const DicomSlice& b) {
+    constexpr double kAcross_cos = 0.94;  // 20 degrees; slices of one stack have one direction
+    return a.has_geometry && b.has_geometry && std::abs(a.normal().dot(b.normal())) < kAcross_cos;
+  };
+  const auto across = [&](const DicomSlice& one) {
+    return static_cast<std::size_t>(std::count_if(
+        slices.begin(), slices.end(), [&](const DicomSlice& other) { return lie_across(one, other); }));
+  };
+  if (across(slices.front()) == 0) return;
+  const DicomSlice of_most =
+      *std::min_element(slices.begin(), slices.end(),
+                        [&](const DicomSlice& a, const DicomSlice& b) { return across(a) < across(b); });
+  if (across(of_most) * (kSlicesAScout + 1) > slices.size()) return;
+  const DicomSlices scouts =
+      taken_out(slices, [&](const DicomSlice& slice) { return lie_across(slice, of_most); });
+  notes.push_back("left out: " + std::to_string(scouts.size()) +
+                  (scouts.size() == 1 ? " image that lies" : " images that lie") + " across the others (" +
+                  names_of(scouts) + ")");
+}
 
 void refuse_odd_ones(const DicomSlices& slices) {
   const DicomSlice& first = slices.front();
@@ -127,6 +182,8 @@ void note_steps_of_numbers(const DicomSlices& sorted, std::vector<std::string>& 
 
 DicomStack stacked(const std::filesystem::path& source, DicomSlices slices) {
   DicomStack stack;
+  leave_out_copies(slices, stack.notes);
+  leave_out_scouts(slices, stack.notes);
   refuse_odd_ones(slices);
   sort_by_position(slices);
   const bool has_echoes = has_position_twice(slices);
@@ -140,7 +197,8 @@ DicomStack stacked(const std::filesystem::path& source, DicomSlices slices) {
   for (std::size_t i = 0; i + 1 < slices.size(); ++i) {
     if (slices[i + 1].depth_mm() - slices[i].depth_mm() < 0.01) {
       throw InvalidInput(slices[i + 1].file, slices[i + 1].place(),
-                         "lies at the same place as " + slices[i].name());
+                         "lies at the same place as " + slices[i].name() +
+                             ": which one is of the series? Put the other elsewhere");
     }
   }
   stack.step_mm = slice_step_mm(slices);

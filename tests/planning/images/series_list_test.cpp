@@ -6,6 +6,7 @@
 
 #include "planning/geometry/error.h"
 #include "tests/message_of.h"
+#include "tests/planning/images/dicom_series_form.h"
 #include "tests/planning/images/enhanced_dicom.h"
 #include "tests/planning/images/volume_forms.h"
 #include "tests/temporary_folder.h"
@@ -110,6 +111,18 @@ TEST(SeriesList, FilesAreInTheOrderOfTheSlices) {
     EXPECT_GT(depth, last);
     last = depth;
   }
+}
+
+// A folder that was copied into itself: each image is there once, by its own name.
+TEST(SeriesList, ACopyOfAnImageIsLeftOutAndSaid) {
+  const TemporaryFolder folder;
+  test::write_dicom_series(folder.path(), test::oblique_volume(), {});
+  std::filesystem::copy_file(folder / "slice1001.dcm", folder / "slice1001 (1).dcm");
+  const auto list = find_series(folder.path());
+  ASSERT_EQ(list.series.size(), 1U);
+  EXPECT_EQ(list.series.front().refusal, "");
+  EXPECT_EQ(list.series.front().size.z(), test::oblique_volume().size.z());
+  EXPECT_THAT(list.series.front().warnings, testing::Contains(HasSubstr("1 copy of images")));
 }
 
 // A scout beside the one volume is nobody's choice.

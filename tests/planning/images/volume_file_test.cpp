@@ -232,6 +232,22 @@ TEST(DicomSeries, TheSameSliceTwiceIsRefused) {
               AllOf(HasSubstr("same place"), HasSubstr("copy.dcm")));
 }
 
+// Scanners put the scout into the series that was planned on it, first of all or last.
+TEST(DicomSeries, AScoutAcrossTheSlicesIsLeftOutAndSaid) {
+  for (const char* name : {"0_scout.dcm", "z_scout.dcm"}) {
+    const TemporaryFolder folder;
+    const auto slices = test::dicom_slices(even_volume());
+    write_series(folder, slices);
+    test::DicomSliceForm scout = slices.begin()->second;
+    scout.along_rows = scout.along_columns.cross(scout.along_rows);
+    std::swap(scout.rows, scout.columns);
+    write_bytes(folder / name, test::dicom(scout));
+    const Volume volume = read_volume(folder.path());
+    expect_same(volume, even_volume());
+    EXPECT_THAT(volume.notes, testing::Contains(AllOf(HasSubstr("across the others"), HasSubstr(name))));
+  }
+}
+
 TEST(DicomSeries, OfSeveralEchoesTheFirstIsTakenAndSaid) {
   const TemporaryFolder folder;
   for (const char* echo : {"30", "10", "20.5"}) {
