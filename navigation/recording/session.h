@@ -4,8 +4,7 @@
 //   session.json        format "arthronaut.session": bone, medium, tools' roles, source, versions
 //   session.sqlite      WAL while it is written; frames, poses, marker states, tips, guidance, events
 //   video.* video_2.*   the video: a file source is copied, a stream's packets are kept as they came, frames
-//   of
-//                       a device or the simulator are encoded (kept_video.h).
+//                       of a device or the simulator are encoded (kept_video.h).
 //                       pictures/ holds copied stills; an absolute path stands in session.json when copying
 //                       was declined
 //   registration_N.json each registration at the moment it took effect

@@ -8,8 +8,7 @@
 // there, since the hole is cut at a slant and not since it breaks out. Lip and breach are told apart by the
 // face that such a line comes out of, followed from the mouth's rim on in every half plane through the axis:
 //   lip     the mouth's own face: it turns less than 45 deg from the mouth's normal, and it faces the drill
-//   by
-//           more than 15 deg (at the exit: faces away from it)
+//           by more than 15 deg (at the exit: faces away from it)
 //   wall    all that comes after it. A face that turns away for less than 1 mm is roughness of the lip.
 // Which way a face looks is taken without the roughness of its triangles (geometry/smooth_normals.h), so that
 // the number does not jump while a tunnel is dragged over a surface out of a CT. So an edge beside the mouth,
