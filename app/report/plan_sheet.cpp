@@ -220,8 +220,10 @@ void Sheet::tunnel_outlines(const PlanePicture& picture, BoneKind kind) {
 void Sheet::slice(const PlanePicture& picture, BoneKind kind, const std::optional<images::Volume>& volume) {
   std::vector<std::uint8_t> grey(static_cast<std::size_t>(picture.size_px.prod()), 255);
   if (volume) {
-    scene::reslice(*volume, picture.plane, picture.size_px,
-                   volume->modality == "CT" ? scene::kBoneWindow : scene::automatic_window(*volume), grey);
+    scene::reslice(
+        *volume, picture.plane, picture.size_px,
+        volume->modality == images::Modality::Ct ? scene::kBoneWindow : scene::automatic_window(*volume),
+        grey);
   }
   put_grey(picture, grey);
   for (const auto& [from, to] :

@@ -103,12 +103,12 @@ TEST_F(PlanWindow, SlicesFollowTheTunnel) {
   cases::Case knee = cases::load_case(case_folder());
   images::Volume volume;
   volume.size = {60, 60, 60};
-  volume.modality = "CT";
+  volume.modality_in_file = "CT";
   volume.lps_from_index.linear() *= 2.5;
   volume.lps_from_index.translation() = Eigen::Vector3d(-75, -75, -75);
   for (int i = 0; i < 60 * 60 * 60; ++i) volume.values.push_back(static_cast<float>(i % 60 * 20));
   knee.images.push_back({.file = "",
-                         .modality = volume.modality,
+                         .modality = volume.modality_in_file,
                          .source = "NRRD",
                          .size = volume.size,
                          .spacing_mm = volume.spacing_mm()});

@@ -278,7 +278,6 @@ TEST(BoneImport, ABoneThatIsAloneInItsImagesIsHeldAgainstItsSide) {
   test::KnownCtOptions coarse;
   coarse.spacing_mm = {0.8, 0.8, 1};
   images::Volume volume = test::known_ct({phantom.femur.mesh}, coarse);
-  volume.modality = "CT";
   images::write_volume(folder / "knee.nrrd", volume);
   BoneImportOptions options;
   options.side = Side::Left;
