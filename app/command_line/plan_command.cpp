@@ -187,10 +187,10 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
       const bool is_judged = !verdict.source.empty();  // the default that was made now
       tunnels_json.push_back(tunnel_to_json(
           knee, review, key, is_judged ? verdict : judged(knee, review, key, doubts, verdict)));
-      tunnels_json.back()["bone_doubts"] = doubts[key.bone];
+      tunnels_json.back()["bone_doubts"] = words_of(doubts[key.bone]);
     } else {
       describe_tunnel(context, knee, review, key, verdict);
-      for (const std::string& doubt : doubts[key.bone]) context.say("  ! Bone: " + doubt);
+      for (const std::string& doubt : words_of(doubts[key.bone])) context.say("  ! Bone: " + doubt);
     }
   }
   if (!arguments.as_json) {

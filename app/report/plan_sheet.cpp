@@ -303,7 +303,7 @@ double Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm, d
     y_mm += pdf_.paragraph_height_mm(width_mm - word_mm, text, {.size_pt = size_pt}) + gap_mm;
   };
   if (const auto doubts = content_.bone_doubts.find(kind); doubts != content_.bone_doubts.end())
-    for (const std::string& doubt : doubts->second) row("look", true, "Bone: " + doubt);
+    for (const std::string& doubt : words_of(doubts->second)) row("look", true, "Bone: " + doubt);
   if (const std::string doubt = grid_doubt(content_, kind); !doubt.empty())
     row("look", true, "Grid: " + doubt);
   if (of_graft == nullptr) {

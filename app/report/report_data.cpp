@@ -238,7 +238,7 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
                        {"birth_date", content.identity->birth_date}};
   json["bone_doubts"] = ordered_json::object();
   for (const auto& [kind, doubts] : content.bone_doubts)
-    json["bone_doubts"][std::string(bones::to_text(kind))] = doubts;
+    json["bone_doubts"][std::string(bones::to_text(kind))] = words_of(doubts);
   json["proposed_landmarks"] = ordered_json::array();  // bones whose grid and axes follow from such
   for (const auto& [kind, bone] : content.knee.bones)
     if (content.review->has_bone(kind) && content.review->bone(kind).surroundings.has_grid() &&

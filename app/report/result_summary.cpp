@@ -96,7 +96,7 @@ void draw_plan_verdicts(FlowingPages& pages, const Content& content) {
     const auto checks = content.review->checks(key);
     const auto doubts = content.bone_doubts.find(key.bone);
     const plan_review::TunnelVerdict verdict = plan_review::verdict_of(
-        checks, doubts == content.bone_doubts.end() ? std::vector<std::string>{} : doubts->second,
+        checks, doubts == content.bone_doubts.end() ? std::vector<cases::BoneDoubt>{} : doubts->second,
         grid_doubt(content, key.bone));
     const auto unmade =
         std::ranges::count(checks, tunnels::PlanCheck::Verdict::NotChecked, &tunnels::PlanCheck::verdict);

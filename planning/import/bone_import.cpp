@@ -236,10 +236,6 @@ void import_ct(BoneImages& images, const BoneImportOptions& options, BoneImport&
     ImportedBone& imported = result.bones.back();
     imported.lines.insert(imported.lines.begin(), bone.notes.begin(), bone.notes.end());
     imported.doubts.insert(imported.doubts.begin(), bone.doubts.begin(), bone.doubts.end());
-    if (result.side_by_fibula && result.side && *result.side_by_fibula != *result.side) {
-      imported.doubts.push_back(other_side_by_fibula(*result.side_by_fibula, *result.side));
-      result.side_is_contradicted = true;
-    }
   }
   if (!result.side && result.side_by_fibula) {
     result.side = result.side_by_fibula;
@@ -314,8 +310,6 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
                                .volume = encoded(volume)};
   tell({ImportStage::LookingAtBones});
   check_shapes(result, result.side_by_fibula.has_value());
-  // After the shapes, which are looked at where nothing speaks against a bone yet.
-  check_side_of_images(result);
   check_holes(result);
   if (is_ct && !options.kind && result.bones.size() == 1)
     result.bones.front().doubts.push_back(

@@ -61,7 +61,7 @@ TEST(CaseImport, ABoneThatIsShapedAsOfTheOtherKneeIsDoubted) {
   tibia.bones[0].shape_was_judged = true;
   tibia.bones[0].side_by_shape = Side::Left;
   add_to_case(folder / "a", tibia, "", "bone.stl");
-  EXPECT_THAT(cases::load_bone_doubts(folder / "a").at(BoneKind::Tibia),
+  EXPECT_THAT(words_of(cases::load_bone_doubts(folder / "a").at(BoneKind::Tibia)),
               ElementsAre(HasSubstr("by the shape of the bone it is a left knee, but the side is right")));
 }
 
@@ -185,7 +185,7 @@ TEST(CaseImport, Hazard46WhatSpokeAgainstABoneStaysWithTheCase) {
   BoneImport cut = imported(BoneKind::Femur);
   cut.bones[0].doubts = {"the images end within it"};
   add_to_case(folder / "a", cut, "", "ct");
-  const cases::BoneDoubts of_femur{{BoneKind::Femur, cut.bones[0].doubts}};
+  const cases::BoneDoubts of_femur{{BoneKind::Femur, {cut.bones[0].doubts[0]}}};
   EXPECT_EQ(cases::load_bone_doubts(folder / "a"), of_femur);
   add_to_case(folder / "a", imported(BoneKind::Tibia), "", "bone.stl");
   EXPECT_EQ(cases::load_bone_doubts(folder / "a"), of_femur) << "a tibia changes nothing of it";
