@@ -367,8 +367,8 @@ void add_plan_command(CLI::App& app, Context& context) {
     if (writes) {
       verdict.kept_version = keep_replaced(arguments->case_folder, before, knee, notes);
       cases::name_meshes(knee);
+      if (arguments->by_default) cases::save_landmarks(arguments->case_folder, knee);
       knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
-      if (arguments->by_default) cases::save_case(arguments->case_folder, knee);  // with its landmarks
     }
     if (!arguments->as_json)
       for (const std::string& note : notes) context.say(note);
