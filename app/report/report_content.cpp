@@ -269,18 +269,15 @@ std::string changed_since(const Content& content, const tunnels::Tunnel& guided)
                           ": what follows is against the plan that guided, not the one on the first pages.";
 }
 
-std::string verdict_of(const Content& content, const tunnels::TunnelKey& key) {
+postop::ComparisonVerdict verdict_of(const Content& content, const tunnels::TunnelKey& key) {
   const postop::Comparison& comparison = content.postoperative.at(key);
-  if (!comparison.bone.is_found) return "bone not found in the images";
-  if (!comparison.tunnel.is_found) return "no tunnel found";
-  if (!is_of_the_plan(content, key, comparison.tunnel)) return "of an earlier plan";
-  return comparison.bone.reliable && comparison.tunnel.reliable ? "reliable" : "not reliable";
+  return postop::verdict_of(comparison, is_of_the_plan(content, key, comparison.tunnel));
 }
 
 std::vector<std::string> doubts_of(const Content& content, const tunnels::TunnelKey& key) {
   const postop::Comparison& comparison = content.postoperative.at(key);
   std::vector<std::string> doubts;
-  if (comparison.tunnel.is_found && !is_of_the_plan(content, key, comparison.tunnel))
+  if (verdict_of(content, key) == postop::ComparisonVerdict::OfAnEarlierPlan)
     doubts.emplace_back("the plan was changed since: compare again");
   for (const auto* reasons : {&comparison.bone.reasons, &comparison.tunnel.reasons})
     for (const std::string& reason : *reasons)

@@ -107,8 +107,7 @@ inline constexpr double kGatheredShare = 0.3;
 [[nodiscard]] std::string difference_from_now(const Content& content, const tunnels::Tunnel& guided);
 // Where the plan is not the one any more that guided there: how it differs; else empty.
 [[nodiscard]] std::string changed_since(const Content& content, const tunnels::Tunnel& guided);
-// "reliable", "not reliable", "of an earlier plan", "no tunnel found", "bone not found in the images".
-[[nodiscard]] std::string verdict_of(const Content& content, const tunnels::TunnelKey& key);
+[[nodiscard]] postop::ComparisonVerdict verdict_of(const Content& content, const tunnels::TunnelKey& key);
 // Why it must not be relied on, each reason once; empty: reliable.
 [[nodiscard]] std::vector<std::string> doubts_of(const Content& content, const tunnels::TunnelKey& key);
 

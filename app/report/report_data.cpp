@@ -184,14 +184,15 @@ ordered_json postoperative_of(const Content& content) {
     const auto number = [&](double value) {
       return found.is_found && std::isfinite(value) ? ordered_json(value) : ordered_json();
     };
-    ordered_json node = {{"tunnel", tunnels::name_of(key)}, {"verdict", verdict_of(content, key)}};
-    node["reliable"] = node["verdict"] == "reliable";
+    const postop::ComparisonVerdict verdict = verdict_of(content, key);
+    ordered_json node = {{"tunnel", tunnels::name_of(key)}, {"verdict", to_text(verdict)}};
+    node["reliable"] = verdict == postop::ComparisonVerdict::Reliable;
     node["reasons"] = doubts_of(content, key);
     if (!comparison.kept_because.empty()) node["kept_because"] = comparison.kept_because;
     node["planned"] = nullptr;
     // Of an earlier plan the differences alone are known, not what they are from.
     if (const auto plan = content.knee.plan.tunnels.find(key);
-        plan != content.knee.plan.tunnels.end() && node["verdict"] != "of an earlier plan")
+        plan != content.knee.plan.tunnels.end() && verdict != postop::ComparisonVerdict::OfAnEarlierPlan)
       node["planned"] = json_of(plan->second);
     node["achieved"] = nullptr;
     if (found.is_found) node["achieved"] = json_of(found.tunnel);

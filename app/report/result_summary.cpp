@@ -29,11 +29,12 @@ std::string by_navigation(const Content& content, const TunnelResult& result) {
 
 std::string by_ct(const Content& content, const TunnelResult& result) {
   if (result.imaged == nullptr) return "\u2013";
-  const std::string verdict = verdict_of(content, result.key);
+  const postop::ComparisonVerdict verdict = verdict_of(content, result.key);
+  const std::string words(to_text(verdict));
   const postop::AchievedTunnel& found = result.imaged->tunnel;
-  if (!found.is_found) return verdict;
+  if (!found.is_found) return words;
   return off_by(found.offset_mm, geometry::deg_from_rad(found.angle_rad)) +
-         (verdict == "reliable" ? "" : "; " + verdict) +
+         (verdict == postop::ComparisonVerdict::Reliable ? "" : "; " + words) +
          (result.imaged->kept_because.empty() ? "" : "; kept from earlier images");
 }
 
