@@ -97,7 +97,7 @@ ordered_json others_of(const Content& content) {
     node["plans"] = other.plans;
     node["plan_warnings"] = other.plan_warnings;
     node["safety"] = ordered_json::object();
-    for (const auto& row : other.safety) node["safety"][row[0]] = row[1];
+    for (const auto& row : rows_of(other.safety)) node["safety"][row[0]] = row[1];
     all.push_back(std::move(node));
   }
   return all;
@@ -144,7 +144,7 @@ ordered_json session_of(const Content& content) {
   }
   node["plan_warnings"] = plan_warnings(session, content);
   node["safety"] = ordered_json::object();
-  for (const auto& row : safety_rows(session, content.cut_short)) node["safety"][row[0]] = row[1];
+  for (const auto& row : rows_of(content.safety)) node["safety"][row[0]] = row[1];
   node["steps"] = ordered_json::array();
   for (const Step& step : steps_of(session))
     node["steps"].push_back({{"time_s", step.time_s}, {"what", step.words}});

@@ -41,7 +41,7 @@ std::string by_ct(const Content& content, const TunnelResult& result) {
 // By what a bone's tunnel was drilled, or would have been: "Femur: registration reliable, ...".
 std::string by_registration(bones::BoneKind bone,
                             const std::optional<registration::RegistrationSummary>& registration,
-                            const std::string& without, const std::vector<std::vector<std::string>>& safety) {
+                            const std::string& without, const Safety& safety) {
   std::string words = (bone == bones::BoneKind::Femur ? "Femur: " : "Tibia: ") + without;
   if (registration)
     words = std::string(bone == bones::BoneKind::Femur ? "Femur" : "Tibia") + ": registration " +
@@ -49,17 +49,8 @@ std::string by_registration(bones::BoneKind bone,
             (registration->has_pose
                  ? ", predicted error at the target " + number(registration->predicted_tre_mm, " mm", 2)
                  : "");
-  words += ".";
-  for (const std::vector<std::string>& row : safety)
-    if (row.front() == kVerificationRow || row.front() == kAlarmsRow)
-      words += " " + row.front() + ": " + row.back() + ".";
-  return words;
-}
-
-// Whether the CT's numbers stand, whatever became of the plan since.
-bool is_relied_on(const postop::Comparison& comparison) {
-  return comparison.bone.is_found && comparison.bone.reliable && comparison.tunnel.is_found &&
-         comparison.tunnel.reliable;
+  return words + ". Verification: " + verification_in_words(safety) +
+         ". Alarms, void registrations: " + alarms_in_words(safety) + ".";
 }
 
 }  // namespace
@@ -137,7 +128,7 @@ void draw_result_summary(FlowingPages& pages, const Content& content) {
   pages.sentence(by_registration(content.session->header().bone, content.registration,
                                  content.registration_problem.empty() ? "no registration was kept"
                                                                       : "NOT READABLE: the registration",
-                                 safety_rows(*content.session, content.cut_short)),
+                                 content.safety),
                  {.size_pt = 8.5});
   for (const Content::Other& other : content.others)
     pages.sentence(by_registration(other.bone, other.registration,
