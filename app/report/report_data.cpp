@@ -113,7 +113,7 @@ ordered_json session_of(const Content& content) {
                        {"bone", bones::to_text(header.bone)},
                        {"side", bones::to_text(header.side)},
                        {"is_of_another_surface", content.is_of_another_surface},
-                       {"source_kind", header.source_kind},
+                       {"source_kind", header.source_kind ? sources::to_text(*header.source_kind) : ""},
                        {"medium", camera::medium_to_text(header.refractive_index)},
                        {"was_finished", session.was_finished()},
                        {"frames", figures.frames},

@@ -108,7 +108,7 @@ void draw_result_summary(FlowingPages& pages, const Content& content) {
   const std::vector<TunnelResult> results = results_of(content);
   if (!content.session && content.postoperative.empty()) return;
   pages.heading("Result");
-  if (content.session && content.session->header().source_kind == "simulation")
+  if (content.session && content.session->header().source_kind == sources::SourceKind::Simulation)
     pages.sentence("SIMULATION: nobody's knee.", {.bold = true, .ink = kWarning});
   std::vector<std::string> warnings;
   for (const Content::Other& other : content.others)

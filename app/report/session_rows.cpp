@@ -17,8 +17,7 @@ namespace arthronaut::report {
 
 std::string neutral_source(const recording::SessionHeader& header) {
   constexpr std::size_t kLongestExtension = 5;  // with its dot; what is longer may be a name
-  const auto kind = sources::source_kind_from_text(header.source_kind);
-  if (kind && *kind != sources::SourceKind::Recording) return header.source;
+  if (header.source_kind && *header.source_kind != sources::SourceKind::Recording) return header.source;
   const std::string extension = std::filesystem::path(header.source).extension().string();
   const bool is_type = extension.size() > 1 && extension.size() <= kLongestExtension &&
                        std::all_of(extension.begin() + 1, extension.end(),
@@ -35,7 +34,7 @@ std::string bone_in_words(const recording::SessionHeader& header, bones::Side of
 }
 
 std::string kind_in_words(const recording::SessionHeader& header) {
-  const auto kind = sources::source_kind_from_text(header.source_kind);
+  const auto kind = header.source_kind;
   if (!kind) return "not recorded";
   return *kind == sources::SourceKind::Live        ? "live: a camera, as it came"
          : *kind == sources::SourceKind::Recording ? "recording: a video that was made before"
@@ -151,7 +150,7 @@ Safety safety_of(const recording::RecordedSession& session, bool is_being_record
                         : was_verified                     ? OfAnEarlierRegistration
                         : safety.guidance_began_without    ? Skipped
                                                            : None;
-  const auto kind = sources::source_kind_from_text(session.header().source_kind);
+  const auto kind = session.header().source_kind;
   const bool is_live = kind == sources::SourceKind::Live;
   safety.time_out = is_confirmed ? Safety::TimeOut::Confirmed
                     : is_live    ? Safety::TimeOut::NotConfirmed

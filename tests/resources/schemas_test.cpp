@@ -243,7 +243,7 @@ TEST_F(Schemas, DescribeTheSession) {
   const fs::path file = folder_ / "session.json";
   recording::write_session_header(folder_.path(), header, options);
   expect_described(file, "session", [&] { (void)recording::read_session_header(folder_.path(), options); });
-  header.source_kind = "live";
+  header.source_kind = sources::SourceKind::Live;
   header.mesh_sha256 = header.build = "5f";
   header.continues = "0000-20260131-110000";
   header.registers_after_mm = 12;

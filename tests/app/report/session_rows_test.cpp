@@ -23,7 +23,7 @@ pipeline::PipelineOptions options() {
 TEST(SessionRows, Hazard19ARecordingsFileIsNotNamed) {
   const auto neutral = [](const char* kind, const char* source) {
     recording::SessionHeader header;
-    header.source_kind = kind;
+    header.source_kind = sources::source_kind_from_text(kind);
     header.source = source;
     return neutral_source(header);
   };
@@ -124,7 +124,7 @@ std::string row_of(const Safety& safety, const std::string& name) {
 
 recording::SessionHeader live_header() {
   recording::SessionHeader header;
-  header.source_kind = "live";
+  header.source_kind = sources::SourceKind::Live;
   return header;
 }
 
