@@ -307,11 +307,9 @@ void PlanHistory::save() {
     if (now.measurements != saved_.measurements) cases::save_measurements(case_folder_, now.measurements);
     if (now.landmarks != saved_.landmarks || now.landmark_states != saved_.landmark_states) {
       if (cases::plan_version(case_folder_) != version_) return set_conflict();
-      cases::save_case(case_folder_, model_->knee());  // the plan with it
-      version_ = cases::plan_version(case_folder_);
-    } else {
-      version_ = cases::save_plan_over(case_folder_, now.plan, version_);
+      cases::save_landmarks(case_folder_, model_->knee());
     }
+    version_ = cases::save_plan_over(case_folder_, now.plan, version_);
     saved_ = now;
     status_.save = PlanStatus::Save::Saved;
     status_.text = "saved at " + files::local_time_in_words(files::utc_now()).substr(11);

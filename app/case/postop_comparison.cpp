@@ -105,9 +105,6 @@ std::vector<std::string> PostopAnswer::doubts() const {
 }
 
 std::vector<BetterKept> better_kept_in(const std::filesystem::path& file, const PostopAnswer& answer) {
-  const auto is_relied_on = [](const postop::Comparison& one) {
-    return one.bone.reliable && one.tunnel.reliable;
-  };
   std::vector<BetterKept> better;
   try {
     if (!std::filesystem::is_regular_file(file)) return better;

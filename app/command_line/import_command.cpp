@@ -78,7 +78,7 @@ void import(Context& context, const ImportArguments& arguments) {
     const std::string bone(bones::to_text(imported.bone.kind));
     for (const auto& line : imported.lines) context.say(bone + ": " + line);
     for (const auto& doubt : importing::doubts_with(import, imported, target.side))
-      doubts.push_back(bone + ": " + doubt);
+      doubts.push_back(bone + ": " + cases::words_of(doubt));
     if (const auto space = imported.likelier_in())
       doubts.push_back(bone + ": --space " + std::string(bones::to_text(*space)) +
                        " reads it the other way round");

@@ -187,10 +187,10 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
       const bool is_judged = !verdict.source.empty();  // the default that was made now
       tunnels_json.push_back(tunnel_to_json(
           knee, review, key, is_judged ? verdict : judged(knee, review, key, doubts, verdict)));
-      tunnels_json.back()["bone_doubts"] = doubts[key.bone];
+      tunnels_json.back()["bone_doubts"] = words_of(doubts[key.bone]);
     } else {
       describe_tunnel(context, knee, review, key, verdict);
-      for (const std::string& doubt : doubts[key.bone]) context.say("  ! Bone: " + doubt);
+      for (const std::string& doubt : words_of(doubts[key.bone])) context.say("  ! Bone: " + doubt);
     }
   }
   if (!arguments.as_json) {
@@ -367,8 +367,8 @@ void add_plan_command(CLI::App& app, Context& context) {
     if (writes) {
       verdict.kept_version = keep_replaced(arguments->case_folder, before, knee, notes);
       cases::name_meshes(knee);
+      if (arguments->by_default) cases::save_landmarks(arguments->case_folder, knee);
       knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
-      if (arguments->by_default) cases::save_case(arguments->case_folder, knee);  // with its landmarks
     }
     if (!arguments->as_json)
       for (const std::string& note : notes) context.say(note);

@@ -31,7 +31,7 @@ nlohmann::ordered_json json_of(const recording::ResumeSearch& search) {
   const operation::ResumeOperation& was = found.operation;
   json["session"] = was.session;
   json["bone"] = bones::to_text(found.header.bone);
-  json["source"] = found.header.source_kind;
+  json["source"] = sources::to_text(found.header.source_kind.value());
   json["was_cut_off"] = !found.was_finished && !found.is_being_recorded;
   json["is_being_recorded"] = found.is_being_recorded;
   json["was_declined"] = found.was_declined;
@@ -59,7 +59,7 @@ nlohmann::ordered_json json_of(const recording::ResumeSearch& search) {
 void say(const Context& context, const recording::Resumable& found) {
   const operation::ResumeOperation& was = found.operation;
   context.say("session " + was.session + ", " + std::string(bones::to_text(found.header.bone)) + ", " +
-              found.header.source_kind +
+              std::string(sources::to_text(found.header.source_kind.value())) +
               (found.is_being_recorded ? ", being recorded now"
                : found.was_finished    ? ""
                                        : ", cut off") +

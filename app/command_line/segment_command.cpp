@@ -139,7 +139,7 @@ std::vector<std::string> judge(const Context& context, const SegmentArguments& a
     const importing::BoneImport import = importing::import_bones(arguments.output, options);
     const importing::ImportedBone& made = import.bones.front();
     const double labelled_ml = painting::volume_ml(labels, volume, static_cast<std::uint8_t>(label));
-    segmented.push_back({importing::quality_of(made, labelled_ml, volume), made.bone.mesh});
+    segmented.push_back({importing::quality_of(import, made, labelled_ml, volume), made.bone.mesh});
     for (const importing::QualityLine& line : importing::quality_lines(segmented.back().quality)) {
       const std::string words = std::string(bones::to_text(kind)) + ": " + line.name + ": " + line.text;
       if (line.verdict == importing::QualityVerdict::Good ||

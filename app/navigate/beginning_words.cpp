@@ -124,7 +124,9 @@ Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedT
   card.lines.push_back({Severity::Quiet, "Session",
                         was.session + ", " + std::string(bones::to_text(found.header.bone)) + ", " +
                             (found.was_finished ? "ended " : "cut off ") + ago(now - found.last_written)});
-  card.lines.push_back({Severity::Quiet, "Source", found.header.source_kind + ": " + found.header.source});
+  card.lines.push_back(
+      {Severity::Quiet, "Source",
+       std::string(sources::to_text(found.header.source_kind.value())) + ": " + found.header.source});
   card.lines.push_back(registration_line(found));
   card.lines.push_back({Severity::Quiet, "Kept as history",
                         count_of(static_cast<std::size_t>(was.stroke_count), "stroke") +

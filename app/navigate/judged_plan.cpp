@@ -12,7 +12,7 @@ void JudgedPlan::open(const std::filesystem::path& case_folder) {
   try {
     doubts_ = cases::load_bone_doubts(case_folder);
   } catch (const std::runtime_error&) {
-    const std::vector<std::string> unread = {"what spoke against it cannot be read"};
+    const std::vector<cases::BoneDoubt> unread = {"what spoke against it cannot be read"};
     doubts_ = {{bones::BoneKind::Femur, unread}, {bones::BoneKind::Tibia, unread}};
   }
 }
@@ -37,7 +37,7 @@ void JudgedPlan::judge(const open_case::PlanModel& model,
                                              model.knee_surroundings(), model.landmark_check(bone));
   const auto doubts = doubts_.find(bone);
   verdict_ = plan_review::verdict_of(
-      checks, doubts == doubts_.end() ? std::vector<std::string>{} : doubts->second,
+      checks, doubts == doubts_.end() ? std::vector<cases::BoneDoubt>{} : doubts->second,
       model.surroundings(bone).has_grid()
           ? landmarks::grid_doubt(bone, model.landmarks(bone), model.landmark_states(bone))
           : "");

@@ -33,7 +33,7 @@ bool NavigateView::asks_for_front() {
 void NavigateView::resume() {
   const LeftBehind* const left = left_behind();
   if (left == nullptr) return;
-  started_.goes_on_with(sources::source_kind_from_text(left->found.header.source_kind));
+  started_.goes_on_with(left->found.header.source_kind);
   // Who resumes it was told by which tunnel.
   if (const auto& was = left->found.operation.plan;
       was && bones_.guided(choices_.bone) != was->tunnel.key() && bones_.planned(was->tunnel.key()))

@@ -92,7 +92,7 @@ void BoneMaking::judge() {
   for (importing::BoneQuality& quality : qualities_)
     for (importing::ImportedBone& made : result_.bones) {
       if (made.bone.kind != quality.kind) continue;
-      quality = importing::quality_of(made, quality.labelled_ml, *images_);
+      quality = importing::quality_of(result_, made, quality.labelled_ml, *images_);
       // After the lines are made of it, which say it by themselves: it stays with the bone, for Plan to say.
       for (std::string& doubt : importing::surface_doubts(quality)) made.doubts.push_back(std::move(doubt));
     }

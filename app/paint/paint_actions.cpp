@@ -112,8 +112,8 @@ void PaintView::add_preview_actions(widgets::Actions& actions) {
                "In a CT: what is at least so dense is coloured; then part, fill and correct it", GLFW_KEY_T,
                0, false,
                [this] {
-                 return can_edit() && painting_->volume().modality == "CT" && !job_.is_running() &&
-                        previewing_.kind != Preview::Growth;
+                 return can_edit() && painting_->volume().modality == images::Modality::Ct &&
+                        !job_.is_running() && previewing_.kind != Preview::Growth;
                },
                [this] { return previewing_.kind == Preview::Threshold; },
                [this] {

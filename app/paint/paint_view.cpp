@@ -105,7 +105,7 @@ void PaintView::tick(double now_s) {
     painting_ = std::move(loaded);
     const images::Volume& volume = painting_->volume();
     look_.automatic = scene::automatic_window(volume);
-    look_.window = volume.modality == "CT" ? scene::kBoneWindow : look_.automatic;
+    look_.window = volume.modality == images::Modality::Ct ? scene::kBoneWindow : look_.automatic;
     look_.cross_mm =
         volume.lps_from_index * Eigen::Vector3d(0.5 * (volume.size - Eigen::Vector3i::Ones()).cast<double>());
     for (plan::SlicePane& pane : panes_) pane.fit(volume);

@@ -18,12 +18,12 @@ std::string next_step(const painting::Painting& painting, Preview preview, bool 
              has_around = painting.holds(Layer::Strokes, painting::kSurroundings);
   const bool is_one_bone =
       painting.holds(Layer::Bones, painting::kFemur) != painting.holds(Layer::Bones, painting::kTibia);
-  if (is_one_bone && painting.volume().modality == "CT")
+  if (is_one_bone && painting.volume().modality == images::Modality::Ct)
     return !has_femur || !has_tibia
                ? "Paint a stroke into each bone, also into its marrow (S, then 1 and 2; 3 for fibula and "
                  "patella); then part them (P)"
                : "Part the bones by their strokes (P), or go on with this one alone (A)";
-  if (painting.holds(Layer::Bones) && painting.volume().modality == "CT")
+  if (painting.holds(Layer::Bones) && painting.volume().modality == images::Modality::Ct)
     return "Fill the marrow of each bone (Shift+H), look through the slices, correct, then make the bones "
            "(A)";
   if (painting.holds(Layer::Bones))

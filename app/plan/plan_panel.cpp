@@ -111,7 +111,7 @@ void draw_bone_doubts(const widgets::Ui& ui, const PlanPanel& panel) {
   const std::size_t count = doubts == panel.doubts.end() ? 0 : doubts->second.size();
   ui.log.note_state("bone_doubts", std::to_string(count));
   for (std::size_t i = 0; i < count; ++i)
-    widgets::status_row(ui, widgets::Severity::Caution, "Bone", doubts->second[i]);
+    widgets::status_row(ui, widgets::Severity::Caution, "Bone", words_of(doubts->second[i]));
 }
 
 void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {

@@ -95,7 +95,7 @@ void SlicePanes::tick() {
   failure_ = loaded.failure;
   if (volume_ == nullptr) return;
   automatic_ = loaded.automatic;
-  window_ = volume_->modality == "CT" ? scene::kBoneWindow : automatic_;
+  window_ = volume_->modality == images::Modality::Ct ? scene::kBoneWindow : automatic_;
   show_joint();
 }
 
@@ -204,7 +204,8 @@ void SlicePanes::draw(const widgets::Ui& ui, const std::array<widgets::Rect, 3>&
     points_mm_.insert(points_mm_.end(), event.measured_mm.begin(), event.measured_mm.end());
     if (!event.reaching_mm.empty()) reaching_mm_ = event.reaching_mm;
     if (event.value) {
-      const std::string text = widgets::fixed(*event.value, 0) + (volume_->modality == "CT" ? " HU" : "");
+      const std::string text =
+          widgets::fixed(*event.value, 0) + (volume_->modality == images::Modality::Ct ? " HU" : "");
       ImFont* font = ui.theme.body;
       const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
       ImGui::GetWindowDrawList()->AddText(

@@ -8,7 +8,6 @@
 #include "app/report/report_words.h"
 #include "app/report/session_rows.h"
 #include "navigation/operation/achieved_tunnel.h"
-#include "navigation/recording/cut_short.h"
 #include "navigation/recording/drilled_by_word.h"
 #include "navigation/recording/session_overview.h"
 #include "planning/bones/mesh_hash.h"
@@ -106,8 +105,7 @@ void add_others(const std::vector<std::filesystem::path>& sessions, Content& con
       Content::Other& other = content.others.emplace_back();
       other.session = folder.filename().string();
       other.bone = session.header().bone;
-      other.safety = safety_rows(
-          session, recording::cut_short_in_words(session.was_finished(), session.events(), false));
+      other.safety = safety_of(session, false);
       other.plans = plans_in_words(plans_in_force(session));
       other.plan_warnings = plan_warnings(session, content);
       try {  // the rest of it is told all the same
@@ -157,7 +155,7 @@ void draw_other_sessions(FlowingPages& pages, const Content& content) {
                                              : "")});
     if (!other.plans.empty()) rows.insert(rows.begin() + 1, {"Plan in force", other.plans});
     if (other.has_broken_registration) rows.push_back({"Registration", "NOT READABLE"});
-    rows.insert(rows.end(), other.safety.begin(), other.safety.end());
+    std::ranges::move(rows_of(other.safety), std::back_inserter(rows));
     pages.table({70, 100}, rows);
   }
 }

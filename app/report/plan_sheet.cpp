@@ -220,8 +220,10 @@ void Sheet::tunnel_outlines(const PlanePicture& picture, BoneKind kind) {
 void Sheet::slice(const PlanePicture& picture, BoneKind kind, const std::optional<images::Volume>& volume) {
   std::vector<std::uint8_t> grey(static_cast<std::size_t>(picture.size_px.prod()), 255);
   if (volume) {
-    scene::reslice(*volume, picture.plane, picture.size_px,
-                   volume->modality == "CT" ? scene::kBoneWindow : scene::automatic_window(*volume), grey);
+    scene::reslice(
+        *volume, picture.plane, picture.size_px,
+        volume->modality == images::Modality::Ct ? scene::kBoneWindow : scene::automatic_window(*volume),
+        grey);
   }
   put_grey(picture, grey);
   for (const auto& [from, to] :
@@ -301,7 +303,7 @@ double Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm, d
     y_mm += pdf_.paragraph_height_mm(width_mm - word_mm, text, {.size_pt = size_pt}) + gap_mm;
   };
   if (const auto doubts = content_.bone_doubts.find(kind); doubts != content_.bone_doubts.end())
-    for (const std::string& doubt : doubts->second) row("look", true, "Bone: " + doubt);
+    for (const std::string& doubt : words_of(doubts->second)) row("look", true, "Bone: " + doubt);
   if (const std::string doubt = grid_doubt(content_, kind); !doubt.empty())
     row("look", true, "Grid: " + doubt);
   if (of_graft == nullptr) {

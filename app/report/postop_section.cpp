@@ -13,12 +13,11 @@ using files::format;
 
 constexpr TextStyle kSmall{.size_pt = 8.5, .bold = false, .ink = kGray};
 
-// In bone; empty where the plan has no such tunnel, is another one by now, or misses the bone.
+// In bone; empty where the plan misses it. The comparison is of today's plan.
 std::string planned_length(const Content& content, const tunnels::TunnelKey& key) {
   const auto plan = content.knee.plan.tunnels.find(key);
-  if (!postop::is_against(content.postoperative.at(key).tunnel, key, content.knee.plan.tunnels)) return {};
   const auto bone = content.knee.bones.find(key.bone);
-  if (plan == content.knee.plan.tunnels.end() || bone == content.knee.bones.end()) return {};
+  if (bone == content.knee.bones.end()) return {};
   const auto geometry = tunnels::measure(plan->second, geometry::Surface(bone->second.mesh));
   return geometry.enters_bone ? format("; planned %.1f mm", geometry.length_mm) : "";
 }
@@ -27,12 +26,12 @@ std::string planned_length(const Content& content, const tunnels::TunnelKey& key
 std::vector<std::string> column(const Content& content, const tunnels::TunnelKey& key) {
   const postop::Comparison& comparison = content.postoperative.at(key);
   const postop::AchievedTunnel& found = comparison.tunnel;
-  const std::string verdict = verdict_of(content, key);
+  using enum postop::ComparisonVerdict;
+  const postop::ComparisonVerdict verdict = verdict_of(content, key);
   std::vector<std::string> cells = {tunnels::name_of(key),
-                                    verdict == "not reliable" ? "NOT RELIABLE" : verdict};
+                                    verdict == NotReliable ? "NOT RELIABLE" : std::string(to_text(verdict))};
   if (found.is_found) {
-    const auto plan = content.knee.plan.tunnels.find(key);
-    const bool is_of_plan = postop::is_against(found, key, content.knee.plan.tunnels);
+    const bool is_of_plan = verdict == NotReliable || verdict == Reliable;
     cells.push_back(format("%.2f mm ", found.offset_mm) + postop::sigma_in_words(found.entry_sigma_mm, 2));
     cells.push_back(std::isfinite(found.offset_across_mm) ? format("%.2f mm", found.offset_across_mm)
                                                           : "\u2013");
@@ -46,11 +45,12 @@ std::vector<std::string> column(const Content& content, const tunnels::TunnelKey
     cells.push_back(told(postop::grid_in_words));
     cells.push_back(format("%.2f\u00B0 ", geometry::deg_from_rad(found.angle_rad)) +
                     postop::sigma_in_words(geometry::deg_from_rad(found.direction_sigma_rad), 2));
-    cells.push_back(format("%.1f mm", found.tunnel.diameter_mm) +
-                    (is_of_plan ? format("; planned %.1f mm", plan->second.diameter_mm) : ""));
+    cells.push_back(
+        format("%.1f mm", found.tunnel.diameter_mm) +
+        (is_of_plan ? format("; planned %.1f mm", content.knee.plan.tunnels.at(key).diameter_mm) : ""));
     const std::string widths = postop::widths_in_words(found.widths);
     cells.push_back(widths.empty() ? "not seen" : widths);
-    cells.push_back(postop::length_in_words(found) + planned_length(content, key));
+    cells.push_back(postop::length_in_words(found) + (is_of_plan ? planned_length(content, key) : ""));
     cells.push_back(told(postop::wall_in_words));
     cells.push_back(format("%.0f %%", 100 * found.metal_share));
   } else {
@@ -113,7 +113,8 @@ void draw_postop_section(FlowingPages& pages, const Content& content) {
 std::vector<tunnels::Tunnel> tunnels_in_the_images(const Content& content) {
   std::vector<tunnels::Tunnel> tunnels;
   for (const auto& [key, comparison] : content.postoperative)
-    if (verdict_of(content, key) == "reliable") tunnels.push_back(comparison.tunnel.tunnel);
+    if (verdict_of(content, key) == postop::ComparisonVerdict::Reliable)
+      tunnels.push_back(comparison.tunnel.tunnel);
   return tunnels;
 }
 

@@ -322,7 +322,7 @@ void Report::navigate_page() {
     rows.push_back({"Guided to the tunnel", guided});
   if (const std::string plan = plans_in_words(plans_in_force(session)); !plan.empty())
     rows.push_back({"Plan in force", plan});
-  for (auto& row : safety_rows(session, content_.cut_short)) rows.push_back(std::move(row));
+  std::ranges::move(rows_of(content_.safety), std::back_inserter(rows));
   pages_.table({70, 100}, rows);
   if (content_.registration) registration_section(*content_.registration);
   if (!content_.registration_problem.empty())

@@ -10,7 +10,6 @@
 #include "app/report/session_rows.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
-#include "navigation/recording/cut_short.h"
 #include "navigation/recording/drilled_by_word.h"
 #include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session_overview.h"
@@ -107,9 +106,7 @@ void add_looked_at(Content& content, const ReportOptions& options) {
   const std::filesystem::path folder = content.session->folder();
   content.session_name = content.session->header().id;
   content.started_utc = content.session->header().started_utc;
-  content.cut_short =
-      recording::cut_short_in_words(content.session->was_finished(), content.session->events(),
-                                    recording::is_being_recorded(content.session->folder()));
+  content.safety = safety_of(*content.session, recording::is_being_recorded(folder));
   content.last_hash = recording::chain_head(folder);
   constexpr double kRead = 0.1;
   content.check = recording::check_session(folder, [&](std::int64_t done, std::int64_t all) {
@@ -185,6 +182,10 @@ void add_camera(Content& content) {
     content.camera.emplace().calibration = calibration;
 }
 
+void blank(Safety& safety) {
+  if (!safety.cut_short.empty()) safety.cut_short = std::string("why is ") + kNotTold;
+}
+
 // The one place that says what strangers are not told: whoever the patient is, the session and the day, and
 // what may name them: what somebody wrote, and the files and folders that a reason names.
 void blank_for_strangers(Content& content) {
@@ -192,13 +193,11 @@ void blank_for_strangers(Content& content) {
   content.knee.created_utc.clear();
   content.session_name.clear();
   content.started_utc.clear();
-  if (!content.cut_short.empty()) content.cut_short = std::string("why is ") + kNotTold;
+  blank(content.safety);
   for (Content::Earlier& earlier : content.earlier) earlier.session.clear();
   for (Content::Other& other : content.others) {
     other.session.clear();
-    for (std::vector<std::string>& row : other.safety)
-      if (row[0] == kRecordRow && row[1].starts_with(kCutShort))
-        row[1] = std::string(kCutShort) + "why is " + kNotTold;
+    blank(other.safety);
   }
   for (Content::ByWord& said : content.by_word) said.session.clear();
   if (content.camera && !content.camera->date_utc.empty()) content.camera->date_utc = kNotTold;
@@ -269,18 +268,15 @@ std::string changed_since(const Content& content, const tunnels::Tunnel& guided)
                           ": what follows is against the plan that guided, not the one on the first pages.";
 }
 
-std::string verdict_of(const Content& content, const tunnels::TunnelKey& key) {
+postop::ComparisonVerdict verdict_of(const Content& content, const tunnels::TunnelKey& key) {
   const postop::Comparison& comparison = content.postoperative.at(key);
-  if (!comparison.bone.is_found) return "bone not found in the images";
-  if (!comparison.tunnel.is_found) return "no tunnel found";
-  if (!is_of_the_plan(content, key, comparison.tunnel)) return "of an earlier plan";
-  return comparison.bone.reliable && comparison.tunnel.reliable ? "reliable" : "not reliable";
+  return postop::verdict_of(comparison, is_of_the_plan(content, key, comparison.tunnel));
 }
 
 std::vector<std::string> doubts_of(const Content& content, const tunnels::TunnelKey& key) {
   const postop::Comparison& comparison = content.postoperative.at(key);
   std::vector<std::string> doubts;
-  if (comparison.tunnel.is_found && !is_of_the_plan(content, key, comparison.tunnel))
+  if (verdict_of(content, key) == postop::ComparisonVerdict::OfAnEarlierPlan)
     doubts.emplace_back("the plan was changed since: compare again");
   for (const auto* reasons : {&comparison.bone.reasons, &comparison.tunnel.reasons})
     for (const std::string& reason : *reasons)
@@ -300,7 +296,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
                   .registration = {},
                   .registration_problem = {},
                   .is_of_another_surface = false,
-                  .cut_short = {},
+                  .safety = {},
                   .achieved = {},
                   .earlier = {},
                   .others = {},

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/report/report.h"
+#include "app/report/session_rows.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
@@ -38,7 +39,7 @@ struct Content {
   std::string registration_problem = {};
   // The case has another surface of its bone by now: nothing of it is drawn there, or measured against it.
   bool is_of_another_surface = false;
-  std::string cut_short = {};                       // why its record is not whole; empty: it is
+  Safety safety = {};                               // of `session`
   std::vector<operation::AchievedTunnel> achieved;  // in `session`
   // Planned tunnels of other bundles and of the other bone, drilled in sessions before it: after each start
   // of a source there is another. Of the same kind of source alone: a rehearsal says nothing of the patient.
@@ -53,8 +54,8 @@ struct Content {
     bones::BoneKind bone = bones::BoneKind::Femur;
     std::optional<registration::RegistrationSummary> registration = {};
     bool has_broken_registration = false;
-    std::vector<std::vector<std::string>> safety = {};  // see safety_rows()
-    std::string plans = {};                             // plans_in_words()
+    Safety safety = {};
+    std::string plans = {};  // plans_in_words()
     std::vector<std::string> plan_warnings = {};
   };
   std::vector<Other> others = {};
@@ -107,8 +108,7 @@ inline constexpr double kGatheredShare = 0.3;
 [[nodiscard]] std::string difference_from_now(const Content& content, const tunnels::Tunnel& guided);
 // Where the plan is not the one any more that guided there: how it differs; else empty.
 [[nodiscard]] std::string changed_since(const Content& content, const tunnels::Tunnel& guided);
-// "reliable", "not reliable", "of an earlier plan", "no tunnel found", "bone not found in the images".
-[[nodiscard]] std::string verdict_of(const Content& content, const tunnels::TunnelKey& key);
+[[nodiscard]] postop::ComparisonVerdict verdict_of(const Content& content, const tunnels::TunnelKey& key);
 // Why it must not be relied on, each reason once; empty: reliable.
 [[nodiscard]] std::vector<std::string> doubts_of(const Content& content, const tunnels::TunnelKey& key);
 

@@ -97,7 +97,7 @@ ordered_json others_of(const Content& content) {
     node["plans"] = other.plans;
     node["plan_warnings"] = other.plan_warnings;
     node["safety"] = ordered_json::object();
-    for (const auto& row : other.safety) node["safety"][row[0]] = row[1];
+    for (const auto& row : rows_of(other.safety)) node["safety"][row[0]] = row[1];
     all.push_back(std::move(node));
   }
   return all;
@@ -113,7 +113,7 @@ ordered_json session_of(const Content& content) {
                        {"bone", bones::to_text(header.bone)},
                        {"side", bones::to_text(header.side)},
                        {"is_of_another_surface", content.is_of_another_surface},
-                       {"source_kind", header.source_kind},
+                       {"source_kind", header.source_kind ? sources::to_text(*header.source_kind) : ""},
                        {"medium", camera::medium_to_text(header.refractive_index)},
                        {"was_finished", session.was_finished()},
                        {"frames", figures.frames},
@@ -144,7 +144,7 @@ ordered_json session_of(const Content& content) {
   }
   node["plan_warnings"] = plan_warnings(session, content);
   node["safety"] = ordered_json::object();
-  for (const auto& row : safety_rows(session, content.cut_short)) node["safety"][row[0]] = row[1];
+  for (const auto& row : rows_of(content.safety)) node["safety"][row[0]] = row[1];
   node["steps"] = ordered_json::array();
   for (const Step& step : steps_of(session))
     node["steps"].push_back({{"time_s", step.time_s}, {"what", step.words}});
@@ -184,14 +184,15 @@ ordered_json postoperative_of(const Content& content) {
     const auto number = [&](double value) {
       return found.is_found && std::isfinite(value) ? ordered_json(value) : ordered_json();
     };
-    ordered_json node = {{"tunnel", tunnels::name_of(key)}, {"verdict", verdict_of(content, key)}};
-    node["reliable"] = node["verdict"] == "reliable";
+    const postop::ComparisonVerdict verdict = verdict_of(content, key);
+    ordered_json node = {{"tunnel", tunnels::name_of(key)}, {"verdict", to_text(verdict)}};
+    node["reliable"] = verdict == postop::ComparisonVerdict::Reliable;
     node["reasons"] = doubts_of(content, key);
     if (!comparison.kept_because.empty()) node["kept_because"] = comparison.kept_because;
     node["planned"] = nullptr;
     // Of an earlier plan the differences alone are known, not what they are from.
     if (const auto plan = content.knee.plan.tunnels.find(key);
-        plan != content.knee.plan.tunnels.end() && node["verdict"] != "of an earlier plan")
+        plan != content.knee.plan.tunnels.end() && verdict != postop::ComparisonVerdict::OfAnEarlierPlan)
       node["planned"] = json_of(plan->second);
     node["achieved"] = nullptr;
     if (found.is_found) node["achieved"] = json_of(found.tunnel);
@@ -238,7 +239,7 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
                        {"birth_date", content.identity->birth_date}};
   json["bone_doubts"] = ordered_json::object();
   for (const auto& [kind, doubts] : content.bone_doubts)
-    json["bone_doubts"][std::string(bones::to_text(kind))] = doubts;
+    json["bone_doubts"][std::string(bones::to_text(kind))] = words_of(doubts);
   json["proposed_landmarks"] = ordered_json::array();  // bones whose grid and axes follow from such
   for (const auto& [kind, bone] : content.knee.bones)
     if (content.review->has_bone(kind) && content.review->bone(kind).surroundings.has_grid() &&

@@ -29,18 +29,19 @@ std::string by_navigation(const Content& content, const TunnelResult& result) {
 
 std::string by_ct(const Content& content, const TunnelResult& result) {
   if (result.imaged == nullptr) return "\u2013";
-  const std::string verdict = verdict_of(content, result.key);
+  const postop::ComparisonVerdict verdict = verdict_of(content, result.key);
+  const std::string words(to_text(verdict));
   const postop::AchievedTunnel& found = result.imaged->tunnel;
-  if (!found.is_found) return verdict;
+  if (!found.is_found) return words;
   return off_by(found.offset_mm, geometry::deg_from_rad(found.angle_rad)) +
-         (verdict == "reliable" ? "" : "; " + verdict) +
+         (verdict == postop::ComparisonVerdict::Reliable ? "" : "; " + words) +
          (result.imaged->kept_because.empty() ? "" : "; kept from earlier images");
 }
 
 // By what a bone's tunnel was drilled, or would have been: "Femur: registration reliable, ...".
 std::string by_registration(bones::BoneKind bone,
                             const std::optional<registration::RegistrationSummary>& registration,
-                            const std::string& without, const std::vector<std::vector<std::string>>& safety) {
+                            const std::string& without, const Safety& safety) {
   std::string words = (bone == bones::BoneKind::Femur ? "Femur: " : "Tibia: ") + without;
   if (registration)
     words = std::string(bone == bones::BoneKind::Femur ? "Femur" : "Tibia") + ": registration " +
@@ -48,17 +49,8 @@ std::string by_registration(bones::BoneKind bone,
             (registration->has_pose
                  ? ", predicted error at the target " + number(registration->predicted_tre_mm, " mm", 2)
                  : "");
-  words += ".";
-  for (const std::vector<std::string>& row : safety)
-    if (row.front() == kVerificationRow || row.front() == kAlarmsRow)
-      words += " " + row.front() + ": " + row.back() + ".";
-  return words;
-}
-
-// Whether the CT's numbers stand, whatever became of the plan since.
-bool is_relied_on(const postop::Comparison& comparison) {
-  return comparison.bone.is_found && comparison.bone.reliable && comparison.tunnel.is_found &&
-         comparison.tunnel.reliable;
+  return words + ". Verification: " + verification_in_words(safety) +
+         ". Alarms, void registrations: " + alarms_in_words(safety) + ".";
 }
 
 }  // namespace
@@ -96,7 +88,7 @@ void draw_plan_verdicts(FlowingPages& pages, const Content& content) {
     const auto checks = content.review->checks(key);
     const auto doubts = content.bone_doubts.find(key.bone);
     const plan_review::TunnelVerdict verdict = plan_review::verdict_of(
-        checks, doubts == content.bone_doubts.end() ? std::vector<std::string>{} : doubts->second,
+        checks, doubts == content.bone_doubts.end() ? std::vector<cases::BoneDoubt>{} : doubts->second,
         grid_doubt(content, key.bone));
     const auto unmade =
         std::ranges::count(checks, tunnels::PlanCheck::Verdict::NotChecked, &tunnels::PlanCheck::verdict);
@@ -116,7 +108,7 @@ void draw_result_summary(FlowingPages& pages, const Content& content) {
   const std::vector<TunnelResult> results = results_of(content);
   if (!content.session && content.postoperative.empty()) return;
   pages.heading("Result");
-  if (content.session && content.session->header().source_kind == "simulation")
+  if (content.session && content.session->header().source_kind == sources::SourceKind::Simulation)
     pages.sentence("SIMULATION: nobody's knee.", {.bold = true, .ink = kWarning});
   std::vector<std::string> warnings;
   for (const Content::Other& other : content.others)
@@ -136,7 +128,7 @@ void draw_result_summary(FlowingPages& pages, const Content& content) {
   pages.sentence(by_registration(content.session->header().bone, content.registration,
                                  content.registration_problem.empty() ? "no registration was kept"
                                                                       : "NOT READABLE: the registration",
-                                 safety_rows(*content.session, content.cut_short)),
+                                 content.safety),
                  {.size_pt = 8.5});
   for (const Content::Other& other : content.others)
     pages.sentence(by_registration(other.bone, other.registration,

@@ -67,13 +67,14 @@ void write_segmentation_sheet(const std::filesystem::path& file, const images::V
   pdf.text(kLeft_mm, y_mm, "Segmentation", {.size_pt = 16, .bold = true});
   y_mm += 6;
   const Vector3d spacing = volume.spacing_mm();
-  pdf.text(kLeft_mm, y_mm,
-           files::format("%d x %d x %d voxels of %.2f x %.2f x %.2f mm%s%s. Research software.",
-                         volume.size.x(), volume.size.y(), volume.size.z(), spacing.x(), spacing.y(),
-                         spacing.z(), volume.modality.empty() ? "" : ", ", volume.modality.c_str()),
-           kCaption);
+  pdf.text(
+      kLeft_mm, y_mm,
+      files::format("%d x %d x %d voxels of %.2f x %.2f x %.2f mm%s%s. Research software.", volume.size.x(),
+                    volume.size.y(), volume.size.z(), spacing.x(), spacing.y(), spacing.z(),
+                    volume.modality_in_file.empty() ? "" : ", ", volume.modality_in_file.c_str()),
+      kCaption);
   const scene::GreyWindow window =
-      volume.modality == "CT" ? scene::kBoneWindow : scene::automatic_window(volume);
+      volume.modality == images::Modality::Ct ? scene::kBoneWindow : scene::automatic_window(volume);
   for (const SegmentedBone& bone : bones) {
     y_mm += 10;
     const bool is_femur = bone.quality.kind == bones::BoneKind::Femur;

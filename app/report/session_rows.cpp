@@ -8,6 +8,7 @@
 #include "app/report/plans_in_force.h"
 #include "app/report/source_faults.h"
 #include "navigation/recording/counting_registration.h"
+#include "navigation/recording/cut_short.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -16,8 +17,7 @@ namespace arthronaut::report {
 
 std::string neutral_source(const recording::SessionHeader& header) {
   constexpr std::size_t kLongestExtension = 5;  // with its dot; what is longer may be a name
-  const auto kind = sources::source_kind_from_text(header.source_kind);
-  if (kind && *kind != sources::SourceKind::Recording) return header.source;
+  if (header.source_kind && *header.source_kind != sources::SourceKind::Recording) return header.source;
   const std::string extension = std::filesystem::path(header.source).extension().string();
   const bool is_type = extension.size() > 1 && extension.size() <= kLongestExtension &&
                        std::all_of(extension.begin() + 1, extension.end(),
@@ -34,7 +34,7 @@ std::string bone_in_words(const recording::SessionHeader& header, bones::Side of
 }
 
 std::string kind_in_words(const recording::SessionHeader& header) {
-  const auto kind = sources::source_kind_from_text(header.source_kind);
+  const auto kind = header.source_kind;
   if (!kind) return "not recorded";
   return *kind == sources::SourceKind::Live        ? "live: a camera, as it came"
          : *kind == sources::SourceKind::Recording ? "recording: a video that was made before"
@@ -85,8 +85,7 @@ std::string in_capitals(std::string words) {
   return words;
 }
 
-// Each text once, in the order of the first of its kind: an alarm comes and goes many times.
-std::string alarms_in_words(const recording::RecordedSession& session) {
+std::vector<std::pair<std::string, int>> alarms_of(const recording::RecordedSession& session) {
   std::vector<std::pair<std::string, int>> alarms;
   for (const recording::SessionEvent& event : session.events()) {
     if (event.kind != recording::kAlarmEvent && event.kind != recording::kVoidEvent) continue;
@@ -97,19 +96,33 @@ std::string alarms_in_words(const recording::RecordedSession& session) {
     else
       ++told->second;
   }
-  std::string words;
-  for (const auto& [text, count] : alarms)
-    words += (words.empty() ? "" : "; ") + text + (count > 1 ? files::format(" (%d times)", count) : "");
-  return words.empty() ? "none" : words;
+  return alarms;
+}
+
+std::string time_out_in_words(const Safety& safety) {
+  switch (safety.time_out) {
+    case Safety::TimeOut::NotRecorded:
+      return "not recorded";
+    case Safety::TimeOut::NotAsked:
+      return "not asked: no live source";
+    case Safety::TimeOut::NotConfirmed:
+      return "not confirmed in this session";
+    case Safety::TimeOut::Confirmed:
+      break;
+  }
+  return std::string("confirmed") +
+         (safety.confirmed ? " of the plan " + in_words(*safety.confirmed) : std::string()) +
+         (safety.another_plan_followed ? "; NOT CONFIRMED of the plan after it" : "") +
+         (safety.beside.empty() ? "" : "; " + safety.beside);
 }
 
 }  // namespace
 
-std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session,
-                                                  const std::string& cut_short) {
-  bool is_verified = false, is_lost = false, was_verified = false, was_skipped = false, is_confirmed = false;
+Safety safety_of(const recording::RecordedSession& session, bool is_being_recorded) {
+  bool is_verified = false, is_lost = false, was_verified = false, is_confirmed = false;
   recording::CountingRegistration registration;
-  std::string guide, beside;
+  Safety safety{.cut_short = recording::cut_short_in_words(session.was_finished(), session.events(),
+                                                           is_being_recorded)};
   const std::vector<PlanInForce> plans = plans_in_force(session);
   const operation::PlannedTunnel* plan = nullptr;       // in force
   const operation::PlannedTunnel* confirmed = nullptr;  // that the time-out was confirmed of last
@@ -123,37 +136,64 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
     is_verified = event.kind == recording::kVerifiedEvent || (is_verified && !ends);
     was_verified = was_verified || is_verified;
     registration.follow(event);
-    was_skipped = was_skipped || event.kind == recording::kVerificationSkippedEvent;
+    if (event.kind == recording::kVerificationSkippedEvent) safety.guidance_began_without = true;
     if (event.kind == recording::kTimeOutConfirmedEvent) {
       confirmed = plan;
       is_confirmed = true;  // what was wrong with its picture is said before what was on the screen
-      beside = event.text.starts_with("BESIDE ") ? event.text.substr(0, event.text.find(';')) : "";
+      safety.beside = event.text.starts_with("BESIDE ") ? event.text.substr(0, event.text.find(';')) : "";
     }
-    if (event.kind == recording::kGuideCheckedEvent) guide = event.text;
+    if (event.kind == recording::kGuideCheckedEvent) safety.guide = event.text;
   }
-  is_verified = registration.counts().was_verified;
-  const std::string verified =
-      is_verified    ? "verified by touches"
-      : is_lost      ? "verified by touches that did not hold"
-      : was_verified ? "verified by touches earlier; of the last registration nothing is recorded"
-      : was_skipped  ? "SKIPPED"
-                     : "not verified";
-  const std::string& kind = session.header().source_kind;
-  const bool is_live = kind == sources::to_text(sources::SourceKind::Live);
-  std::string time_out = "confirmed";
-  if (confirmed != nullptr) time_out += " of the plan " + in_words(*confirmed);
-  if (confirmed != nullptr && *confirmed != *plan) time_out += "; NOT CONFIRMED of the plan after it";
-  if (!beside.empty()) time_out += "; " + beside;
-  return {
-      {kRecordRow, cut_short.empty() ? "from beginning to end" : kCutShort + cut_short},
-      {kVerificationRow, verified + (was_skipped ? "; guidance began without it" : "")},
-      {"Time-out", is_confirmed   ? time_out
-                   : is_live      ? "not confirmed in this session"
-                   : kind.empty() ? "not recorded"
-                                  : "not asked: no live source"},
-      {"Check of a nominal guide", guide.empty() ? "none in this session" : guide},
-      {"Faults of the source", is_live ? in_words(source_faults(session)) : "not looked for: no live source"},
-      {kAlarmsRow, alarms_in_words(session)}};
+  using enum Safety::Verification;
+  safety.verification = registration.counts().was_verified ? ByTouches
+                        : is_lost                          ? DidNotHold
+                        : was_verified                     ? OfAnEarlierRegistration
+                        : safety.guidance_began_without    ? Skipped
+                                                           : None;
+  const auto kind = session.header().source_kind;
+  const bool is_live = kind == sources::SourceKind::Live;
+  safety.time_out = is_confirmed ? Safety::TimeOut::Confirmed
+                    : is_live    ? Safety::TimeOut::NotConfirmed
+                    : kind       ? Safety::TimeOut::NotAsked
+                                 : Safety::TimeOut::NotRecorded;
+  if (confirmed != nullptr) safety.confirmed = *confirmed;
+  safety.another_plan_followed = confirmed != nullptr && *confirmed != *plan;
+  if (is_live) safety.source_faults = in_words(source_faults(session));
+  safety.alarms = alarms_of(session);
+  return safety;
+}
+
+std::string verification_in_words(const Safety& safety) {
+  const std::string without = safety.guidance_began_without ? "; guidance began without it" : "";
+  switch (safety.verification) {
+    case Safety::Verification::ByTouches:
+      return "verified by touches" + without;
+    case Safety::Verification::DidNotHold:
+      return "verified by touches that did not hold" + without;
+    case Safety::Verification::OfAnEarlierRegistration:
+      return "verified by touches earlier; of the last registration nothing is recorded" + without;
+    case Safety::Verification::Skipped:
+      return "SKIPPED" + without;
+    case Safety::Verification::None:
+      break;
+  }
+  return "not verified" + without;
+}
+
+std::string alarms_in_words(const Safety& safety) {
+  std::string words;
+  for (const auto& [text, count] : safety.alarms)
+    words += (words.empty() ? "" : "; ") + text + (count > 1 ? files::format(" (%d times)", count) : "");
+  return words.empty() ? "none" : words;
+}
+
+std::vector<std::vector<std::string>> rows_of(const Safety& safety) {
+  return {{"Record", safety.cut_short.empty() ? "from beginning to end" : "CUT SHORT: " + safety.cut_short},
+          {"Verification", verification_in_words(safety)},
+          {"Time-out", time_out_in_words(safety)},
+          {"Check of a nominal guide", safety.guide.empty() ? "none in this session" : safety.guide},
+          {"Faults of the source", safety.source_faults.value_or("not looked for: no live source")},
+          {"Alarms, void registrations", alarms_in_words(safety)}};
 }
 
 SessionFigures figures_of(const recording::RecordedSession& session) {

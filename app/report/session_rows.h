@@ -3,9 +3,11 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "navigation/operation/achieved_tunnel.h"
+#include "navigation/operation/command.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/told_events.h"
 
@@ -25,17 +27,30 @@ namespace arthronaut::report {
 // out, and nothing is registered any more. Throws IoError or InvalidInput where its file cannot be read.
 [[nodiscard]] std::optional<registration::RegistrationSummary> registration_that_counts(
     const recording::RecordedSession& session);
-inline constexpr const char* kRecordRow = "Record";
-inline constexpr const char* kVerificationRow = "Verification";
-inline constexpr const char* kAlarmsRow = "Alarms, void registrations";
-inline constexpr const char* kCutShort = "CUT SHORT: ";  // begins the record's row of one that was
 // A registration of it by its event.
 [[nodiscard]] recording::ReadRegistration registrations_of(const recording::RecordedSession& session);
-// What was asked before the guide was followed, and what spoke against it, as the session's events say it: a
-// name and a text each; alarms alike once, with how many there were. cut_short: why the record is not whole;
-// empty: it is.
-[[nodiscard]] std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session,
-                                                                const std::string& cut_short);
+// What was asked before the guide was followed, and what spoke against it, as the session's events say it.
+struct Safety {
+  enum class Verification { None, Skipped, OfAnEarlierRegistration, DidNotHold, ByTouches };
+  enum class TimeOut { NotRecorded, NotAsked, NotConfirmed, Confirmed };
+  std::string cut_short = {};  // why the record is not whole; empty: it is. Names files, and whom they name
+  Verification verification = Verification::None;
+  bool guidance_began_without = false;  // a verification
+  TimeOut time_out = TimeOut::NotRecorded;
+  std::optional<operation::PlannedTunnel> confirmed = {};  // of which plan; nullopt: of none that is known
+  bool another_plan_followed = false;                      // which was never confirmed
+  std::string beside = {};                        // what was wrong with the picture then; empty: nothing
+  std::string guide = {};                         // how a nominal guide was found; empty: nobody checked
+  std::optional<std::string> source_faults = {};  // in_words(); nullopt: of no live source
+  // Alarms and void registrations in the order of the first of their kind, and how many were alike: an alarm
+  // comes and goes many times.
+  std::vector<std::pair<std::string, int>> alarms = {};
+};
+[[nodiscard]] Safety safety_of(const recording::RecordedSession& session, bool is_being_recorded);
+// A name and a text each.
+[[nodiscard]] std::vector<std::vector<std::string>> rows_of(const Safety& safety);
+[[nodiscard]] std::string verification_in_words(const Safety& safety);
+[[nodiscard]] std::string alarms_in_words(const Safety& safety);
 
 // How much of a session was seen.
 struct SessionFigures {

@@ -60,7 +60,7 @@ std::string in_words(const std::vector<SourceFault>& faults) {
 
 double without_picture_s(const recording::RecordedSession& session) {
   constexpr double kPause_s = 0.3;  // as SourceWatch has it
-  if (session.header().source_kind != sources::to_text(sources::SourceKind::Live)) return 0;
+  if (session.header().source_kind != sources::SourceKind::Live) return 0;
   std::vector<double> times_s;
   for (const recording::RecordedFrame& frame : session.frames())
     times_s.push_back(time_s(session, frame.timestamp_ns));

@@ -13,7 +13,7 @@ CtWords ct_in_words(const postop::Comparison& comparison, const tunnels::Tunnel&
   if (!postop::is_against(found, planned)) return {Severity::Quiet, "compared with another plan than this"};
   const std::string text = "entry " + widgets::fixed(found.offset_mm, 1) + " mm, angle " +
                            widgets::fixed(geometry::deg_from_rad(found.angle_rad), 1) + "\u00B0";
-  if (comparison.bone.reliable && found.reliable) return {Severity::Quiet, text};
+  if (postop::is_relied_on(comparison)) return {Severity::Quiet, text};
   return {Severity::Caution, text + "; not reliable" + why};
 }
 

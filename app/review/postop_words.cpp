@@ -40,25 +40,20 @@ std::vector<AchievedRow> achieved_rows(const Comparisons& comparisons,
       row.diameter += format("; planned %.1f mm", now->second.diameter_mm);
     if (const auto length = planned_length_mm.find(key); length != planned_length_mm.end() && tunnel.is_found)
       row.length += format("; planned %.1f mm", length->second);
-    row.severity = !tunnel.is_found  ? widgets::Severity::Bad
-                   : tunnel.reliable ? widgets::Severity::Good
-                                     : widgets::Severity::Caution;
-    row.verdict = !comparison.bone.is_found ? "bone not found in the images"
-                  : !tunnel.is_found        ? "no tunnel found"
-                  : tunnel.reliable         ? "reliable"
-                                            : "not reliable";
-    row.reasons = comparison.bone.reasons;
     const bool is_of_plan = postop::is_against(tunnel, key, planned);
+    const postop::ComparisonVerdict verdict = postop::verdict_of(comparison, is_of_plan);
+    row.severity = !tunnel.is_found                                 ? widgets::Severity::Bad
+                   : verdict == postop::ComparisonVerdict::Reliable ? widgets::Severity::Good
+                                                                    : widgets::Severity::Caution;
+    row.verdict = to_text(verdict);
+    row.reasons = comparison.bone.reasons;
     if (const auto place = places.find(key); place != places.end() && tunnel.is_found && is_of_plan) {
       row.offset += ": " + postop::off_in_words(place->second);
       row.grid = postop::grid_in_words(place->second);
       row.wall = postop::wall_in_words(place->second);
     }
-    if (tunnel.is_found && !is_of_plan) {
-      row.severity = widgets::Severity::Caution;
-      row.verdict = "of an earlier plan";
+    if (verdict == postop::ComparisonVerdict::OfAnEarlierPlan)
       row.reasons.insert(row.reasons.begin(), "the plan was changed since: compare again");
-    }
     if (!comparison.kept_because.empty())
       row.reasons.push_back("kept from earlier images: " + comparison.kept_because);
     for (const std::string& reason : tunnel.reasons)

@@ -171,9 +171,8 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
 }
 
 std::string origin_in_words(const recording::SessionHeader& header) {
-  const auto kind = sources::source_kind_from_text(header.source_kind);
-  if (!kind) return "RECORDING";
-  switch (*kind) {
+  if (!header.source_kind) return "RECORDING";
+  switch (*header.source_kind) {
     case sources::SourceKind::Live:
       return "RECORDING of a live camera";
     case sources::SourceKind::Recording:

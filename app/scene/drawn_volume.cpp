@@ -19,14 +19,6 @@ struct Block {
   Eigen::Vector3i first, count, factor;  // of the volume's voxels; blocks along each axis
 };
 
-// A file without a modality: only a scan in Hounsfield units reaches this far below nought.
-bool is_hounsfield(const images::Volume& volume) {
-  if (!volume.modality.empty()) return volume.modality == "CT";
-  constexpr float kAir_hu = -500;
-  const auto least = std::ranges::min_element(volume.values);
-  return least != volume.values.end() && *least <= kAir_hu;
-}
-
 // The voxels whose centres span the box; nullopt where there are none.
 std::optional<Block> voxels_of(const images::Volume& volume, const geometry::Bounds& box_mm) {
   const Eigen::Affine3d index_from_lps = volume.lps_from_index.inverse();
@@ -82,7 +74,7 @@ std::shared_ptr<const DrawnVolume> drawn_volume(const images::Volume& volume, co
   coarsen(*block, volume.spacing_mm(), most_voxels);
   auto drawn = std::make_shared<DrawnVolume>();
   drawn->size = block->count.cwiseQuotient(block->factor);
-  drawn->is_ct = is_hounsfield(volume);
+  drawn->is_ct = volume.modality == images::Modality::Ct;
   if (drawn->is_ct) {
     drawn->lowest = kLowestCt_hu;
     drawn->highest = kHighestCt_hu;

@@ -74,8 +74,8 @@ GreyWindow automatic_window(const images::Volume& volume) {
   return {(low + high) / 2, std::max(high - low, 1.0)};
 }
 
-GreyWindow next_window(const GreyWindow& now, const GreyWindow& automatic, std::string_view modality) {
-  if (!modality.empty() && modality != "CT") return automatic;
+GreyWindow next_window(const GreyWindow& now, const GreyWindow& automatic, images::Modality modality) {
+  if (modality == images::Modality::Mr || modality == images::Modality::Other) return automatic;
   if (now == kBoneWindow) return kSoftTissueWindow;
   return now == kSoftTissueWindow ? automatic : kBoneWindow;
 }

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "planning/geometry/triangle_mesh.h"
@@ -40,7 +39,7 @@ inline constexpr GreyWindow kBoneWindow{480, 2500}, kSoftTissueWindow{40, 400};
 // The one that a key goes on to: bone, soft tissue, the automatic one. Of images that are known to be no CT
 // the automatic one alone: their values are no HU.
 [[nodiscard]] GreyWindow next_window(const GreyWindow& now, const GreyWindow& automatic,
-                                     std::string_view modality);
+                                     images::Modality modality);
 // The same of images that are at hand; of a label map, whose values are names, the automatic one alone.
 [[nodiscard]] GreyWindow next_window(const GreyWindow& now, const GreyWindow& automatic,
                                      const images::Volume& volume);

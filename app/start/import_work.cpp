@@ -257,9 +257,9 @@ bool ImportWork::is_busy() const {
 std::vector<std::string> ImportWork::doubts() const {
   std::vector<std::string> doubts;
   for (const importing::ImportedBone& bone : result_.bones)
-    for (const std::string& doubt :
-         said_side_ ? importing::doubts_with(result_, bone, *said_side_, true) : bone.doubts)
-      doubts.push_back("The " + std::string(bones::to_text(bone.bone.kind)) + ": " + doubt);
+    for (const cases::BoneDoubt& doubt : importing::doubts_with(
+             result_, bone, said_side_ ? said_side_ : result_.side, said_side_.has_value()))
+      doubts.push_back("The " + std::string(bones::to_text(bone.bone.kind)) + ": " + cases::words_of(doubt));
   return doubts;
 }
 

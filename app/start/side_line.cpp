@@ -23,7 +23,7 @@ SideLine line_of(const importing::BoneImport& import, std::optional<bones::Side>
   const auto& fibula = import.side_by_fibula;
   if (images && *images != *side) return against(Severity::Bad, "the images are marked as those of", *images);
   if (fibula && *fibula != *side) return against(Severity::Bad, "the fibula lies as in", *fibula);
-  if (import.side_is_contradicted && import.side == side)
+  if (import.side == side && importing::side_is_contradicted(import))
     return {Severity::Bad, told + ", but the bones speak against it, see below: look at the picture"};
   const auto shape =
       import.side_source == SideSource::Shapes ? import.side : importing::side_by_shapes(import);

@@ -61,7 +61,7 @@ std::optional<SessionHeader> header_of(const std::filesystem::path& session_fold
 }  // namespace
 
 bool is_exercise(const SessionHeader& header) {
-  return header.source_kind == "simulation" && header.source == sources::kExerciseSource;
+  return header.source_kind == sources::SourceKind::Simulation && header.source == sources::kExerciseSource;
 }
 
 bool is_exercise(const std::filesystem::path& session_folder) {
@@ -73,7 +73,7 @@ PicturedKnee pictured_knee(const std::filesystem::path& case_folder) {
   bool has_simulation = false, has_other = false;
   for (const std::filesystem::path& folder : cases::session_folders(case_folder)) {
     const auto header = header_of(folder);
-    const bool is_simulation = header && header->source_kind == "simulation";
+    const bool is_simulation = header && header->source_kind == sources::SourceKind::Simulation;
     (is_simulation ? has_simulation : has_other) = true;
   }
   return !has_simulation ? PicturedKnee::Patient : has_other ? PicturedKnee::Either : PicturedKnee::Nobody;
@@ -91,11 +91,12 @@ std::string real_session(const std::filesystem::path& case_folder) {
     const std::string name = folder.filename().string();
     try {
       pipeline::PipelineOptions options;
-      const std::string kind = read_session_header(folder, options).source_kind;
-      if (kind == "simulation") continue;
+      const auto kind = read_session_header(folder, options).source_kind;
+      if (kind == sources::SourceKind::Simulation) continue;
       return "its session " + name +
-             (kind.empty() ? " may be of a patient"
-                           : " is no simulation, but of a " + (kind == "live" ? "live camera" : kind));
+             (!kind                                ? " may be of a patient"
+              : *kind == sources::SourceKind::Live ? " is no simulation, but of a live camera"
+                                                   : " is no simulation, but of a recording");
     } catch (const InvalidInput&) {
     } catch (const IoError&) {
     }

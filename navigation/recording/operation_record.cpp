@@ -27,7 +27,7 @@ SessionHeader header_of(const std::filesystem::path& folder, const operation::Op
   header.probe_name = source.pipeline.probe_name;
   header.guide_name = source.pipeline.guide_name;
   header.source = info.name;
-  header.source_kind = sources::to_text(source.kind);
+  header.source_kind = source.kind;
   header.probe_drew_at_start = source.draws;
   header.time_out_first = source.time_out_first;
   header.mesh_sha256 = setup.mesh_sha256;

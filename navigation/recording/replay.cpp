@@ -180,7 +180,7 @@ void compare_registration(const RecordedSession& session, const operation::Opera
   const auto& found = now.registration->in_force.registration;
   if (!then && must_hold_registration(session.was_finished(), session.events()))
     summary.differences.push_back({-1, "registration", 0, "", "registration.json is not there any more"});
-  if (!options.bone || !then || session.header().source_kind.empty()) return;
+  if (!options.bone || !then || !session.header().has_journal()) return;
   const bool is_reliable_now = found != nullptr && found->reliable;
   if (then->reliable != is_reliable_now)
     summary.differences.push_back(
@@ -377,7 +377,7 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   // Without its bone no registration is found again, and nothing that follows from one; records of before the
   // journal hold no decisions.
   if (!options.other_bone.empty()) summary.differences.push_back({-1, "bone", 0, "", options.other_bone});
-  if (options.bone != nullptr && !session.header().source_kind.empty()) {
+  if (options.bone != nullptr && session.header().has_journal()) {
     compare_events(session, rerun.journal(), summary);
     compare_achieved(session, rerun.journal(), tolerance_mm, tolerance_deg, summary);
   }

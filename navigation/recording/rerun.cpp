@@ -94,10 +94,10 @@ void Rerun::start(const RecordedSession& session) {
   looks_.clear();
   journal_.clear();
   const SessionHeader& header = session.header();
-  has_journal_ = !header.source_kind.empty();
+  has_journal_ = header.has_journal();
   play_before_source();
   operation::SourceSetup source;
-  source.kind = sources::source_kind_from_text(header.source_kind).value_or(sources::SourceKind::Recording);
+  source.kind = header.source_kind.value_or(sources::SourceKind::Recording);
   source.draws = header.probe_drew_at_start;
   source.time_out_first = header.time_out_first;
   source.title = header.source;

@@ -202,7 +202,7 @@ std::optional<Resumable> resumable_from(const RecordedSession& newest) {
 std::string why_over(const RecordedSession& newest, const std::string& mesh_sha256,
                      const std::vector<tunnels::TunnelKey>& planned) {
   const SessionHeader& header = newest.header();
-  if (header.source_kind.empty() || header.registers_after_mm > 0)
+  if (!header.has_journal() || header.registers_after_mm > 0)
     return "nobody was at its pedal: what navigate ran on a recording is run again, not resumed";
   if (is_of_another_surface(header, mesh_sha256))
     return "it is of another surface of the bone than the case has now";

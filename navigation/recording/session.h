@@ -47,7 +47,7 @@ struct SessionHeader {
   // Of a video by append_picture(), in order; records of before have one, which they do not name.
   std::vector<VideoPart> video_parts;
   // Of the operation that this session is a part of; empty and 0 in records that are older than it.
-  std::string source_kind;          // "live", "recording", "simulation"
+  std::optional<sources::SourceKind> source_kind;
   std::string mesh_sha256;          // of the bone's mesh
   bool probe_drew_at_start = true;  // SourceSetup::draws
   bool time_out_first = false;    // SourceSetup::time_out_first; records of before there was this say nothing
@@ -55,6 +55,9 @@ struct SessionHeader {
   double registers_after_mm = 0;  // OperationSetup::registers_after_mm; 0: somebody was at the pedal
   std::string program_version;
   std::string build;  // build_identity() of the program that recorded it
+
+  // Whether its decisions were recorded: who says of what kind the source was records them, too.
+  [[nodiscard]] bool has_journal() const { return source_kind.has_value(); }
 };
 
 // Whether it was recorded on another surface of the bone than the one of this hash (bones::mesh_sha256).

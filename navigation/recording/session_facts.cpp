@@ -62,7 +62,7 @@ void read_header(const fs::path& folder, SessionFacts& facts) {
   facts.started_utc = header.started_utc;
   facts.bone = bones::to_text(header.bone);
   facts.side = bones::to_text(header.side);
-  facts.source_kind = header.source_kind;
+  if (header.source_kind) facts.source_kind = sources::to_text(*header.source_kind);
   facts.is_exercise = is_exercise(header);
 }
 

@@ -83,9 +83,11 @@ void write_session_header(const std::filesystem::path& folder, const SessionHead
                                    {"pictures", to_option(part.as)},
                                    {"codec", part.codec},
                                    {"held_back", part.held_back}});
-  if (!header.source_kind.empty()) json["source_kind"] = header.source_kind;
-  if (!header.source_kind.empty()) json["probe_drew_at_start"] = header.probe_drew_at_start;
-  if (!header.source_kind.empty()) json["time_out_first"] = header.time_out_first;
+  if (header.source_kind) {
+    json["source_kind"] = sources::to_text(*header.source_kind);
+    json["probe_drew_at_start"] = header.probe_drew_at_start;
+    json["time_out_first"] = header.time_out_first;
+  }
   if (!header.mesh_sha256.empty()) json["mesh_sha256"] = header.mesh_sha256;
   if (!header.continues.empty()) json["continues"] = header.continues;
   if (header.registers_after_mm > 0) json["registers_after_mm"] = header.registers_after_mm;
@@ -114,7 +116,10 @@ SessionHeader read_session_header(const std::filesystem::path& folder, pipeline:
   if (json.has("video_parts")) header.video_parts = video_parts_of(json);
   header.program_version = json.text("program_version");
   if (json.has("build")) header.build = json.text("build");
-  if (json.has("source_kind")) header.source_kind = json.text("source_kind");
+  if (json.has("source_kind")) {
+    header.source_kind = sources::source_kind_from_text(json.text("source_kind"));
+    if (!header.source_kind) json.fail("source_kind", "must be live, recording or simulation");
+  }
   if (json.has("probe_drew_at_start")) header.probe_drew_at_start = json.boolean("probe_drew_at_start");
   if (json.has("time_out_first")) header.time_out_first = json.boolean("time_out_first");
   if (json.has("mesh_sha256")) header.mesh_sha256 = json.text("mesh_sha256");

@@ -15,7 +15,6 @@ using Eigen::Vector3d;
 // From here on a registration is wrong for whoever drills by it: a tunnel is taken for well placed within
 // this.
 constexpr double kWrong_mm = 2.0;
-constexpr int kTouchesToVerify = 3;
 
 }  // namespace
 
@@ -77,12 +76,11 @@ void Examiner::follow_touches(const operation::OperationState& state) {
   }
   before_.touch_count = touches.count();
   facts_.verification_was_skipped = state.verification == operation::Verification::Skipped;
-  // A touch that told nothing verifies nothing, and neither does one that was skipped.
-  const int telling = std::max(0, facts_.touches - facts_.wasted_touches);
+  // Enough that lie off the bone verify nothing: one more is missing.
   facts_.verifying_touches_missing = state.verification == operation::Verification::ByTouches ? 0
                                      : facts_.verification_was_skipped
-                                         ? kTouchesToVerify
-                                         : std::max(1, kTouchesToVerify - telling);
+                                         ? touches.limits().touches_to_verify
+                                         : std::max(1, touches.places_to_verify());
 }
 
 // The operation has taken a point: it is drawn, wherever the tip truly was.

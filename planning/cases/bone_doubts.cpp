@@ -12,11 +12,63 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::string_view kBoneDoubtsFormat = "arthronaut.bone_doubts";
-constexpr int kBoneDoubtsVersion = 1;
+constexpr int kBoneDoubtsVersion = 2;
+
+SideDoubt side_doubt_from(const files::JsonObject& node) {
+  const auto side = [&](const char* key) {
+    const std::string word = node.text(key);
+    if (word != "left" && word != "right") node.fail(key, "must be left or right");
+    return bones::side_from_text(word);
+  };
+  const auto witness = side_witness_from_text(node.text("witness"));
+  if (!witness) node.fail("witness", "is none that is known");
+  return {*witness, side("told"), side("said"), node.has("looked_on") ? node.text("looked_on") : ""};
+}
 
 }  // namespace
 
+std::string words_of(const BoneDoubt& doubt) {
+  const auto* side = std::get_if<SideDoubt>(&doubt);
+  return side != nullptr ? side->words() : std::get<std::string>(doubt);
+}
+
+std::vector<std::string> words_of(const std::vector<BoneDoubt>& doubts) {
+  std::vector<std::string> words;
+  for (const BoneDoubt& doubt : doubts) words.push_back(words_of(doubt));
+  return words;
+}
+
 fs::path bone_doubts_file(const fs::path& case_folder) { return case_folder / "bone_doubts.json"; }
+
+void put_doubts(nlohmann::ordered_json& bone, const std::vector<BoneDoubt>& doubts) {
+  auto sentences = nlohmann::ordered_json::array(), sides = sentences;
+  for (const BoneDoubt& doubt : doubts) {
+    const auto* side = std::get_if<SideDoubt>(&doubt);
+    if (side == nullptr) {
+      sentences.push_back(std::get<std::string>(doubt));
+      continue;
+    }
+    sides.push_back({{"witness", to_text(side->witness)},
+                     {"told", bones::to_text(side->told)},
+                     {"said", bones::to_text(side->said)}});
+    if (!side->looked_on.empty()) sides.back()["looked_on"] = side->looked_on;
+  }
+  bone["doubts"] = std::move(sentences);
+  bone["side_doubts"] = std::move(sides);
+}
+
+std::vector<BoneDoubt> doubts_from(const files::JsonObject& bone) {
+  const bool is_of_version_1 = !bone.has("side_doubts");
+  std::vector<BoneDoubt> doubts;
+  for (std::string& sentence : bone.texts("doubts")) {
+    const auto side = is_of_version_1 ? side_doubt_from_words(sentence) : std::nullopt;
+    doubts.push_back(side ? BoneDoubt(*side) : BoneDoubt(std::move(sentence)));
+  }
+  if (is_of_version_1) return doubts;
+  for (const files::JsonObject& side : bone.objects("side_doubts"))
+    doubts.emplace_back(side_doubt_from(side));
+  return doubts;
+}
 
 BoneDoubts load_bone_doubts(const fs::path& case_folder) {
   const fs::path file = bone_doubts_file(case_folder);
@@ -26,16 +78,19 @@ BoneDoubts load_bone_doubts(const fs::path& case_folder) {
        files::read_json(file, kBoneDoubtsFormat, kBoneDoubtsVersion).objects("bones")) {
     const std::string kind = bone.text("kind");
     if (kind != "femur" && kind != "tibia") bone.fail("kind", "must be femur or tibia");
-    if (auto texts = bone.texts("doubts"); !texts.empty())
-      doubts[bones::bone_kind_from_text(kind)] = std::move(texts);
+    if (auto of_bone = doubts_from(bone); !of_bone.empty())
+      doubts[bones::bone_kind_from_text(kind)] = std::move(of_bone);
   }
   return doubts;
 }
 
 void save_bone_doubts(const fs::path& case_folder, const BoneDoubts& doubts) {
   auto nodes = nlohmann::ordered_json::array();
-  for (const auto& [kind, texts] : doubts)
-    if (!texts.empty()) nodes.push_back({{"kind", bones::to_text(kind)}, {"doubts", texts}});
+  for (const auto& [kind, of_bone] : doubts) {
+    if (of_bone.empty()) continue;
+    nodes.push_back({{"kind", bones::to_text(kind)}});
+    put_doubts(nodes.back(), of_bone);
+  }
   if (nodes.empty()) return files::remove_file(bone_doubts_file(case_folder));
   files::write_json(
       bone_doubts_file(case_folder),

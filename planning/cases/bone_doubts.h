@@ -6,20 +6,37 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "planning/bones/bone.h"
+#include "planning/cases/side_doubt.h"
+
+namespace arthronaut::files {
+class JsonObject;
+}
 
 namespace arthronaut::cases {
 
-// Sentences for a person, by bone; only bones with any.
-using BoneDoubts = std::map<bones::BoneKind, std::vector<std::string>>;
+// A sentence for a person, or what is asked about the side.
+using BoneDoubt = std::variant<std::string, SideDoubt>;
+// By bone; only bones with any.
+using BoneDoubts = std::map<bones::BoneKind, std::vector<BoneDoubt>>;
+
+[[nodiscard]] std::string words_of(const BoneDoubt& doubt);
+[[nodiscard]] std::vector<std::string> words_of(const std::vector<BoneDoubt>& doubts);
 
 [[nodiscard]] std::filesystem::path bone_doubts_file(const std::filesystem::path& case_folder);
 // Empty where there is no file. Throws IoError or InvalidInput (file, place, reason).
 [[nodiscard]] BoneDoubts load_bone_doubts(const std::filesystem::path& case_folder);
-// Atomic; without any the file goes. Throws IoError; what was there is then as before.
+// Atomic; without any the file goes. Throws IoError; what was there is then as before. Sentences come back
+// before what is asked about the side.
 void save_bone_doubts(const std::filesystem::path& case_folder, const BoneDoubts& doubts);
+
+// A bone's doubts in this file, and wherever else a file of the case holds some: "doubts" and "side_doubts".
+void put_doubts(nlohmann::ordered_json& bone, const std::vector<BoneDoubt>& doubts);
+// Also of version 1, where all were sentences. Throws InvalidInput (file, place, reason).
+[[nodiscard]] std::vector<BoneDoubt> doubts_from(const files::JsonObject& bone);
 
 }  // namespace arthronaut::cases

@@ -71,6 +71,9 @@ struct Case {
 // then (import/case_import.h). A tunnel that names no mesh is saved with the name of the case's. Throws
 // IoError.
 void save_case(const std::filesystem::path& folder, const Case& contents);
+// case.json alone, of a case that is there: before a plan that its landmarks' grid was the ruler of. Throws
+// IoError; what was there is then as before.
+void save_landmarks(const std::filesystem::path& folder, const Case& contents);
 // The plan alone: what changes while a surgeon plans. Replaces what is there, whatever it is.
 void save_plan(const std::filesystem::path& folder, const Plan& plan);
 

@@ -143,14 +143,9 @@ void save_cartilage(const fs::path& case_folder, bones::BoneKind kind,
   bones::write_mesh_ply(cartilage_file(case_folder, kind), cartilage);
 }
 
-// case.json is written last: it is what makes the folder a case, and it names only meshes that are already
-// there.
-void save_case(const fs::path& folder, const Case& contents) {
-  files::create_private_folder(folder);
+void save_landmarks(const fs::path& folder, const Case& contents) {
   auto bones = nlohmann::ordered_json::array();
   for (const auto& [kind, bone] : contents.bones) {
-    if (!holds_mesh(mesh_file(folder, kind), bone.mesh))
-      bones::write_mesh_ply(mesh_file(folder, kind), bone.mesh);
     nlohmann::ordered_json node = {{"kind", bones::to_text(kind)}, {"source", bone.source}};
     if (const auto marks = contents.landmarks.find(kind); marks != contents.landmarks.end()) {
       const auto states = contents.landmark_states.find(kind);
@@ -160,7 +155,6 @@ void save_case(const fs::path& folder, const Case& contents) {
     }
     bones.push_back(std::move(node));
   }
-  save_plan(folder, with_named_meshes(contents));
   nlohmann::ordered_json document = {{"format", kCaseFormat},
                                      {"version", kCaseVersion},
                                      {"name", contents.name},
@@ -169,6 +163,17 @@ void save_case(const fs::path& folder, const Case& contents) {
                                      {"bones", std::move(bones)}};
   for (const CaseImage& image : contents.images) document["images"].push_back(image_to_json(image));
   files::write_json(folder / "case.json", document);
+}
+
+// case.json is written last: it is what makes the folder a case, and it names only meshes that are already
+// there.
+void save_case(const fs::path& folder, const Case& contents) {
+  files::create_private_folder(folder);
+  for (const auto& [kind, bone] : contents.bones)
+    if (!holds_mesh(mesh_file(folder, kind), bone.mesh))
+      bones::write_mesh_ply(mesh_file(folder, kind), bone.mesh);
+  save_plan(folder, with_named_meshes(contents));
+  save_landmarks(folder, contents);
 }
 
 }  // namespace arthronaut::cases

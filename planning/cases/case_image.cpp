@@ -18,7 +18,6 @@ images::Volume load_image(const fs::path& case_folder, const CaseImage& image,
   if (volume.size != image.size)
     throw InvalidInput(file, "sizes", "are not what case.json says: it is another volume");
   volume.format = image.source;
-  volume.modality = image.modality;
   return volume;
 }
 

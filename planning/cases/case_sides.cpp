@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using bones::BoneKind;
 constexpr std::string_view kSidesFormat = "arthronaut.sides";
-constexpr int kSidesVersion = 1;
+constexpr int kSidesVersion = 2;
 
 // By bone, the mesh that landmarks and doubts are of.
 using MeshHashes = std::map<BoneKind, std::string>;
@@ -60,7 +60,7 @@ KeptSide kept_side_from(const files::JsonObject& node) {
       contents.landmarks[kind] = std::move(marks);
       contents.landmark_states[kind] = std::move(states);
     }
-    contents.doubts[kind] = bone.texts("doubts");
+    contents.doubts[kind] = doubts_from(bone);
   }
   contents.plan = plan_from(node.object("plan"));
   return kept;
@@ -82,12 +82,13 @@ void save_sides(const fs::path& case_folder, const Sides& sides) {
   auto nodes = nlohmann::ordered_json::array();
   for (const auto& [side, kept] : sides.kept) {
     auto bones = nlohmann::ordered_json::array();
-    for (const auto& [kind, mesh] : kept.meshes)
+    for (const auto& [kind, mesh] : kept.meshes) {
       bones.push_back({{"kind", bones::to_text(kind)},
                        {"mesh_sha256", mesh},
                        {"landmarks", landmarks_to_json(value_of(kept.contents.landmarks, kind),
-                                                       value_of(kept.contents.landmark_states, kind))},
-                       {"doubts", value_of(kept.contents.doubts, kind)}});
+                                                       value_of(kept.contents.landmark_states, kind))}});
+      put_doubts(bones.back(), value_of(kept.contents.doubts, kind));
+    }
     nodes.push_back(
         {{"side", bones::to_text(side)}, {"bones", std::move(bones)}, {"plan", to_json(kept.contents.plan)}});
   }

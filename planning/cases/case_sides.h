@@ -6,7 +6,7 @@
 // between leaves a case of either side without a plan of the other one, and whoever takes the case next
 // (CaseLock) goes on where it stopped.
 //
-// The sentences of the doubts, and what stands against a change, are those of import/case_side.h.
+// What becomes of the doubts, and what stands against a change, import/case_side.h says.
 #pragma once
 
 #include <filesystem>

@@ -144,7 +144,7 @@ Volume read_dicom(const fs::path& source, const VolumeFileOptions& options) {
   volume.notes = {description};
   volume.notes.insert(volume.notes.end(), stack.notes.begin(), stack.notes.end());
   volume.notes.insert(volume.notes.end(), left_out.begin(), left_out.end());
-  volume.modality = first.modality;
+  volume.modality_in_file = first.modality;
   volume.patient = first.patient;
   volume.side = side_of_all(slices);
   volume.size = {first.frame.columns, first.frame.rows, static_cast<int>(slices.size())};

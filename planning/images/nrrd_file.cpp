@@ -275,7 +275,7 @@ Volume parse_nrrd(const std::filesystem::path& file, std::string_view text, std:
     merge_layers(volume, file, layers, segments);
   }
   if (const auto modality = header.pairs.find("modality"); modality != header.pairs.end())
-    volume.modality = modality->second.substr(0, 16);
+    volume.modality_in_file = modality->second.substr(0, 16);
   finish(volume, file);
   return volume;
 }

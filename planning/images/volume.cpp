@@ -16,7 +16,7 @@ std::vector<std::pair<int, std::size_t>> labels_of(const Volume& volume) {
 }
 
 bool is_label_map(const Volume& volume) {
-  if (!volume.modality.empty()) return false;
+  if (volume.modality != Modality::Unknown) return false;
   const auto labels = labels_of(volume);
   if (labels.size() < 2 || labels.front().first < 0) return false;
   // A few thin labels, cartilage alone, may have more edge than inside; no image has so few grey values.

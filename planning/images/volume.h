@@ -22,6 +22,10 @@ struct Segment {
   int label = 0;  // the value of its voxels
 };
 
+// As the file says. Of a file that does not say (NIfTI never does) Ct where a value lies below -500, as air
+// does in HU and nothing that means anything does elsewhere; else Unknown, as of a label map.
+enum class Modality { Unknown, Ct, Mr, Other };
+
 struct Volume {
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
   // Takes an index (i, j, k), the centre of that voxel, to LPS in mm. Oblique, sheared and mirrored axes are
@@ -29,9 +33,10 @@ struct Volume {
   Eigen::Affine3d lps_from_index = Eigen::Affine3d::Identity();
   // i runs fastest. Rescaled: Hounsfield units for a CT, labels as they are. Finite.
   std::vector<float> values;
-  std::string format;    // "DICOM", "NIfTI"
-  Patient patient;       // DICOM alone says so
-  std::string modality;  // "CT", "MR"; empty when the file does not say
+  std::string format;                     // "DICOM", "NIfTI"
+  Patient patient;                        // DICOM alone says so
+  std::string modality_in_file;           // "CT", "MR", "PT"; empty when the file does not say
+  Modality modality = Modality::Unknown;  // whatever reads a volume decides it
   // Of the body that is shown, as whoever took the images marked them (DICOM alone); nullopt where none of
   // them says it, or not all the same.
   std::optional<bones::Side> side;
@@ -53,8 +58,8 @@ struct Volume {
 // empty.
 [[nodiscard]] std::vector<std::pair<int, std::size_t>> labels_of(const Volume& volume);
 
-// Whether the volume is one of labels: no modality, whole numbers from 0, and each mostly beside its own
-// like. An image of 8 bits has as few numbers, but another one beside nearly every voxel.
+// Whether the volume is one of labels: of no known modality, whole numbers from 0, and each mostly beside its
+// own like. An image of 8 bits has as few numbers, but another one beside nearly every voxel.
 [[nodiscard]] bool is_label_map(const Volume& volume);
 
 // "left-posterior-superior" for the axes i, j, k: the patient direction that each comes closest to.

@@ -176,6 +176,16 @@ void set_values(Volume& volume, const std::filesystem::path& file, std::string_v
   }
 }
 
+namespace {
+
+Modality modality_of(std::string_view in_file, float least) {
+  constexpr float kAir_hu = -500;
+  if (in_file.empty()) return least < kAir_hu ? Modality::Ct : Modality::Unknown;
+  return in_file == "CT" ? Modality::Ct : in_file == "MR" ? Modality::Mr : Modality::Other;
+}
+
+}  // namespace
+
 void finish(Volume& volume, const std::filesystem::path& file) {
   const Eigen::Matrix3d axes = volume.lps_from_index.linear();
   if (!volume.lps_from_index.matrix().allFinite())
@@ -194,6 +204,7 @@ void finish(Volume& volume, const std::filesystem::path& file) {
     not_finite += !std::isfinite(v);
   }
   if (not_finite == volume.values.size()) throw InvalidInput(file, "", "holds no finite value");
+  volume.modality = modality_of(volume.modality_in_file, least);
   if (not_finite == 0) return;
   for (float& v : volume.values) v = std::isfinite(v) ? v : least;
   volume.notes.push_back(std::to_string(not_finite) + " voxels were not finite: taken for empty");

@@ -67,7 +67,8 @@ struct Samples {
 void set_values(Volume& volume, const std::filesystem::path& file, std::string_view bytes,
                 const Samples& samples);
 
-// Refuses a singular or not finite geometry, puts the least finite value where there is none and notes it.
+// Refuses a singular or not finite geometry, puts the least finite value where there is none and notes it,
+// and decides the modality.
 void finish(Volume& volume, const std::filesystem::path& file);
 
 // The header of NRRD and MetaImage: words of a value as numbers. Throws InvalidInput that names the key.

@@ -121,7 +121,7 @@ EncodedVolume encoded(const Volume& volume) {
   } else {
     fill<float>(encoded, volume.values);
   }
-  encoded.header = header_of(volume, type, "raw", volume.modality, volume.segments);
+  encoded.header = header_of(volume, type, "raw", volume.modality_in_file, volume.segments);
   return encoded;
 }
 

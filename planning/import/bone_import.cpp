@@ -31,9 +31,6 @@ using namespace images;
 
 using Tell = std::function<void(const ImportProgress&)>;
 
-// Air in a CT; no other modality has values this low that means anything.
-constexpr float kAir_hu = -500;
-
 std::vector<std::string> words_of(const std::filesystem::path& source) {
   std::filesystem::path named = source;
   if (!named.has_filename()) named = named.parent_path();  // "folder/"
@@ -140,9 +137,7 @@ void import_mesh(const std::filesystem::path& source, const BoneImportOptions& o
 
 void refuse_without_threshold(const Volume& volume, const std::filesystem::path& source,
                               const BoneImportOptions& options) {
-  if (options.threshold) return;
-  const float least = *std::min_element(volume.values.begin(), volume.values.end());
-  if (volume.modality == "CT" || (volume.modality.empty() && least < kAir_hu)) return;
+  if (options.threshold || volume.modality == Modality::Ct) return;
   throw refusal(
       source,
       "is no CT, so there is no threshold that finds bone: paint seeds and grow them (arthronaut segment), "
@@ -169,7 +164,7 @@ std::optional<Volume> ct_of(const Volume& labels, const BoneImportOptions& optio
   VolumeFileOptions reading{.series = {}, .most_bytes = options.most_bytes};
   reading.on_progress = [&](double fraction) { tell({ImportStage::ReadingImages, fraction}); };
   Volume grey = read_volume(options.edges_in, reading);
-  if (grey.modality != "CT") return std::nullopt;
+  if (grey.modality != Modality::Ct) return std::nullopt;
   if (grey.size != labels.size || !grey.lps_from_index.isApprox(labels.lps_from_index, 1e-5))
     throw InvalidInput(options.edges_in, "", "is not the image that the labels were painted in");
   return grey;
@@ -241,10 +236,6 @@ void import_ct(BoneImages& images, const BoneImportOptions& options, BoneImport&
     ImportedBone& imported = result.bones.back();
     imported.lines.insert(imported.lines.begin(), bone.notes.begin(), bone.notes.end());
     imported.doubts.insert(imported.doubts.begin(), bone.doubts.begin(), bone.doubts.end());
-    if (result.side_by_fibula && result.side && *result.side_by_fibula != *result.side) {
-      imported.doubts.push_back(other_side_by_fibula(*result.side_by_fibula, *result.side));
-      result.side_is_contradicted = true;
-    }
   }
   if (!result.side && result.side_by_fibula) {
     result.side = result.side_by_fibula;
@@ -311,7 +302,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
     throw InvalidInput(source, "", message);
   }
   result.image = ImportedImage{.image = {.file = {},
-                                         .modality = volume.modality,
+                                         .modality = volume.modality_in_file,
                                          .source = volume.format,
                                          .is_label_map = has_labels,
                                          .size = volume.size,
@@ -319,8 +310,6 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
                                .volume = encoded(volume)};
   tell({ImportStage::LookingAtBones});
   check_shapes(result, result.side_by_fibula.has_value());
-  // After the shapes, which are looked at where nothing speaks against a bone yet.
-  check_side_of_images(result);
   check_holes(result);
   if (is_ct && !options.kind && result.bones.size() == 1)
     result.bones.front().doubts.push_back(

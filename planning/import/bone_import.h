@@ -45,8 +45,9 @@ struct BoneImportOptions {
 struct ImportedBone {
   bones::Bone bone;
   bones::MeshRepairReport repair;
-  std::vector<std::string> lines;            // what was found, chosen and mended, for a person
-  std::vector<std::string> doubts;           // why a person should look before relying on it
+  std::vector<std::string> lines;  // what was found, chosen and mended, for a person
+  // Why a person should look before relying on it; what is to be said of its side, import_side.h says.
+  std::vector<std::string> doubts;
   std::optional<bones::Space> read_in = {};  // of a mesh: the axes that the file was taken to be in
   bool looks_backwards = false;              // to the patient's back, which is among the doubts
   // Of which knee its shape is, where that was looked at and it tells; import_side.h holds it against the
@@ -79,7 +80,6 @@ struct BoneImport {
   std::vector<ImportedBone> bones;
   std::optional<bones::Side> side;  // nullopt: nothing told it
   SideSource side_source = SideSource::None;
-  bool side_is_contradicted = false;  // by fibula, shapes or mark: a doubt of the bones
   // What each of these says, whatever told the side: another side is a doubt of the bones.
   std::optional<bones::Side> side_by_fibula;
   std::optional<bones::Side> side_in_images;  // as they are marked

@@ -9,7 +9,8 @@
 
 namespace arthronaut::importing {
 
-BoneQuality quality_of(const ImportedBone& made, double labelled_ml, const images::Volume& images) {
+BoneQuality quality_of(const BoneImport& import, const ImportedBone& made, double labelled_ml,
+                       const images::Volume& images) {
   const segmentation::DarkRim rim = segmentation::rim_outside(made.bone.mesh, images);
   return {.kind = made.bone.kind,
           .labelled_ml = labelled_ml,
@@ -21,7 +22,7 @@ BoneQuality quality_of(const ImportedBone& made, double labelled_ml, const image
           .slice_mm = images.spacing_mm().maxCoeff(),
           .roughness_mm = segmentation::roughness_mm(made.bone.mesh),
           .beneath = segmentation::bone_beneath(made.bone.mesh, images),
-          .doubts = made.doubts};
+          .doubts = cases::words_of(doubts_with(import, made, import.side))};
 }
 
 namespace {

@@ -28,7 +28,7 @@ struct BoneQuality {
 };
 
 // images: that it was labelled in.
-[[nodiscard]] BoneQuality quality_of(const ImportedBone& made, double labelled_ml,
+[[nodiscard]] BoneQuality quality_of(const BoneImport& import, const ImportedBone& made, double labelled_ml,
                                      const images::Volume& images);
 
 enum class QualityVerdict {

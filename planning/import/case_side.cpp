@@ -1,13 +1,11 @@
 #include "planning/import/case_side.h"
 
-#include <algorithm>
-#include <string_view>
+#include <variant>
 
 #include "planning/cases/case_sides.h"
 #include "planning/files/local_time.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
-#include "planning/import/import_side.h"
 
 namespace arthronaut::importing {
 
@@ -15,35 +13,21 @@ namespace {
 
 namespace fs = std::filesystem;
 using bones::Side;
+using cases::SideDoubt;
 
-constexpr std::string_view kAsksForCheck = ": check the side";
+cases::BoneDoubt alone_told(Side side) { return SideDoubt{cases::SideWitness::ShapesAlone, side, side}; }
 
 std::string knee_of(Side side) { return std::string(bones::to_text(side)) + " knee"; }
-
-// The sentence that asks for the side to be checked, without that.
-std::string without_question(std::string sentence) {
-  if (sentence.ends_with(kAsksForCheck)) sentence.erase(sentence.size() - kAsksForCheck.size());
-  return sentence;
-}
-
-// What tells this side while the case has the other one; also after somebody has looked at it.
-bool tells(const std::string& sentence, Side side, Side of_case) {
-  for (const std::string& told :
-       {other_side_by_fibula(side, of_case), other_side_by_shape(side, of_case, true),
-        other_side_by_shape(side, of_case, false), other_side_in_images(side, of_case)})
-    if (sentence.starts_with(without_question(told))) return true;
-  return false;
-}
 
 // Of a side that was checked. That shapes alone had told it is a doubt no more.
 bool settle(cases::BoneDoubts& doubts, Side side) {
   bool is_settled = false;
-  for (auto& [bone, sentences] : doubts) {
-    is_settled |= std::erase(sentences, side_by_shape_alone(side)) > 0;
-    for (std::string& sentence : sentences) {
-      if (!sentence.ends_with(kAsksForCheck)) continue;
-      sentence = without_question(sentence) + "; somebody looked on " + files::local_day(files::utc_now()) +
-                 " and says that it is";
+  for (auto& [bone, of_bone] : doubts) {
+    is_settled |= std::erase(of_bone, alone_told(side)) > 0;
+    for (cases::BoneDoubt& doubt : of_bone) {
+      auto* asked = std::get_if<SideDoubt>(&doubt);
+      if (asked == nullptr || !asked->is_open()) continue;
+      asked->looked_on = files::local_day(files::utc_now());
       is_settled = true;
     }
   }
@@ -52,9 +36,13 @@ bool settle(cases::BoneDoubts& doubts, Side side) {
 
 cases::BoneDoubts doubts_as(const cases::Case& knee, cases::BoneDoubts doubts, Side side) {
   std::size_t told = 0;
-  for (auto& [bone, sentences] : doubts) {
-    told += std::erase_if(sentences, [&](const auto& one) { return tells(one, side, knee.side); });
-    std::erase(sentences, side_by_shape_alone(knee.side));  // it spoke for the side that is left
+  for (auto& [bone, of_bone] : doubts) {
+    // What tells this side while the case has the other one; also after somebody has looked at it.
+    told += std::erase_if(of_bone, [&](const cases::BoneDoubt& doubt) {
+      const auto* asked = std::get_if<SideDoubt>(&doubt);
+      return asked != nullptr && asked->told == side && asked->said != side;
+    });
+    std::erase(of_bone, alone_told(knee.side));  // it spoke for the side that is left
   }
   (void)settle(doubts, side);
   if (told == 0 && !knee.bones.empty())

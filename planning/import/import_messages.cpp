@@ -171,7 +171,6 @@ void describe(Archive& archive, BoneImport& import) {
   describe(archive, import.side_source);
   describe(archive, import.side_by_fibula);
   describe(archive, import.side_in_images);
-  describe(archive, import.side_is_contradicted);
   describe(archive, import.lines);
   describe(archive, import.identity.patient_name);
   describe(archive, import.identity.patient_id);

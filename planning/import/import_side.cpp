@@ -49,25 +49,6 @@ std::string told_by(SideSource source) {
   return "";
 }
 
-std::string other_side_by_fibula(bones::Side fibula, bones::Side said) {
-  return "the fibula lies on the " + word_of(fibula) + " of the tibia, as in a " + word_of(fibula) +
-         " knee, but the side is " + word_of(said) + ": check the side";
-}
-
-std::string other_side_by_shape(bones::Side shape, bones::Side said, bool of_both) {
-  return "by the shape of " + std::string(of_both ? "both bones" : "the bone") + " it is a " +
-         word_of(shape) + " knee, but the side is " + word_of(said) + ": check the side";
-}
-
-std::string side_by_shape_alone(bones::Side shape) {
-  return "that it is a " + word_of(shape) + " knee is told by the shape of its bones alone: check the side";
-}
-
-std::string other_side_in_images(bones::Side images, bones::Side said) {
-  return "the images are marked as those of a " + word_of(images) + " knee, but the side is " +
-         word_of(said) + ": check the side";
-}
-
 void take_side_of_images(BoneImport& import, std::optional<bones::Side> marked, bool was_said) {
   import.side_in_images = marked;
   if (!marked) return;
@@ -83,48 +64,38 @@ void take_side_of_images(BoneImport& import, std::optional<bones::Side> marked, 
   import.lines.push_back(line);
 }
 
-void check_side_of_images(BoneImport& import) {
-  if (!import.side || !is_against(import.side_in_images, *import.side)) return;
-  for (ImportedBone& bone : import.bones)
-    bone.doubts.push_back(other_side_in_images(*import.side_in_images, *import.side));
-  import.side_is_contradicted = true;
+bool side_is_contradicted(const BoneImport& import) {
+  return import.side && (is_against(import.side_in_images, *import.side) ||
+                         is_against(import.side_by_fibula, *import.side) ||
+                         is_against(side_by_shapes(import), *import.side));
 }
 
-std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBone& bone, bones::Side side,
-                                     bool is_said_by_person) {
-  std::vector<std::string> doubts = bone.doubts;
-  if (is_said_by_person) std::erase(doubts, side_by_shape_alone(side));
-  if (import.side == side) return doubts;
-  if (import.side) {
-    // What spoke against the other side speaks for this one; what it was told by is no matter any more.
-    std::erase(doubts, other_side_by_fibula(side, *import.side));
-    for (const bool of_both : {true, false})
-      std::erase(doubts, other_side_by_shape(side, *import.side, of_both));
-    std::erase(doubts, side_by_shape_alone(*import.side));
-    std::erase(doubts, other_side_in_images(side, *import.side));
+std::vector<cases::BoneDoubt> doubts_with(const BoneImport& import, const ImportedBone& bone,
+                                          std::optional<bones::Side> side, bool is_said_by_person) {
+  using enum cases::SideWitness;
+  std::vector<cases::BoneDoubt> doubts(bone.doubts.begin(), bone.doubts.end());
+  if (!side) return doubts;
+  const auto tells = [&](cases::SideWitness witness, bones::Side told) {
+    doubts.emplace_back(cases::SideDoubt{witness, told, *side});
+  };
+  if (is_against(import.side_in_images, *side)) tells(ImageMark, *import.side_in_images);
+  if (is_against(import.side_by_fibula, *side)) {
+    tells(Fibula, *import.side_by_fibula);
+    return doubts;
   }
-  if (is_against(import.side_in_images, side))
-    doubts.push_back(other_side_in_images(*import.side_in_images, side));
-  if (is_against(import.side_by_fibula, side)) {
-    doubts.push_back(other_side_by_fibula(*import.side_by_fibula, side));
-  } else if (const auto shape = side_by_shapes(import);
-             shape && *shape != side && bone.bone.kind == import.bones.front().bone.kind) {
-    doubts.push_back(other_side_by_shape(*shape, side, judged_count(import) > 1));
-  }
+  const auto judged = std::ranges::find(import.bones, true, &ImportedBone::shape_was_judged);
+  const auto shape = side_by_shapes(import);
+  if (!shape || judged->bone.kind != bone.bone.kind) return doubts;
+  if (*shape != *side)
+    tells(judged_count(import) > 1 ? BothShapes : OneShape, *shape);
+  else if (import.side_source == SideSource::Shapes && !is_said_by_person)
+    tells(ShapesAlone, *shape);
   return doubts;
 }
 
 void say_side(BoneImport& import, bones::Side side) {
-  std::vector<std::vector<std::string>> doubts;
-  for (const ImportedBone& bone : import.bones) doubts.push_back(doubts_with(import, bone, side, true));
-  for (std::size_t i = 0; i < doubts.size(); ++i) import.bones[i].doubts = std::move(doubts[i]);
-  if (import.side == side) {  // known as it was known
-    if (import.side_source == SideSource::Shapes) import.side_source = SideSource::Person;
-    return;
-  }
-  import.side_is_contradicted = is_against(import.side_by_fibula, side) ||
-                                is_against(side_by_shapes(import), side) ||
-                                is_against(import.side_in_images, side);
+  // Known as it was known, unless it was the shapes alone that knew it.
+  if (import.side == side && import.side_source != SideSource::Shapes) return;
   import.side = side;
   import.side_source = SideSource::Person;
 }
@@ -138,7 +109,6 @@ bool add_bones(BoneImport& import, BoneImport more) {
   };
   tell(import, more);
   tell(more, import);
-  import.side_is_contradicted = import.side_is_contradicted || more.side_is_contradicted;
   if (!import.side_by_fibula) import.side_by_fibula = more.side_by_fibula;
   if (!import.side_in_images) import.side_in_images = more.side_in_images;
   std::ranges::move(more.bones, std::back_inserter(import.bones));

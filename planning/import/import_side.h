@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "planning/cases/bone_doubts.h"
 #include "planning/import/bone_import.h"
 
 namespace arthronaut::importing {
@@ -15,22 +16,18 @@ namespace arthronaut::importing {
 
 // "by the name of a segment"; empty where a person said it, or nothing did.
 [[nodiscard]] std::string told_by(SideSource source);
-// The sentences of such doubts.
-[[nodiscard]] std::string other_side_by_fibula(bones::Side fibula, bones::Side said);
-[[nodiscard]] std::string other_side_by_shape(bones::Side shape, bones::Side said, bool of_both);
-[[nodiscard]] std::string side_by_shape_alone(bones::Side shape);
-[[nodiscard]] std::string other_side_in_images(bones::Side images, bones::Side said);
-
 // As the images are marked, where nobody said it. A name that says the other side is as good a witness:
 // neither is believed then, and the bones may tell.
 void take_side_of_images(BoneImport& import, std::optional<bones::Side> marked, bool was_said);
-// The doubts of all bones where the side, whatever told it, is not that of the images.
-void check_side_of_images(BoneImport& import);
+// Whether mark, fibula or shapes tell another side than the import has.
+[[nodiscard]] bool side_is_contradicted(const BoneImport& import);
 
-// The doubts of one of its bones in a knee of that side: as a person says it, or as the case has it that the
-// bone is added to. Those of shapes stay with the first bone.
-[[nodiscard]] std::vector<std::string> doubts_with(const BoneImport& import, const ImportedBone& bone,
-                                                   bones::Side side, bool is_said_by_person = false);
+// The doubts of one of its bones in a knee of that side, those of the side last: as a person says it, as the
+// case has it that the bone is added to, or as the import has it. Those of shapes stay with the first bone
+// whose shape was judged. nullopt: of no side yet.
+[[nodiscard]] std::vector<cases::BoneDoubt> doubts_with(const BoneImport& import, const ImportedBone& bone,
+                                                        std::optional<bones::Side> side,
+                                                        bool is_said_by_person = false);
 // A person says the side. Where fibula or shapes say another one that is a doubt of the bones from then on;
 // where the shapes alone told the same one, that is none any more.
 void say_side(BoneImport& import, bones::Side side);

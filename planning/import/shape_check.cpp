@@ -56,16 +56,9 @@ void check_shapes(BoneImport& import, bool fibula_was_seen) {
     }
   }
   const auto shape = side_by_shapes(import);
-  if (!shape) return;
-  if (import.side && *import.side != *shape) {
-    import.side_is_contradicted = true;
-    import.bones.front().doubts.push_back(other_side_by_shape(*shape, *import.side, judged > 1));
-  }
-  if (!import.side && judged > 1) {
-    import.side = shape;
-    import.side_source = SideSource::Shapes;
-    import.bones.front().doubts.push_back(side_by_shape_alone(*shape));
-  }
+  if (!shape || import.side || judged < 2) return;
+  import.side = shape;
+  import.side_source = SideSource::Shapes;
 }
 
 }  // namespace arthronaut::importing

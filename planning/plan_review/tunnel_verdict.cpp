@@ -33,9 +33,9 @@ std::string TunnelVerdict::in_short() const {
 }
 
 TunnelVerdict verdict_of(const std::vector<tunnels::PlanCheck>& checks,
-                         const std::vector<std::string>& bone_doubts, const std::string& grid_doubt) {
+                         const std::vector<cases::BoneDoubt>& bone_doubts, const std::string& grid_doubt) {
   TunnelVerdict verdict{.wrong = tunnels::wrong_in_words(checks)};
-  for (const std::string& doubt : bone_doubts) verdict.look.push_back("Bone: " + doubt);
+  for (const cases::BoneDoubt& doubt : bone_doubts) verdict.look.push_back("Bone: " + words_of(doubt));
   if (!grid_doubt.empty()) verdict.look.push_back("Grid: " + grid_doubt);
   for (const tunnels::PlanCheck& check : checks)
     if (check.verdict == Verdict::Look) verdict.look.push_back(check.name + ": " + check.text);
@@ -53,11 +53,10 @@ std::string grid_doubt(const cases::Case& knee, bones::BoneKind kind) {
 }
 
 std::string side_doubt(const cases::BoneDoubts& doubts) {
-  // As planning/import/import_side.h words it, whatever the witness.
-  for (const auto& [bone, sentences] : doubts)
-    for (const std::string& sentence : sentences)
-      if (sentence.find("but the side is ") != std::string::npos && sentence.ends_with(": check the side"))
-        return sentence;
+  for (const auto& [bone, of_bone] : doubts)
+    for (const cases::BoneDoubt& doubt : of_bone)
+      if (const auto* side = std::get_if<cases::SideDoubt>(&doubt); side != nullptr && side->is_open())
+        return side->words();
   return "";
 }
 

@@ -28,7 +28,7 @@ struct TunnelVerdict {
 
 // bone_doubts: of its bone. grid_doubt: see below.
 [[nodiscard]] TunnelVerdict verdict_of(const std::vector<tunnels::PlanCheck>& checks,
-                                       const std::vector<std::string>& bone_doubts,
+                                       const std::vector<cases::BoneDoubt>& bone_doubts,
                                        const std::string& grid_doubt);
 
 // Of the grid of a case's bone: how well it is looked after, and what speaks against it, in words that follow

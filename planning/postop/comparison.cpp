@@ -89,6 +89,34 @@ SeenBones seen_bones(const images::Volume& volume, double threshold_hu) {
 
 }  // namespace
 
+bool is_relied_on(const Comparison& comparison) {
+  return comparison.bone.is_found && comparison.bone.reliable && comparison.tunnel.is_found &&
+         comparison.tunnel.reliable;
+}
+
+ComparisonVerdict verdict_of(const Comparison& comparison, bool is_of_the_plan) {
+  if (!comparison.bone.is_found) return ComparisonVerdict::BoneNotFound;
+  if (!comparison.tunnel.is_found) return ComparisonVerdict::TunnelNotFound;
+  if (!is_of_the_plan) return ComparisonVerdict::OfAnEarlierPlan;
+  return is_relied_on(comparison) ? ComparisonVerdict::Reliable : ComparisonVerdict::NotReliable;
+}
+
+std::string_view to_text(ComparisonVerdict verdict) {
+  switch (verdict) {
+    case ComparisonVerdict::BoneNotFound:
+      return "bone not found in the images";
+    case ComparisonVerdict::TunnelNotFound:
+      return "no tunnel found";
+    case ComparisonVerdict::OfAnEarlierPlan:
+      return "of an earlier plan";
+    case ComparisonVerdict::NotReliable:
+      return "not reliable";
+    case ComparisonVerdict::Reliable:
+      return "reliable";
+  }
+  return "";
+}
+
 bool is_against(const AchievedTunnel& achieved, const tunnels::Tunnel& plan) {
   constexpr double kRounded_mm = 0.01, kRounded_rad = 1e-3;
   return std::abs((achieved.tunnel.entry_mm - plan.entry_mm).norm() - achieved.offset_mm) < kRounded_mm &&

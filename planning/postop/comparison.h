@@ -26,6 +26,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "planning/bones/bone.h"
@@ -90,6 +91,15 @@ struct Comparison {
   // Why a file holds this one, though newer images were compared since; empty: none were, or this is of them.
   std::string kept_because = {};
 };
+
+// Whether its numbers stand, whatever became of the plan since.
+[[nodiscard]] bool is_relied_on(const Comparison& comparison);
+
+enum class ComparisonVerdict { BoneNotFound, TunnelNotFound, OfAnEarlierPlan, NotReliable, Reliable };
+// is_of_the_plan: its differences are those to the plan that is there, on the bone that is there.
+[[nodiscard]] ComparisonVerdict verdict_of(const Comparison& comparison, bool is_of_the_plan);
+// "bone not found in the images", "no tunnel found", "of an earlier plan", "not reliable", "reliable"
+[[nodiscard]] std::string_view to_text(ComparisonVerdict verdict);
 
 struct ComparisonOptions {
   // What is as bright is taken for bone where the bone's place is sought from nothing; nothing else. A bone

@@ -111,9 +111,9 @@ images::Volume read_postop(const std::filesystem::path& source, const PostopSour
   images::VolumeFileOptions reading{.series = options.series};
   reading.on_progress = options.on_progress;
   images::Volume volume = images::read_volume(source, reading);
-  if (!volume.modality.empty() && volume.modality != "CT")
+  if (volume.modality == images::Modality::Mr || volume.modality == images::Modality::Other)
     throw InvalidInput(source, "",
-                       "is " + volume.modality + ": a tunnel is found in a CT, or in a label map");
+                       "is " + volume.modality_in_file + ": a tunnel is found in a CT, or in a label map");
   const bool has_labels = !options.labels.empty() ||
                           (images::is_label_map(volume) && std::ranges::max(volume.values) < kLeastBone_hu);
   if (has_labels) make_picture_of_labels(volume, options.labels, source);

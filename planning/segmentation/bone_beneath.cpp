@@ -36,13 +36,6 @@ constexpr double kAtEnd_mm = 3.0, kFacing = 0.9;
 constexpr int kSmoothings = 4;
 constexpr std::size_t kFewest = 200;
 
-// As the import tells it: no other modality has values this low that mean anything.
-bool shows_ct(const images::Volume& images) {
-  constexpr float kAir_hu = -500;
-  return images.modality == "CT" ||
-         (images.modality.empty() && !images.values.empty() && std::ranges::min(images.values) < kAir_hu);
-}
-
 struct Vertices {
   std::vector<Vector3d> normals;
   std::vector<double> areas_mm2;
@@ -233,9 +226,8 @@ BoneBeneath not_checked(std::string reason) {
 
 BoneBeneath bone_beneath(const geometry::TriangleMesh& surface, const images::Volume& images) {
   if (surface.empty()) return not_checked("there is no surface");
-  const bool is_ct = shows_ct(images);
-  if (!is_ct && images.modality != "MR" && !images.modality.empty())
-    return not_checked("the images are neither CT nor MR");
+  const bool is_ct = images.modality == images::Modality::Ct;
+  if (images.modality == images::Modality::Other) return not_checked("the images are neither CT nor MR");
   const Vertices vertices = vertices_of(surface);
   const std::vector<bool> is_end = flat_ends(surface, vertices, images);
   const images::VolumeSampler grey(images);

@@ -37,11 +37,8 @@ constexpr double kNormalRadius_mm = 1.0, kThicknessRadius_mm = 1.5;
 // Thicker is no cortex: in mm, and of what is usual about this bone.
 constexpr double kThickest_mm = 4.0, kThickest = 1.8;
 
-// Air in a CT; no MR has it.
-constexpr float kAir_hu = -200;
 bool may_be_mr(const images::Volume& volume) {
-  if (!volume.modality.empty()) return volume.modality == "MR";
-  return std::ranges::none_of(volume.values, [](float value) { return value < kAir_hu; });
+  return volume.modality == images::Modality::Mr || volume.modality == images::Modality::Unknown;
 }
 
 // Grey values between the voxels, and how noisy a value of a profile is.

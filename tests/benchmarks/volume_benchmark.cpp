@@ -16,7 +16,7 @@ namespace {
 const images::Volume& ct() {
   static const images::Volume made = [] {
     images::Volume v;
-    v.modality = "CT";
+    v.modality = images::Modality::Ct;
     v.size = {512, 512, 400};
     v.lps_from_index.linear() = Eigen::Vector3d(0.35, 0.35, 0.5).asDiagonal();
     v.lps_from_index.translation() = Eigen::Vector3d(-90, -90, -100);

@@ -93,7 +93,7 @@ std::vector<Reader> case_readers() {
            }},
           {"bone_doubts", "bone_doubts.json",
            [](const fs::path& folder) {
-             cases::save_bone_doubts(folder, {{BoneKind::Femur, {"cut off", "too short"}}});
+             cases::save_bone_doubts(folder, {{BoneKind::Femur, {"cut off", cases::SideDoubt{}}}});
              return std::map<std::string, std::string>{{"seed", taken(cases::bone_doubts_file(folder))}};
            },
            [](const fs::path& folder, std::string_view bytes) {

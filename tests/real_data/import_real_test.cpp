@@ -153,7 +153,7 @@ TEST(ImportRealVolumes, DicomAndNiftiOfTheSameCtAgree) {
   const Volume a = read_volume(dicom), b = read_volume(nifti);
   EXPECT_EQ(a.size, Eigen::Vector3i(177, 162, 61));
   EXPECT_NEAR((a.spacing_mm() - Eigen::Vector3d(0.9765625, 0.9765625, 3.27)).norm(), 0, 0.01);
-  EXPECT_EQ(a.modality, "CT");
+  EXPECT_EQ(a.modality, Modality::Ct);
   expect_same_volume(a, b);
 }
 

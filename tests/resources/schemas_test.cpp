@@ -182,7 +182,8 @@ TEST_F(Schemas, DescribeTheMeasurements) {
 }
 
 TEST_F(Schemas, DescribeTheBonesDoubts) {
-  cases::save_bone_doubts(folder_.path(), {{bones::BoneKind::Femur, {"cut off", "too short"}}});
+  cases::save_bone_doubts(
+      folder_.path(), {{bones::BoneKind::Femur, {"cut off", cases::SideDoubt{.looked_on = "2026-01-31"}}}});
   expect_described(cases::bone_doubts_file(folder_.path()), "bone_doubts",
                    [&] { (void)cases::load_bone_doubts(folder_.path()); });
 }
@@ -192,7 +193,9 @@ TEST_F(Schemas, DescribeTheOtherSide) {
   const cases::Case knee =
       phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Knee of a test");
   cases::save_case(folder_.path(), knee);
-  cases::change_side(folder_.path(), bones::Side::Left, {.plan = knee.plan});
+  cases::change_side(
+      folder_.path(), bones::Side::Left,
+      {.plan = knee.plan, .doubts = {{bones::BoneKind::Femur, {"cut off", cases::SideDoubt{}}}}});
   expect_described(cases::sides_file(folder_.path()), "sides",
                    [&] { (void)cases::load_side(folder_.path(), knee, bones::Side::Right); });
   json cut_off = read(cases::sides_file(folder_.path()));
@@ -240,7 +243,7 @@ TEST_F(Schemas, DescribeTheSession) {
   const fs::path file = folder_ / "session.json";
   recording::write_session_header(folder_.path(), header, options);
   expect_described(file, "session", [&] { (void)recording::read_session_header(folder_.path(), options); });
-  header.source_kind = "live";
+  header.source_kind = sources::SourceKind::Live;
   header.mesh_sha256 = header.build = "5f";
   header.continues = "0000-20260131-110000";
   header.registers_after_mm = 12;

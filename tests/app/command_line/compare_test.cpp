@@ -256,7 +256,7 @@ TEST_F(CompareCommand, RefusesWhatCannotBeCompared) {
 
   images::Volume soft;
   soft.size = {30, 30, 30};
-  soft.modality = "CT";
+  soft.modality_in_file = "CT";
   soft.values.assign(27000, 40.0F);
   images::write_volume(folder_ / "soft.nrrd", soft);
   const auto nothing = compare("soft.nrrd", "achieved.json");

@@ -169,7 +169,7 @@ TEST_F(DicomCommand, Hazard40AnExerciseDatesNothing) {
     fs::create_directories(session);
     recording::SessionHeader header;
     header.id = name;
-    header.source_kind = "simulation";
+    header.source_kind = sources::SourceKind::Simulation;
     header.source = source;
     pipeline::PipelineOptions options;
     options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};

@@ -1,6 +1,8 @@
 // plan and landmarks on the built-in knee, as a user types them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include <fstream>
 #include <iomanip>
@@ -128,6 +130,26 @@ TEST_F(PlanCommand, MakesADefaultPlanAndPrintsIt) {
   const cases::Case saved = cases::load_case(folder_ / "knee.arthro");
   EXPECT_NEAR(saved.plan.tunnels.at(bones::BoneKind::Tibia).entry_mm.x(),
               tunnel.at("entry_mm").at(0).get<double>(), 1e-6);
+}
+
+// The grid that a default plan was made by is its landmarks': where these do not fit on the disk the plan,
+// which is smaller, stays as it was.
+TEST_F(PlanCommand, ADiskThatTakesNoLandmarksTakesNoPlan) {
+  const auto plan = folder_ / "knee.arthro/plan.json", landmarks = folder_ / "knee.arthro/case.json";
+  constexpr rlim_t kRoom = 2000;
+  ASSERT_GT(std::filesystem::file_size(landmarks), kRoom);
+  ASSERT_LT(std::filesystem::file_size(plan), kRoom / 2);
+  const std::string before = files::read_text(plan);
+  ::signal(SIGXFSZ, SIG_IGN);  // the write fails instead
+  rlimit whole{};
+  ::getrlimit(RLIMIT_FSIZE, &whole);
+  const rlimit full{kRoom, whole.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &full);
+  const auto result = run({"plan", "--bone", "femur", "--default", "--diameter-mm", "7"});
+  ::setrlimit(RLIMIT_FSIZE, &whole);
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, HasSubstr("case.json: cannot write"));
+  EXPECT_EQ(files::read_text(plan), before);
 }
 
 // A default takes the place of a plan that may be an evening's work, and no undo follows a command: it is

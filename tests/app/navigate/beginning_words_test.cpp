@@ -105,7 +105,7 @@ LeftBehind left_behind() {
   was.control_point_mm = Eigen::Vector3d::Zero();
   left.found.drawn_length_mm = 412.3;
   left.found.was_verified = true;
-  left.found.header.source_kind = "live";
+  left.found.header.source_kind = sources::SourceKind::Live;
   left.found.header.source = "Scope 30";
   left.found.last_written = std::chrono::system_clock::time_point(std::chrono::hours(500'000));
   return left;

@@ -22,7 +22,7 @@ cases::Case imaged_knee(const std::filesystem::path& folder) {
   cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "keys");
   images::Volume volume;
   volume.size = {20, 20, 20};
-  volume.modality = "CT";
+  volume.modality_in_file = "CT";
   volume.lps_from_index.linear() *= 8;
   volume.lps_from_index.translation() = Eigen::Vector3d::Constant(-80);
   volume.values.assign(8000, 40.F);

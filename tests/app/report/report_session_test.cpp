@@ -85,7 +85,7 @@ TEST_F(Report, NamesTheTunnelOfTheOtherBundleThatWasDrilledInASessionBefore) {
     if (first.empty()) first = folder.filename().string();
     recording::SessionHeader header;
     header.id = folder.filename().string();
-    header.source_kind = source_kind;
+    header.source_kind = sources::source_kind_from_text(source_kind);
     pipeline::PipelineOptions options;
     options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
     options.tools = tools::standard_tools();
@@ -122,7 +122,7 @@ TEST_F(Report, TellsOfBothBonesThoughEachWasDrilledInASessionOfItsOwn) {
     recording::SessionHeader header;
     header.id = sessions.back();
     header.bone = bone;
-    header.source_kind = "live";
+    header.source_kind = sources::SourceKind::Live;
     pipeline::PipelineOptions options;
     options.bone = bone;
     options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
@@ -288,7 +288,7 @@ TEST_F(Report, Hazard5SaysThatThePlanIsNotTheOneThatGuided) {
   options.tools = tools::standard_tools();
   recording::SessionHeader header;
   header.id = folder.filename().string();
-  header.source_kind = "live";
+  header.source_kind = sources::SourceKind::Live;
   const tunnels::Tunnel planned = knee_.plan.tunnels.at(bones::BoneKind::Femur);
   tunnels::Tunnel edited = planned;
   edited.entry_mm += 3 * planned.direction.unitOrthogonal();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session_database.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/recording/session_marks.h"
@@ -69,6 +70,30 @@ TEST_F(ReportForStrangers, Hazard19ARecordThatCannotBeReadNamesNobody) {
                                      testing::Not(testing::HasSubstr("Mueller_Jane.arthro"))));
   expect_names_nobody();
   expect_contains(pdf_text(), "are not readable");
+  expect_contains(pdf_text(), "CUT SHORT: why is not told");
+}
+
+// Nor does what another session says of itself: the femur was drilled in it, the tibia in the one after it.
+TEST_F(ReportForStrangers, Hazard19AnotherSessionsSafetyNamesNobody) {
+  const auto tibia = cases::create_session_folder(patients_folder());
+  recording::SessionHeader header;
+  header.id = tibia.filename().string();
+  header.bone = bones::BoneKind::Tibia;
+  pipeline::PipelineOptions options;
+  options.bone = header.bone;
+  options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+  options.tools = tools::standard_tools();
+  recording::SessionRecorder(tibia, header, options).finish();
+  for (const auto& [folder, bone] :
+       {std::pair{session_, bones::BoneKind::Femur}, std::pair{tibia, bones::BoneKind::Tibia}}) {
+    const tunnels::Tunnel& planned = knee_.plan.tunnels.at(bone);
+    operation::write_achieved_file(
+        folder / operation::achieved_file_name(planned.key()),
+        {.planned = planned, .measured = planned, .depth_mm = 30, .pose_count = 42, .truth = {}});
+  }
+  expect_contains(told(), "CUT SHORT: the video stopped: /media/Mueller_Jane.mkv");
+  expect_names_nobody();
+  expect_contains(pdf_text(), "The session of the femur");
   expect_contains(pdf_text(), "CUT SHORT: why is not told");
 }
 

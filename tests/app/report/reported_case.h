@@ -66,7 +66,7 @@ class Report : public ::testing::Test {
     options.tools = tools::standard_tools();
     recording::SessionHeader header;
     header.id = session_folder.filename().string();
-    header.source_kind = source_kind;
+    header.source_kind = sources::source_kind_from_text(source_kind);
     registration::RegistrationSummary registration;
     registration.has_pose = registration.reliable = finds_pose;
     if (finds_pose) registration.reasons.clear();

@@ -85,6 +85,21 @@ TEST_F(ResultSummary, ADoubtedCtSaysNothingAboutTheNavigation) {
   expect_contains(pdf_text(), "1.8 mm, 0.0\u00B0; not");
 }
 
+// Against a plan on a surface that the bone has no more, no planned number stands beside the CT's: it would
+// be measured on another bone.
+TEST_F(ResultSummary, OfAnotherSurfaceTheCtIsOfAnEarlierPlan) {
+  image(-1.8, true);
+  write(pdf());
+  expect_contains(pdf_text(), "; planned");
+  cases::Case other = cases::load_case(knee_folder());
+  other.bones.at(bones::BoneKind::Femur).mesh.vertices_mm.front().x() += 0.01;
+  cases::save_case(knee_folder(), other);
+  write(pdf());
+  const std::string text = pdf_text();
+  expect_contains(text, "of an earlier plan");
+  EXPECT_EQ(text.find("; planned"), std::string::npos) << text;
+}
+
 TEST_F(ResultSummary, SaysFirstThatItWasASimulation) {
   navigate("simulation", 1.2);
   write(pdf());

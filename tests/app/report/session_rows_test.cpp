@@ -23,7 +23,7 @@ pipeline::PipelineOptions options() {
 TEST(SessionRows, Hazard19ARecordingsFileIsNotNamed) {
   const auto neutral = [](const char* kind, const char* source) {
     recording::SessionHeader header;
-    header.source_kind = kind;
+    header.source_kind = sources::source_kind_from_text(kind);
     header.source = source;
     return neutral_source(header);
   };
@@ -65,7 +65,7 @@ TEST(SessionRows, ATunnelIsToldOfByTheRegistrationThatItWasDrilledBy) {
   const recording::RecordedSession session(folder.path());
   ASSERT_FALSE(session.registration()->reliable);
   EXPECT_TRUE(registration_that_counts(session)->reliable);
-  EXPECT_EQ(safety_rows(session, "").at(1).at(1), "verified by touches");
+  EXPECT_EQ(safety_of(session, false).verification, Safety::Verification::ByTouches);
   const std::vector<Step> steps = steps_of(session);
   EXPECT_EQ(steps.front().words, "bone registered");
   EXPECT_EQ(steps.back().words, "nothing is registered any more: the world marker was placed anew");
@@ -83,7 +83,7 @@ TEST(SessionRows, AlarmsAlikeAreToldOnceWithTheirNumber) {
     recorder.add_event({7, std::string(recording::kVoidEvent), "another camera", -1});
     recorder.finish();
   }
-  EXPECT_EQ(safety_rows(recording::RecordedSession(folder.path()), "").back().at(1),
+  EXPECT_EQ(alarms_in_words(safety_of(recording::RecordedSession(folder.path()), false)),
             "the control point has moved (3 times); over (3 times); another camera");
 }
 
@@ -116,15 +116,15 @@ recording::SessionEvent event_at(double time_s, std::string_view kind, const std
   return {static_cast<std::int64_t>(std::llround(1e9 * time_s)), std::string(kind), text, -1};
 }
 
-std::string row_of(const std::vector<std::vector<std::string>>& rows, const std::string& name) {
-  for (const auto& row : rows)
+std::string row_of(const Safety& safety, const std::string& name) {
+  for (const auto& row : rows_of(safety))
     if (row.front() == name) return row.back();
   return "no such row";
 }
 
 recording::SessionHeader live_header() {
   recording::SessionHeader header;
-  header.source_kind = "live";
+  header.source_kind = sources::SourceKind::Live;
   return header;
 }
 
@@ -150,7 +150,7 @@ TEST(SessionRows, Hazard5NameEachPlanThatGuidedAndWhichWasConfirmed) {
   const recording::RecordedSession session(folder.path());
   EXPECT_EQ(plans_in_words(plans_in_force(session)),
             "femur, 8.0 mm wide, 41.1 mm long; from 0:33.4 femur, 8.0 mm wide, 25.5 mm long");
-  EXPECT_EQ(row_of(safety_rows(session, ""), "Time-out"),
+  EXPECT_EQ(row_of(safety_of(session, false), "Time-out"),
             "confirmed of the plan femur, 8.0 mm wide, 41.1 mm long; NOT CONFIRMED of the plan after it");
   const std::vector<Step> steps = steps_of(session);
   ASSERT_EQ(steps.size(), 2U);
@@ -177,7 +177,7 @@ TEST(SessionRows, TellOfEveryLossOfTheSource) {
     recorder.finish();
   }
   const recording::RecordedSession session(folder.path());
-  EXPECT_EQ(row_of(safety_rows(session, ""), "Faults of the source"),
+  EXPECT_EQ(row_of(safety_of(session, false), "Faults of the source"),
             "no picture 2 times, 11.2 s in all; late pictures once, 0.2 s");
   EXPECT_NEAR(figures_of(session).without_picture_s, 12, 1e-9) << "from 1 to 11 s, and from 11.2 to 13.2 s";
   EXPECT_EQ(frames_in_words(figures_of(session)), "13 in 0:11.2; NO PICTURE for 12.0 s");

@@ -131,11 +131,11 @@ TEST(SessionReview, BringsItsPicturesAlong) {
 TEST(SessionReview, Hazard2SaysWhatTheRecordingIsOf) {
   recording::SessionHeader header = test::session_header();
   EXPECT_EQ(origin_in_words(header), "RECORDING") << "older records do not say it";
-  header.source_kind = "live";
+  header.source_kind = sources::SourceKind::Live;
   EXPECT_EQ(origin_in_words(header), "RECORDING of a live camera");
-  header.source_kind = "recording";
+  header.source_kind = sources::SourceKind::Recording;
   EXPECT_EQ(origin_in_words(header), "RECORDING of a video");
-  header.source_kind = "simulation";
+  header.source_kind = sources::SourceKind::Simulation;
   EXPECT_EQ(origin_in_words(header), "RECORDING of a simulation");
 }
 

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 // Values that say where they are: linear in the place, so that a mean of voxels is the value at their middle.
 images::Volume ramp(const Eigen::Vector3i& size, const Vector3d& spacing_mm) {
   images::Volume volume;
-  volume.modality = "CT";
+  volume.modality = images::Modality::Ct;
   volume.size = size;
   volume.lps_from_index.linear() =
       Eigen::AngleAxisd(0.4, Vector3d(1, 2, 3).normalized()).toRotationMatrix() * spacing_mm.asDiagonal();
@@ -70,7 +70,7 @@ TEST(DrawnVolumeTest, HoldsTheBoxAndLittleElse) {
 // An MR's values mean nothing by themselves: they are spread over its own range, and so are its thresholds.
 TEST(DrawnVolumeTest, AnMrIsSpreadOverItsOwnRange) {
   images::Volume volume = ramp({40, 40, 40}, {1, 1, 1});
-  volume.modality = "MR";
+  volume.modality = images::Modality::Mr;
   for (float& value : volume.values) value = 100 + 3 * std::abs(value);
   const auto drawn = drawn_volume(volume, kAll);
   ASSERT_NE(drawn, nullptr);
@@ -85,12 +85,11 @@ TEST(DrawnVolumeTest, AnMrIsSpreadOverItsOwnRange) {
   EXPECT_GT(threshold, window.level + window.width / 2 - window.width / 20);
 }
 
-// A file without a modality is a CT where it holds air.
-TEST(DrawnVolumeTest, AFileThatDoesNotSayIsJudgedByItsAir) {
+TEST(DrawnVolumeTest, ACtBeginsAtTheThresholdOfBone) {
   images::Volume volume = ramp({20, 20, 20}, {1, 1, 1});
-  volume.modality.clear();
+  volume.modality = images::Modality::Unknown;
   EXPECT_FALSE(drawn_volume(volume, kAll)->is_ct);
-  volume.values[7] = -1000;
+  volume.modality = images::Modality::Ct;
   const auto drawn = drawn_volume(volume, kAll);
   EXPECT_TRUE(drawn->is_ct);
   EXPECT_EQ(first_threshold(*drawn), 250);

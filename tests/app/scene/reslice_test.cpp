@@ -108,7 +108,7 @@ TEST(Reslice, AWindowOfALabelMapIsNeverInHu) {
   const GreyWindow automatic = automatic_window(labels);
   EXPECT_EQ(next_window(automatic, automatic, labels), automatic);
   EXPECT_EQ(next_window({7, 3}, automatic, labels), automatic);
-  labels.modality = "CT";
+  labels.modality = images::Modality::Ct;
   labels.values[5] = 40.5;
   ASSERT_FALSE(images::is_label_map(labels));
   EXPECT_EQ(next_window(automatic, automatic, labels), kBoneWindow);
@@ -117,14 +117,14 @@ TEST(Reslice, AWindowOfALabelMapIsNeverInHu) {
 // A key goes round the windows of a CT; an MR has one, however it was dragged.
 TEST(Reslice, AWindowOfAnMrIsNeverInHu) {
   const GreyWindow automatic{300, 600}, dragged{100, 50};
-  for (const char* modality : {"CT", ""}) {
+  for (const images::Modality modality : {images::Modality::Ct, images::Modality::Unknown}) {
     EXPECT_EQ(next_window(kBoneWindow, automatic, modality), kSoftTissueWindow);
     EXPECT_EQ(next_window(kSoftTissueWindow, automatic, modality), automatic);
     EXPECT_EQ(next_window(automatic, automatic, modality), kBoneWindow);
     EXPECT_EQ(next_window(dragged, automatic, modality), kBoneWindow);
   }
-  EXPECT_EQ(next_window(automatic, automatic, "MR"), automatic);
-  EXPECT_EQ(next_window(dragged, automatic, "MR"), automatic);
+  EXPECT_EQ(next_window(automatic, automatic, images::Modality::Mr), automatic);
+  EXPECT_EQ(next_window(dragged, automatic, images::Modality::Mr), automatic);
 }
 
 // MR has no units: the window runs over what the values are, and a few bright voxels do not darken it.

@@ -45,7 +45,7 @@ double value_in(const Vector3d& x_mm) {
 
 images::Volume volume_of(const Eigen::Matrix3d& directions, const Vector3d& spacing_mm) {
   images::Volume volume;
-  volume.modality = "CT";
+  volume.modality = images::Modality::Ct;
   volume.lps_from_index.linear() = directions * spacing_mm.asDiagonal();
   const Vector3d middle(10, 0, 15);
   volume.size = (Vector3d(130, 130, 130).cwiseQuotient(spacing_mm)).cast<int>();
@@ -229,7 +229,7 @@ TEST_F(DrawnScene, TheThresholdMovesTheSurface) {
 // An MR whose brightest value is its skin: cut open, what lies within has its own grey, and not the skin's.
 TEST_F(DrawnScene, AnMrThatIsCutOpenShowsTheGreysWithin) {
   images::Volume mr = volume_of(axes()[1].directions, axes()[1].spacing_mm);
-  mr.modality = "MR";
+  mr.modality = images::Modality::Mr;
   const Vector3d core(10, 0, 15);
   std::size_t v = 0;
   for (int k = 0; k < mr.size.z(); ++k)

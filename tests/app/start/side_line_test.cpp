@@ -111,7 +111,9 @@ TEST(SideLineTest, APersonAgainstTheShapeOfABoneAloneIsTold) {
 // Said before the bones were made, as of images of both knees, or told by a name.
 TEST(SideLineTest, ASideThatTheBonesSpeakAgainstIsNotGood) {
   importing::BoneImport import = import_of(SideSource::Person);
-  import.side_is_contradicted = true;
+  import.bones.resize(1);
+  import.bones[0].shape_was_judged = true;
+  import.bones[0].side_by_shape = Side::Right;
   EXPECT_EQ(side_line(import, Side::Left, true).severity, Severity::Bad);
   EXPECT_EQ(side_line(import, Side::Right, true).severity, Severity::Good);
   import.side_source = SideSource::SourceName;

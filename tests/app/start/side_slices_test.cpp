@@ -14,7 +14,7 @@ images::Volume volume_with_rod() {
   for (int k = 0; k < 50; ++k)
     for (int j = 30; j < 36; ++j)
       for (int i = 36; i < 42; ++i) volume.values[volume.index(i, j, k)] = 100;
-  volume.modality = "MR";
+  volume.modality = images::Modality::Mr;
   return volume;
 }
 

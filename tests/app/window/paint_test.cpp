@@ -60,7 +60,7 @@ class PaintWindow : public ::testing::Test {
     knee.side = known_.knee.side;
     knee.created_utc = "2026-01-31T12:00:00Z";
     knee.images.push_back({.file = "",
-                           .modality = image.modality,
+                           .modality = image.modality_in_file,
                            .source = "NRRD",
                            .is_label_map = false,
                            .size = image.size,
@@ -193,7 +193,6 @@ TEST_F(PaintWindow, StrokesBecomeTheBonesOfTheCaseAndACrashLosesNothing) {
 TEST_F(PaintWindow, ThresholdAndPartingMakeTheBonesOfACt) {
   // Of the grid of the labels: soft tissue, a cortex of two voxels, marrow.
   images::Volume ct = known_.labels;
-  ct.modality = "CT";
   KnownCtOptions options;
   options.spacing_mm = ct.spacing_mm();
   options.cortex_mm = 2.5;

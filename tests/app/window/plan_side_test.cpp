@@ -8,7 +8,6 @@
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/case_image.h"
 #include "planning/cases/plan_versions.h"
-#include "planning/import/import_side.h"
 #include "tests/app/window/plan_window.h"
 
 namespace arthronaut::test {
@@ -20,7 +19,8 @@ using bones::Side;
 // back with it. What spoke for the other side leads there.
 TEST_F(PlanWindow, Hazard52TheSideIsChangedAndBack) {
   cases::save_bone_doubts(
-      case_folder(), {{bones::BoneKind::Femur, {importing::other_side_by_fibula(Side::Left, Side::Right)}}});
+      case_folder(),
+      {{bones::BoneKind::Femur, {cases::SideDoubt{cases::SideWitness::Fibula, Side::Left, Side::Right}}}});
   const tunnels::Tunnel planned = saved_tunnel();
   const VirtualDisplay display(1600, 900);
   RunningWorkstation app(display, folder_.path());
@@ -103,12 +103,12 @@ TEST_F(PlanWindow, SlicesFollowTheTunnel) {
   cases::Case knee = cases::load_case(case_folder());
   images::Volume volume;
   volume.size = {60, 60, 60};
-  volume.modality = "CT";
+  volume.modality_in_file = "CT";
   volume.lps_from_index.linear() *= 2.5;
   volume.lps_from_index.translation() = Eigen::Vector3d(-75, -75, -75);
   for (int i = 0; i < 60 * 60 * 60; ++i) volume.values.push_back(static_cast<float>(i % 60 * 20));
   knee.images.push_back({.file = "",
-                         .modality = volume.modality,
+                         .modality = volume.modality_in_file,
                          .source = "NRRD",
                          .size = volume.size,
                          .spacing_mm = volume.spacing_mm()});

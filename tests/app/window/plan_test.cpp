@@ -146,13 +146,13 @@ TEST_F(PlanWindow, SlicesAreScrolledWindowedAndMeasuredIn) {
   cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "imaged");
   images::Volume volume;
   volume.size = {60, 60, 60};
-  volume.modality = "CT";
+  volume.modality_in_file = "CT";
   volume.lps_from_index.linear() *= 2.5;
   volume.lps_from_index.translation() = Eigen::Vector3d(-75, -75, -75);
   for (int i = 0; i < 60 * 60 * 60; ++i) volume.values.push_back(static_cast<float>(i % 60 * 20));
   cases::save_case(folder, knee);
   knee.images.push_back({.file = "",
-                         .modality = volume.modality,
+                         .modality = volume.modality_in_file,
                          .source = "NRRD",
                          .size = volume.size,
                          .spacing_mm = volume.spacing_mm()});
@@ -217,7 +217,7 @@ TEST_F(PlanWindow, ImagesTakeTheBonesPlaceByAKey) {
   cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "imaged");
   images::Volume volume;
   volume.size = {110, 110, 140};
-  volume.modality = "CT";
+  volume.modality_in_file = "CT";
   volume.lps_from_index.linear() *= 1.5;
   volume.lps_from_index.translation() = -0.75 * volume.size.cast<double>();
   painting::Labels labels(static_cast<std::size_t>(volume.size.prod()), painting::kNothing);
@@ -225,7 +225,7 @@ TEST_F(PlanWindow, ImagesTakeTheBonesPlaceByAKey) {
   for (const std::uint8_t label : labels) volume.values.push_back(label == painting::kNothing ? 40.F : 900.F);
   cases::save_case(folder, knee);
   knee.images.push_back({.file = "",
-                         .modality = volume.modality,
+                         .modality = volume.modality_in_file,
                          .source = "NRRD",
                          .size = volume.size,
                          .spacing_mm = volume.spacing_mm()});

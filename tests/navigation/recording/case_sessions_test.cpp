@@ -79,7 +79,7 @@ TEST_F(CaseSessions, Hazard16AnOlderRegistrationIsNotTakenAfterAnAlarm) {
 // Hazard 40: what was known in an exercise is no registration of the case.
 TEST_F(CaseSessions, Hazard40AnExercisesRegistrationIsNotFound) {
   SessionHeader header = test::session_header();
-  header.source_kind = "simulation";
+  header.source_kind = sources::SourceKind::Simulation;
   header.source = sources::kExerciseSource;
   const auto operation = add_session(0.2, true);
   const auto exercise = add_session(header, 0.1, true);
@@ -93,10 +93,10 @@ TEST_F(CaseSessions, Hazard40AnExercisesRegistrationIsNotFound) {
 // Hazard 40: a case is somebody's as soon as one of its sessions is, or may be.
 TEST_F(CaseSessions, Hazard40ARealSessionIsNamed) {
   SessionHeader header = test::session_header();
-  header.source_kind = "simulation";
+  header.source_kind = sources::SourceKind::Simulation;
   add_session(header, 0.1, true);
   EXPECT_EQ(real_session(temporary_.path()), "");
-  header.source_kind = "live";
+  header.source_kind = sources::SourceKind::Live;
   const auto live = add_session(header, 0.1, true);
   EXPECT_THAT(real_session(temporary_.path()), HasSubstr(live.filename().string()));
   EXPECT_THAT(real_session(temporary_.path()), HasSubstr("live"));
@@ -106,7 +106,7 @@ TEST_F(CaseSessions, Hazard40ARealSessionIsNamed) {
 }
 TEST_F(CaseSessions, Hazard40ASessionOfUnknownKindCountsAsReal) {
   SessionHeader header = test::session_header();
-  header.source_kind.clear();
+  header.source_kind.reset();
   add_session(header, 0.1, true);
   EXPECT_THAT(real_session(temporary_.path()), HasSubstr("may be of a patient"));
 }

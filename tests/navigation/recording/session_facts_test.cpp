@@ -56,7 +56,7 @@ class SessionFactsTest : public ::testing::Test {
   registration::RegistrationSummary registration_;
   SessionHeader header_ = [] {
     SessionHeader header = test::session_header();
-    header.source_kind = "live";
+    header.source_kind = sources::SourceKind::Live;
     return header;
   }();
 };
@@ -141,7 +141,7 @@ TEST_F(SessionFactsTest, WhatVerifiedOneRegistrationDoesNotVerifyTheNext) {
 
 // Hazard 40: whoever counts sessions has to be told.
 TEST_F(SessionFactsTest, Hazard40SaysThatItIsAnExercise) {
-  header_.source_kind = "simulation";
+  header_.source_kind = sources::SourceKind::Simulation;
   record({{1.0, kRegistrationEvent}});
   EXPECT_FALSE(read().is_exercise) << "a simulated operation";
   std::filesystem::remove_all(session_);

@@ -70,7 +70,7 @@ TEST_F(ResumableTest, WhatWasDeclinedStaysDeclined) {
   {
     SessionHeader empty;
     empty.bone = left->header.bone;
-    empty.source_kind = "live";
+    empty.source_kind = sources::SourceKind::Live;
     pipeline::PipelineOptions options;
     options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
     SessionRecorder(cases::create_session_folder(folder_.path()), empty, options).finish();
@@ -143,7 +143,7 @@ TEST_F(ResumableTest, Hazard12IsTheLastStateOfTheOperation) {
   ASSERT_TRUE(left);
   EXPECT_EQ(left->refusal, "");
   EXPECT_EQ(left->operation.session, continues_);
-  EXPECT_EQ(left->header.source_kind, "live");
+  EXPECT_EQ(left->header.source_kind, sources::SourceKind::Live);
   EXPECT_EQ(left->operation.plan, edited);
   EXPECT_EQ(left->operation.depth_stop_mm, 21.5);
   ASSERT_TRUE(left->operation.registration);

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
+#include "tests/planning/geometry/shapes.h"
+
 namespace arthronaut::training {
 namespace {
 
@@ -203,6 +207,24 @@ TEST_F(ExaminerTest, CountsWhatIsOutOfViewAndWasted) {
   EXPECT_NEAR(examiner_.facts().unseen_s, 1.1, 1e-6);
   EXPECT_EQ(examiner_.facts().wasted_touches, 1);
   EXPECT_EQ(examiner_.facts().touches, 1) << "of which it was one";
+}
+
+// Touches that were to verify one registration verify none of the next: what is missing is what the operation
+// asks for.
+TEST_F(ExaminerTest, AfterAnotherRegistrationTouchesAreMissingAnew) {
+  const geometry::Surface bone(test::box({20, 20, 20}));
+  const auto touch = [&](const std::function<void(operation::Touches&)>& change) {
+    auto known = std::make_shared<operation::RegistrationState>(*state_.registration);
+    change(known->touches);
+    known->touches.judge(known->in_force.registration.get(), &bone, std::nullopt, {});
+    state_.registration = known;
+    go_on(1);
+    return examiner_.facts().verifying_touches_missing;
+  };
+  const Vector3d on_bone = bone.closest_point({0, 0, 50}).point_mm;
+  for (int i = 0; i < 2; ++i)
+    EXPECT_EQ(touch([&](auto& touches) { touches.add_touch(on_bone + Vector3d(5.0 * i, 0, 0), {}); }), 2 - i);
+  EXPECT_EQ(touch([](auto& touches) { touches.verify_anew(); }), 3);
 }
 
 // Verified is what touches have verified; skipped is as good as none.

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "tests/message_of.h"
@@ -12,6 +14,7 @@ namespace arthronaut::cases {
 namespace {
 
 using bones::BoneKind;
+using bones::Side;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
@@ -19,11 +22,39 @@ TEST(BoneDoubts, ComeBackAndWithoutAnyTheFileGoes) {
   const test::TemporaryFolder folder;
   EXPECT_TRUE(load_bone_doubts(folder.path()).empty());
   const BoneDoubts doubts{{BoneKind::Femur, {"12 cm2 are missing", "no \"condyles\""}},
-                          {BoneKind::Tibia, {"too short"}}};
+                          {BoneKind::Tibia,
+                           {"too short", SideDoubt{SideWitness::Fibula, Side::Left, Side::Right},
+                            SideDoubt{SideWitness::ShapesAlone, Side::Left, Side::Left},
+                            SideDoubt{SideWitness::ImageMark, Side::Right, Side::Left, "2026-01-31"}}}};
   save_bone_doubts(folder.path(), doubts);
   EXPECT_EQ(load_bone_doubts(folder.path()), doubts);
   save_bone_doubts(folder.path(), {{BoneKind::Femur, {}}});
   EXPECT_TRUE(folder.names().empty());
+}
+
+// A case of before the side's doubts were data asks for the side all the same; a sentence that only sounds
+// like one stays a sentence, as does one of today's files.
+TEST(BoneDoubts, OfVersionOneTheSentencesOfTheSideAreRead) {
+  const test::TemporaryFolder folder;
+  const auto put = [&](int version, const char* more) {
+    files::write_atomically(bone_doubts_file(folder.path()),
+                            R"({"format": "arthronaut.bone_doubts", "version": )" + std::to_string(version) +
+                                R"(, "bones": [{"kind": "femur", "doubts": [
+      "the fibula lies on the left of the tibia, as in a left knee, but the side is right: check the side",
+      "by the shape of both bones it is a right knee, but the side is left; somebody looked on 2026-01-31 and says that it is",
+      "that it is a left knee is told by the shape of its bones alone: check the side",
+      "by the shape of the bone it is a left knee, but the side is unclear: check the side"])" +
+                                more + "}]}");
+    return load_bone_doubts(folder.path()).at(BoneKind::Femur);
+  };
+  EXPECT_EQ(put(1, ""),
+            (std::vector<BoneDoubt>{
+                SideDoubt{SideWitness::Fibula, Side::Left, Side::Right},
+                SideDoubt{SideWitness::BothShapes, Side::Right, Side::Left, "2026-01-31"},
+                SideDoubt{SideWitness::ShapesAlone, Side::Left, Side::Left},
+                "by the shape of the bone it is a left knee, but the side is unclear: check the side"}));
+  const auto today = put(2, R"(, "side_doubts": [])");
+  EXPECT_TRUE(std::ranges::none_of(today, std::holds_alternative<SideDoubt, std::string, SideDoubt>));
 }
 
 TEST(BoneDoubts, AFileThatIsNoneIsRefusedByPlace) {

@@ -37,7 +37,7 @@ TEST(CaseImage, ComesBackAsItWasStored) {
   for (const float shift : {0.0F, 1000.0F, 0.25F}) {  // 16 bits, bytes, floats
     const TemporaryFolder folder;
     images::Volume volume = test::oblique_volume();
-    volume.modality = "CT";
+    volume.modality_in_file = "CT";
     for (float& v : volume.values)
       v = shift == 1000.0F ? static_cast<float>(int(v + shift) % 256) : v + shift;
     (void)case_with_image(folder.path(), volume);
@@ -47,7 +47,7 @@ TEST(CaseImage, ComesBackAsItWasStored) {
     EXPECT_EQ(there.values, volume.values);
     EXPECT_EQ(there.size, volume.size);
     EXPECT_EQ(there.lps_from_index.matrix(), volume.lps_from_index.matrix());  // 17 digits: to the bit
-    EXPECT_EQ(there.modality, "CT");
+    EXPECT_EQ(there.modality, images::Modality::Ct);
     EXPECT_EQ(there.format, "DICOM");
   }
 }

@@ -66,7 +66,7 @@ TEST(EnhancedDicom, FramesLieWhereTheirGroupsSay) {
   test::write_enhanced_dicom(folder / "knee.dcm", test::oblique_volume());
   ASSERT_TRUE(is_volume_source(folder / "knee.dcm"));
   const Volume volume = read_volume(folder / "knee.dcm");
-  EXPECT_EQ(volume.modality, "CT");
+  EXPECT_EQ(volume.modality, Modality::Ct);
   expect_same(volume, test::oblique_volume());
   expect_same(read_volume(folder.path()), test::oblique_volume());
 }
@@ -92,7 +92,7 @@ TEST(EnhancedDicom, OfSeveralEchoesTheFirstIsTakenAndSaid) {
                               .slices = {0, 0, 1, 1, 2, 2, 3, 3},
                               .echo_times_ms = {12.5, 40, 12.5, 40, 12.5, 40, 12.5, 40}});
   const Volume volume = read_volume(folder / "knee.dcm");
-  EXPECT_EQ(volume.modality, "MR");
+  EXPECT_EQ(volume.modality, Modality::Mr);
   expect_same(volume, test::oblique_volume());
   EXPECT_THAT(volume.notes, Contains(AllOf(HasSubstr("2 echoes"), HasSubstr("12.5 ms"))));
 }

@@ -11,6 +11,7 @@
 #include "planning/geometry/error.h"
 #include "planning/geometry/rigid_transform.h"
 #include "planning/images/volume_bytes.h"
+#include "planning/images/volume_writer.h"
 #include "tests/message_of.h"
 #include "tests/planning/images/same_volume.h"
 #include "tests/planning/images/volume_forms.h"
@@ -45,6 +46,27 @@ TEST(VolumeFile, EveryFormatGivesTheSameVolume) {
     write_bytes(folder / name, contents);
     ASSERT_TRUE(is_volume_source(folder / name));
     expect_same(read_volume(folder / name), test::oblique_volume());
+  }
+}
+
+// What a file does not say is told by the air of a CT, whatever the format; what it says is believed.
+TEST(VolumeFile, OfNoStatedModalityIsACtWhereItHoldsAir) {
+  const TemporaryFolder folder;
+  for (const auto& [least, expected] : {std::pair{-1000.F, Modality::Ct}, {-400.F, Modality::Unknown}}) {
+    Volume volume = test::oblique_volume();
+    for (float& value : volume.values) value = std::max(value, -400.F);
+    volume.values[7] = least;
+    write_bytes(folder / "a.nii", test::nifti(volume, std::endian::little));
+    write_bytes(folder / "a.nrrd", test::nrrd(volume, false, false));
+    write_bytes(folder / "a.mha", test::metaimage(volume, false));
+    for (const char* name : {"a.nii", "a.nrrd", "a.mha"})
+      EXPECT_EQ(read_volume(folder / name).modality, expected) << name << ", " << least;
+    for (const auto& [said, said_modality] :
+         {std::pair{"CT", Modality::Ct}, {"MR", Modality::Mr}, {"PT", Modality::Other}}) {
+      volume.modality_in_file = said;
+      write_volume(folder / "b.nrrd", volume);
+      EXPECT_EQ(read_volume(folder / "b.nrrd").modality, said_modality) << said << ", " << least;
+    }
   }
 }
 
@@ -126,7 +148,7 @@ TEST(DicomSeries, IsSortedByPosition) {
   write_series(folder, test::dicom_slices(even_volume()));
   write_bytes(folder / "README.txt", "not an image");
   const Volume volume = read_volume(folder.path());
-  EXPECT_EQ(volume.modality, "CT");
+  EXPECT_EQ(volume.modality, Modality::Ct);
   // The normal of the slices decides which end is first: this volume's third axis runs along it or against
   // it.
   expect_same(volume, even_volume());

@@ -12,6 +12,7 @@
 #include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
 #include "tests/planning/geometry/shapes.h"
+#include "tests/planning/segmentation/known_ct.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::importing {
@@ -60,7 +61,7 @@ TEST(CaseImport, ABoneThatIsShapedAsOfTheOtherKneeIsDoubted) {
   tibia.bones[0].shape_was_judged = true;
   tibia.bones[0].side_by_shape = Side::Left;
   add_to_case(folder / "a", tibia, "", "bone.stl");
-  EXPECT_THAT(cases::load_bone_doubts(folder / "a").at(BoneKind::Tibia),
+  EXPECT_THAT(words_of(cases::load_bone_doubts(folder / "a").at(BoneKind::Tibia)),
               ElementsAre(HasSubstr("by the shape of the bone it is a left knee, but the side is right")));
 }
 
@@ -184,7 +185,7 @@ TEST(CaseImport, Hazard46WhatSpokeAgainstABoneStaysWithTheCase) {
   BoneImport cut = imported(BoneKind::Femur);
   cut.bones[0].doubts = {"the images end within it"};
   add_to_case(folder / "a", cut, "", "ct");
-  const cases::BoneDoubts of_femur{{BoneKind::Femur, cut.bones[0].doubts}};
+  const cases::BoneDoubts of_femur{{BoneKind::Femur, {cut.bones[0].doubts[0]}}};
   EXPECT_EQ(cases::load_bone_doubts(folder / "a"), of_femur);
   add_to_case(folder / "a", imported(BoneKind::Tibia), "", "bone.stl");
   EXPECT_EQ(cases::load_bone_doubts(folder / "a"), of_femur) << "a tibia changes nothing of it";
@@ -197,7 +198,7 @@ TEST(CaseImport, ImagesAloneMakeACaseToPaintIn) {
   const TemporaryFolder folder;
   images::Volume volume;
   volume.size = {4, 3, 2};
-  volume.modality = "MR";
+  volume.modality_in_file = "MR";
   for (int v = 0; v < 24; ++v) volume.values.push_back(static_cast<float>(30 * v));
   images::write_volume(folder / "mr.nrrd", volume);
   BoneImportOptions options;
@@ -215,7 +216,7 @@ TEST(CaseImport, ImagesAloneMakeACaseToPaintIn) {
   for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia})
     EXPECT_EQ(cases::load_studies(folder / "a").at(kind).study_uid, "1.2.3");
   // Nothing can be painted in a label map.
-  volume.modality.clear();
+  volume.modality_in_file.clear();
   for (float& v : volume.values) v = v > 100 ? 1.0F : 0.0F;
   images::write_volume(folder / "labels.nrrd", volume);
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)import_bones(folder / "labels.nrrd", options); }),
@@ -233,7 +234,7 @@ TEST(CaseImport, EdgesOfAnotherImageAreRefused) {
       for (int i = 2; i < 6; ++i) labels.values[labels.index(i, j, k)] = 1;
   images::write_volume(folder / "labels.nrrd", labels);
   images::Volume ct = labels;
-  ct.modality = "CT";
+  ct.modality_in_file = "CT";
   for (float& v : ct.values) v = v * 800 - 0.5F;
   ct.lps_from_index.translation().x() = 2;
   images::write_volume(folder / "ct.nrrd", ct);
@@ -243,6 +244,32 @@ TEST(CaseImport, EdgesOfAnotherImageAreRefused) {
   options.edges_in = folder / "ct.nrrd";
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)import_bones(folder / "labels.nrrd", options); }),
               HasSubstr("is not the image that the labels were painted in"));
+}
+
+// A CT from a file that names no modality, as NIfTI never does and 3D Slicer's NRRD seldom, has edges as any
+// other: labels that were painted in it end between its voxels, not on them.
+TEST(CaseImport, BonesPaintedInACtThatDoesNotSaySoLieAtItsEdges) {
+  const TemporaryFolder folder;
+  const geometry::TriangleMesh ball = test::ellipsoid({20, 18, 22}, 4);
+  images::Volume ct = test::known_ct({ball}, {.spacing_mm = {1, 1, 1}, .margin_mm = 8});
+  ct.modality_in_file.clear();
+  ct.values.front() = -1000;
+  images::write_volume(folder / "ct.nrrd", ct);
+  images::Volume labels = ct;
+  const auto covered = test::coverage(ball, ct, 3);
+  for (std::size_t v = 0; v < covered.size(); ++v) labels.values[v] = covered[v] > 0.5F ? 1.F : 0.F;
+  images::write_volume(folder / "labels.nrrd", labels);
+  BoneImportOptions options;
+  options.side = Side::Left;
+  options.labels = {{BoneKind::Femur, 1}};
+  const auto median_mm = [&] {
+    const auto distances_mm =
+        test::distances_to(ball, import_bones(folder / "labels.nrrd", options).bones.at(0).bone.mesh, 1);
+    return distances_mm.at(distances_mm.size() / 2);
+  };
+  const double by_labels_mm = median_mm();
+  options.edges_in = folder / "ct.nrrd";
+  EXPECT_LT(median_mm(), 0.5 * by_labels_mm);
 }
 
 // An import that fails half-way, here at a tibia that cannot be written, leaves no landmark, no cartilage and
@@ -313,7 +340,7 @@ TEST(CaseImport, AReplacedBoneLosesItsCartilage) {
 void add_image(BoneImport& import, const TemporaryFolder& folder, float value) {
   images::Volume volume;
   volume.size = {4, 3, 2};
-  volume.modality = "CT";
+  volume.modality_in_file = "CT";
   volume.values.assign(24, value);
   volume.values.front() = 0.5F;  // no label map
   images::write_volume(folder / "ct.nrrd", volume);

@@ -7,7 +7,6 @@
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
-#include "planning/import/import_side.h"
 #include "planning/plan_review/tunnel_verdict.h"
 #include "tests/message_of.h"
 #include "tests/planning/geometry/shapes.h"
@@ -18,6 +17,7 @@ namespace {
 
 using bones::BoneKind;
 using bones::Side;
+using cases::SideWitness;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -34,12 +34,13 @@ class CaseSide : public testing::Test {
     knee.plan.tunnels = {{BoneKind::Femur, {.entry_mm = {10, 0, 0}, .diameter_mm = 9}}};
     cases::save_case(folder_.path(), knee);
   }
-  void doubt(const std::string& sentence) const {
-    cases::save_bone_doubts(folder_.path(), {{BoneKind::Femur, {"cut off above", sentence}}});
+  void doubt(SideWitness witness, Side told, Side said) const {
+    cases::save_bone_doubts(folder_.path(),
+                            {{BoneKind::Femur, {"cut off above", cases::SideDoubt{witness, told, said}}}});
   }
   [[nodiscard]] std::vector<std::string> doubts() const {
     auto all = cases::load_bone_doubts(folder_.path());
-    return all[BoneKind::Femur];
+    return words_of(all[BoneKind::Femur]);
   }
   const test::TemporaryFolder folder_;
 };
@@ -47,7 +48,7 @@ class CaseSide : public testing::Test {
 // The side that the fibula tells: what was placed and planned as of the other one is gone, and so is the
 // doubt.
 TEST_F(CaseSide, Hazard52OfTheOtherSideNothingIsLeftOfTheFirst) {
-  doubt(other_side_by_fibula(Side::Left, Side::Right));
+  doubt(SideWitness::Fibula, Side::Left, Side::Right);
   const SaidSide said = say_side_of_case(folder_.path(), Side::Left);
   EXPECT_TRUE(said.is_changed);
   EXPECT_THAT(said.lines, ElementsAre("it is a left knee now; it was a right one",
@@ -78,10 +79,9 @@ TEST_F(CaseSide, ASideThatNothingTellsIsADoubt) {
 
 // Whoever has looked and finds the side right is not asked again, and what spoke against it stays to be read.
 TEST_F(CaseSide, ASideThatWasCheckedIsNotAskedForAgain) {
-  for (const std::string& sentence :
-       {other_side_by_fibula(Side::Left, Side::Right), other_side_by_shape(Side::Left, Side::Right, true),
-        other_side_in_images(Side::Left, Side::Right)}) {
-    doubt(sentence);
+  for (const SideWitness witness :
+       {SideWitness::Fibula, SideWitness::OneShape, SideWitness::BothShapes, SideWitness::ImageMark}) {
+    doubt(witness, Side::Left, Side::Right);
     ASSERT_NE(plan_review::side_doubt(cases::load_bone_doubts(folder_.path())), "");
     EXPECT_FALSE(say_side_of_case(folder_.path(), Side::Right).is_changed);
     EXPECT_EQ(plan_review::side_doubt(cases::load_bone_doubts(folder_.path())), "");
@@ -92,7 +92,7 @@ TEST_F(CaseSide, ASideThatWasCheckedIsNotAskedForAgain) {
     EXPECT_THAT(doubts(), ElementsAre("cut off above"));
     (void)say_side_of_case(folder_.path(), Side::Right);
   }
-  doubt(side_by_shape_alone(Side::Right));
+  doubt(SideWitness::ShapesAlone, Side::Right, Side::Right);
   (void)say_side_of_case(folder_.path(), Side::Right);
   EXPECT_THAT(doubts(), ElementsAre("cut off above"));
 }
@@ -100,7 +100,7 @@ TEST_F(CaseSide, ASideThatWasCheckedIsNotAskedForAgain) {
 // Where the shapes alone had told the side that it had, nothing tells the one that is said: that stays a
 // doubt.
 TEST_F(CaseSide, WhatToldTheOldSideIsNoWordForTheNewOne) {
-  doubt(side_by_shape_alone(Side::Right));
+  doubt(SideWitness::ShapesAlone, Side::Right, Side::Right);
   EXPECT_TRUE(say_side_of_case(folder_.path(), Side::Left).is_changed);
   EXPECT_THAT(doubts(), ElementsAre("cut off above", HasSubstr("it was a right knee")));
 }

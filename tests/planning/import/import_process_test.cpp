@@ -109,7 +109,7 @@ TEST_F(ImportProcessTest, Hazard18ReadsTheImagesAfterAnOperation) {
                        here = postop::read_postop(folder_ / "ct");
   EXPECT_EQ(apart.values, here.values);
   EXPECT_EQ(apart.size, here.size);
-  EXPECT_EQ(apart.modality, "CT");
+  EXPECT_EQ(apart.modality, images::Modality::Ct);
   EXPECT_TRUE(apart.lps_from_index.isApprox(here.lps_from_index, 1e-9));
 }
 

@@ -31,7 +31,7 @@ class PostopSource : public ::testing::Test {
     volume.values.assign(64, 0.0F);
     volume.values[21] = 2;
     volume.values[22] = 5;
-    volume.modality = modality;
+    volume.modality_in_file = modality;
     return volume;
   }
   test::TemporaryFolder folder_;

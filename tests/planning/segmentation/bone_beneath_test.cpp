@@ -50,7 +50,7 @@ Painted painted_ct() {
   options.spacing_mm = {0.8, 0.8, 1.25};
   options.margin_mm = 20;
   Painted painted{test::known_ct({knee.femur.mesh, knee.tibia.mesh}, options), {}, {}};
-  painted.images.modality = "CT";
+  painted.images.modality = images::Modality::Ct;
   painted.labels = painted.images;
   const auto femur = test::coverage(knee.femur.mesh, painted.images, 2);
   for (std::size_t v = 0; v < femur.size(); ++v) painted.labels.values[v] = femur[v] > 0.5F ? 1.0F : 0.0F;
@@ -101,7 +101,7 @@ TEST(BoneBeneath, SaysWhereItCouldNotLook) {
   const BoneBeneath patchy = bone_beneath(femur, painted.images);
   EXPECT_EQ(patchy.outcome, Outcome::NotChecked);
   EXPECT_THAT(patchy.reason, testing::HasSubstr("vary"));
-  painted.images.modality = "PT";
+  painted.images.modality = images::Modality::Other;
   EXPECT_EQ(bone_beneath(femur, painted.images).outcome, Outcome::NotChecked);
   EXPECT_EQ(bone_beneath({}, painted.images).outcome, Outcome::NotChecked);
 }

@@ -123,7 +123,8 @@ images::Volume known_ct(const std::vector<geometry::TriangleMesh>& bones, const 
   volume.size = ((high - low).cwiseQuotient(options.spacing_mm)).array().ceil().cast<int>();
   volume.lps_from_index.linear() = options.spacing_mm.asDiagonal();
   volume.lps_from_index.translation() = low;
-  volume.modality = "CT";
+  volume.modality_in_file = "CT";
+  volume.modality = images::Modality::Ct;
   volume.format = "made";
   volume.values.assign(static_cast<std::size_t>(volume.size.cast<std::int64_t>().prod()),
                        static_cast<float>(options.soft_tissue_hu));

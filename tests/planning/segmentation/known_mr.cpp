@@ -52,7 +52,8 @@ images::Volume known_labels() {
 
 images::Volume known_mr(const images::Volume& labels, double noise, std::uint64_t seed) {
   images::Volume mr = labels;
-  mr.modality = "MR";
+  mr.modality_in_file = "MR";
+  mr.modality = images::Modality::Mr;
   mr.segments.clear();
   for (float& v : mr.values) v = grey_of(static_cast<int>(v));
   mix(mr);
