@@ -13,6 +13,7 @@
 #include "planning/files/csv_cell.h"
 #include "planning/files/json_document.h"
 #include "planning/files/utc_clock.h"
+#include "planning/plan_review/tunnel_verdict.h"
 #include "planning/postop/achieved_file.h"
 #include "planning/tunnels/check_numbers.h"
 

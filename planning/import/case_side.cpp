@@ -46,7 +46,7 @@ cases::BoneDoubts doubts_as(const cases::Case& knee, cases::BoneDoubts doubts, S
   }
   (void)settle(doubts, side);
   if (told == 0 && !knee.bones.empty())
-    doubts[knee.bones.begin()->first].push_back(
+    doubts[knee.bones.begin()->first].emplace_back(
         "until " + files::local_day(files::utc_now()) + " it was a " + knee_of(knee.side) +
         ", and nothing that its bones were made from spoke against that; somebody says that it is a " +
         knee_of(side));
