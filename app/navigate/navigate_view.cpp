@@ -250,10 +250,10 @@ void NavigateView::read_live() {
     used_before_->is_new_stream = false;
     note_stream(known_streams_file(), used_before_->pictures.address);
   }
-  const bool is_same =
-      live_->operation->registration == seen->operation->registration && live_->phase == seen->phase &&
-      operation::unverified_of(*live_->operation) == operation::unverified_of(*seen->operation);
-  if (is_same && is_of_source_before(*live_) == is_of_source_before(*seen)) return;
+  if (live_->operation->registration == seen->operation->registration && live_->phase == seen->phase &&
+      operation::unverified_of(*live_->operation) == operation::unverified_of(*seen->operation) &&
+      is_of_source_before(*live_) == is_of_source_before(*seen))
+    return;
   words_ = words_of(*live_);
   if (registration().change_count != seen->operation->registration->change_count)
     choices_.overlay_shown_at_s = theatre::LiveOperation::now_s();
@@ -353,7 +353,7 @@ void NavigateView::on_screen() {
 }
 
 void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
-  // The bone is made ready for registration as soon as this mode is looked at.
+  // Made ready for registration as soon as this mode is looked at.
   if (model_ != nullptr && model_->has_bone(choices_.bone)) (void)bones_.operation(choices_.bone);
   read_live();
   if (model_ != nullptr) judge_plans();
