@@ -5,7 +5,6 @@
 namespace arthronaut::navigate {
 
 void NavigateView::finish_step(FinishAction action) {
-  if (!was_read()) return;
   switch (action) {
     case FinishAction::TakeMarkerOut:
       log::info("world marker said to be out: " + std::string(bones::to_text(choices_.bone)));
@@ -19,11 +18,6 @@ void NavigateView::finish_step(FinishAction action) {
     case FinishAction::Nothing:
       return;
   }
-}
-
-bool NavigateView::finishes() const {
-  const auto bones = finished_bones();
-  return !bones.empty() && bones.front().bone == choices_.bone && bones.front().is_drilled();
 }
 
 std::vector<FinishedBone> NavigateView::finished_bones() const {

@@ -11,6 +11,7 @@
 
 #include "app/navigate/hindrance.h"
 #include "app/navigate/navigate_display.h"
+#include "app/navigate/pedal_step.h"
 #include "app/navigate/reached_plan.h"
 #include "navigation/operation/operation_state.h"
 
@@ -40,8 +41,8 @@ struct NavigateChoices {
   // Whose world markers were said to be out, likewise.
   std::set<std::pair<sources::SourceKind, bones::BoneKind>> markers_out;
   std::optional<operation::Step> looked_at;  // the surgeon went back to it; empty: the one of now
-  std::string next;                          // what is asked of the surgeon now
-  double next_since_s = 0;                   // and since when
+  PedalStep pedal;                           // what is asked of the surgeon now
+  double pedal_since_s = 0;                  // and since when
   Question asked = Question::None;           // on a card that stands on the screen
   SteadyWords missing;                       // what that waits for
   std::size_t offered_tunnel = 0;   // of two that nobody has chosen from: the one that a press would choose
@@ -66,12 +67,12 @@ struct NavigateChoices {
   }
   // A question begins to be read when its card is there, not while the menu lies over it.
   void note_asked(Question question, double now_s) {
-    if (std::exchange(asked, question) != question && question != Question::None) next_since_s = now_s;
+    if (std::exchange(asked, question) != question && question != Question::None) pedal_since_s = now_s;
   }
-  void note_next(const std::string& words, double now_s) {
-    if (words == next) return;
-    next = words;
-    next_since_s = now_s;
+  void note_pedal(const PedalStep& step, double now_s) {
+    if (step == pedal) return;
+    pedal = step;
+    pedal_since_s = now_s;
   }
 
   void follow(const operation::OperationState& state) {

@@ -29,13 +29,14 @@ Question NavigateView::question() {
   if (cameras_.is_open()) return Question::None;
   if (left_behind() != nullptr) return Question::Resume;
   const operation::OperationState& state = *live_->operation;
+  const bool is_finished = finishes(finished_bones(), choices_.bone);
   if (state.has_source && !is_of_source_before(*live_) && state.time_out == operation::TimeOut::Due &&
-      state.next_action == operation::NextAction::ConfirmTimeOut && !choices_.looked_at && !finishes() &&
-      !waits_for_take_over())
+      state.next_action == operation::NextAction::ConfirmTimeOut && !choices_.looked_at && !is_finished &&
+      !waits_for_take_over(state))
     return Question::TimeOut;
   const bool looks_at_finish =
       choices_.looked_at.value_or(operation::Step::Finish) == operation::Step::Finish;
-  return finishes() && looks_at_finish && !depth_.is_open() ? Question::Finish : Question::None;
+  return is_finished && looks_at_finish && !depth_.is_open() ? Question::Finish : Question::None;
 }
 
 // What would be in force after resuming, is, or will be when an operation begins.
@@ -51,8 +52,9 @@ void NavigateView::judge_plans() {
 }
 
 std::string NavigateView::words_of_edited_plan() const {
-  return waits_for_take_over() ? words_of_edited(live_->operation->edited_plan, judged_edited_.verdict())
-                               : "";
+  return waits_for_take_over(*live_->operation)
+             ? words_of_edited(live_->operation->edited_plan, judged_edited_.verdict())
+             : "";
 }
 
 std::string NavigateView::words_of_verdict() const {

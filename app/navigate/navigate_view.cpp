@@ -250,10 +250,10 @@ void NavigateView::read_live() {
     used_before_->is_new_stream = false;
     note_stream(known_streams_file(), used_before_->pictures.address);
   }
-  const bool is_same =
-      live_->operation->registration == seen->operation->registration && live_->phase == seen->phase &&
-      operation::unverified_of(*live_->operation) == operation::unverified_of(*seen->operation);
-  if (is_same && is_of_source_before(*live_) == is_of_source_before(*seen)) return;
+  if (live_->operation->registration == seen->operation->registration && live_->phase == seen->phase &&
+      operation::unverified_of(*live_->operation) == operation::unverified_of(*seen->operation) &&
+      is_of_source_before(*live_) == is_of_source_before(*seen))
+    return;
   words_ = words_of(*live_);
   if (registration().change_count != seen->operation->registration->change_count)
     choices_.overlay_shown_at_s = theatre::LiveOperation::now_s();
@@ -291,17 +291,19 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
   screen.layout = layout(now_s);
   screen.selected_stroke = choices_.stroke;
   screen.undistorts = choices_.undistorts;
-  screen.next_step = next_step();
-  screen.is_exercise = !lent_step().empty();
-  choices_.note_next(screen.next_step + words_of_edited_plan(), now_s);
-  screen.pedal_acts = pedal_acts();
+  const PedalContext context = pedal_context();
+  const PedalStep step = pedal_step(*live_, context);
+  screen.next_step = words_of(step, *live_, context);
+  screen.is_exercise = !context.exercise.empty();
+  choices_.note_pedal(step, now_s);
+  screen.pedal_acts = covers_question() || acts_now(step);
   screen.rail = rail();
   if (screen.is_exercise)  // none of the operation's steps is to be done now
-    for (RailStep& step : screen.rail)
-      if (step.state == StepState::Now) step.state = StepState::Open;
+    for (RailStep& one : screen.rail)
+      if (one.state == StepState::Now) one.state = StepState::Open;
   screen.looked_at = choices_.looked_at;
   // What was pressed and not done is said at once.
-  const std::string& missing = choices_.missing.follow(missing_now(screen.rail), now_s);
+  const std::string& missing = choices_.missing.follow(missing_now(step, screen.rail), now_s);
   screen.missing = refusal_notice(*live_, now_s);
   if (screen.missing.empty()) screen.missing = missing;
   screen.is_wrong = (judged_.verdict().is_wrong() && screen.missing == words_of_verdict()) ||
@@ -351,7 +353,7 @@ void NavigateView::on_screen() {
 }
 
 void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
-  // The bone is made ready for registration as soon as this mode is looked at.
+  // Made ready for registration as soon as this mode is looked at.
   if (model_ != nullptr && model_->has_bone(choices_.bone)) (void)bones_.operation(choices_.bone);
   read_live();
   if (model_ != nullptr) judge_plans();
@@ -359,7 +361,8 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const double now = drawn_.since_s = theatre::LiveOperation::now_s();
   NavigateDisplay display = display_of(live_.get(), now);
   const bool was_refused = lent_ && now - lent_->refused_s < kRefusal_s;
-  if (live_->phase == Phase::NoSource && !pedal_acts()) display.detail.clear();
+  if (live_->phase == Phase::NoSource && !acts_now(pedal_step(*live_, pedal_context())))
+    display.detail.clear();
   if ((live_->phase == Phase::NoSource || was_refused) && !notice_.empty()) display.detail = notice_;
   if (!live_->operation->plan && model_ != nullptr && bones_.must_choose(choices_.bone))
     display.detail = "Two tunnels are planned in this bone: choose AM (1) or PL (2)";

@@ -92,29 +92,23 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] std::string words_of_start() const;
   // One pedal: carries out what is a command, and starts nothing but the kind of source that was chosen.
   void take_next_step();
-  [[nodiscard]] bool was_read();
+  void act(operation::NextAction action);
+  [[nodiscard]] PedalContext pedal_context();
+  [[nodiscard]] bool acts_now(const PedalStep& step) const;
+  [[nodiscard]] bool covers_question() { return choices_.shows_menu && question() != Question::None; }
   [[nodiscard]] Question question();  // due now, shown or not
-  // What the operation asks for, or pictures where it cannot be done without.
-  [[nodiscard]] operation::NextAction action_now() const;
   void finish_step(FinishAction action);
   void find_anew();
   // Another pedal: one step back, to do it again; after the first step the one of now is shown again.
   void take_step_back();
   [[nodiscard]] Repeat repeat_of(operation::Step step) const;
-  [[nodiscard]] bool stays_there();
-  [[nodiscard]] std::string words_of_repeat(operation::Step step) const;  // where the way back leads
-  void repeat_step(operation::Step step);
-  [[nodiscard]] bool pedal_acts();
+  void repeat_step(Repeat repeat);
   [[nodiscard]] RailContext rail_context() const;
   [[nodiscard]] Rail rail() const { return rail_of(*live_->operation, rail_context()); }
   // Every bone with a planned tunnel, the one that is navigated first.
   [[nodiscard]] std::vector<FinishedBone> finished_bones() const;
-  [[nodiscard]] bool finishes() const;  // all tunnels of this bone are drilled
-  [[nodiscard]] bool takes_guide_in_simulation() const;
-  [[nodiscard]] bool is_in_wrong_medium() const;
-  [[nodiscard]] std::string words_without_pictures() const;  // empty: what is next can be done
-  [[nodiscard]] bool must_set_up() const;                    // before pictures can be navigated
-  [[nodiscard]] bool simulates() const;  // the source that is started next is the simulated operation
+  [[nodiscard]] bool must_set_up() const;  // before pictures can be navigated
+  [[nodiscard]] bool simulates() const;    // the source that is started next is the simulated operation
   void take_touch(bool is_control_point);
   void add_registration_actions(widgets::Actions& actions);
   // Of two tunnels in one bone, which is drilled: tunnel_choice.cpp.
@@ -122,9 +116,6 @@ class NavigateView : public mode::Mode {
   void choose_tunnel(norms::Bundle bundle);
   // The one that a press of the pedal would choose, where the surgeon has to choose, or may go on to it.
   [[nodiscard]] std::optional<tunnels::TunnelKey> tunnel_to_choose() const;
-  [[nodiscard]] std::string words_of_choosing(const tunnels::TunnelKey& offered) const;
-  // Another plan than the one in force is offered to an operation that runs, and nothing stands before it.
-  [[nodiscard]] bool waits_for_take_over() const;
   void add_answer_actions(widgets::Actions& actions);
   void add_picture_actions(widgets::Actions& actions);
   void cycle_overlay();
@@ -132,9 +123,8 @@ class NavigateView : public mode::Mode {
   void follow_reached(const NavigateDisplay& display, double now_s);
   [[nodiscard]] bool refuses_while_lent();  // and says so
   void look_along_plan();
-  [[nodiscard]] std::string next_step();
-  // What that waits for; empty: nothing, or next_step() says it.
-  [[nodiscard]] std::string missing_now(const Rail& rail);
+  // What the step waits for; empty: nothing, or its own words say it.
+  [[nodiscard]] std::string missing_now(const PedalStep& step, const Rail& rail);
   [[nodiscard]] std::optional<operation::PlannedTunnel> plan_in_question();
   void judge_plans();  // that in force, and the one that waits to be taken over
   [[nodiscard]] std::string words_of_edited_plan() const;  // that waits to be taken over; empty: none does

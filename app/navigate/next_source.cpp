@@ -45,12 +45,6 @@ bool NavigateView::simulates() const {
                          : can_simulate() && !choices_.has_real_scope;
 }
 
-// The scripted surgeon holds the probe: the guide is taken by starting the other part of the script.
-bool NavigateView::takes_guide_in_simulation() const {
-  return live_->operation->next_action == NextAction::BringGuide &&
-         started_.is_simulated(SimulatedPart::Scratch) && live_->phase == Phase::Running && can_simulate();
-}
-
 std::string NavigateView::words_of_start() const {
   const bool stands = registration().in_force.standing == operation::Standing::Stands;
   if (simulates())

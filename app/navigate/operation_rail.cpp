@@ -365,7 +365,7 @@ std::string words_of(Repeat repeat, Step step) {
     case Repeat::ShowFinish:
       return "show the check list";
     case Repeat::NothingNow:
-      return "nothing can be repeated here now";
+      return "nothing to repeat here now: go on";
   }
   return "";
 }

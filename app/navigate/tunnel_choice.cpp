@@ -38,23 +38,6 @@ std::optional<tunnels::TunnelKey> NavigateView::tunnel_to_choose() const {
   return std::nullopt;
 }
 
-// Nothing is chosen before somebody does: the one that a press would choose is named, and how to get the
-// other one.
-std::string NavigateView::words_of_choosing(const tunnels::TunnelKey& offered) const {
-  const auto number = [](Bundle bundle) { return bundle == Bundle::Anteromedial ? " (1)" : " (2)"; };
-  const std::string name = tunnels::name_of(offered);
-  if (!bones_.must_choose(choices_.bone))
-    return "then the tunnel " + name + number(offered.bundle) + ", or take the world marker out";
-  return "choose the tunnel " + name + number(offered.bundle) +
-         (offered.bundle == Bundle::Anteromedial ? "; V: PL (2)" : "; V: AM (1)");
-}
-
-bool NavigateView::waits_for_take_over() const {
-  const operation::OperationState& state = *live_->operation;
-  return state.has_source && state.plan_was_edited &&
-         (!state.plan || state.next_action == NextAction::TakePlanOver);
-}
-
 void NavigateView::add_tunnel_actions(widgets::Actions& actions) {
   struct Choice {
     Bundle bundle;
