@@ -117,13 +117,14 @@ set(ARTHRONAUT_TEST_OPTIMISATION $<$<BOOL:${CMAKE_UNITY_BUILD}>:-O1>)
 # arthronaut_test(navigation_camera SOURCES x_test.cpp ... LIBS libs...)
 # One test program a module; ctest runs each suite of it on its own, in one process: what is made ready once for all
 # cases of a suite is made once. BY_CASE: each case on its own, where cases are long and share nothing. APART as above.
-# ALONE: while one of its suites runs, no other test does. CASE_S: about how long a case takes, so that long ones begin
+# ALONE: while one of its suites runs, no other test does. WAITS: for another process, a stream or its own clock, most of
+# the time: ./test runs two of these in the place of one that computes. CASE_S: about how long a case takes, so that long ones begin
 # first (1). TIMEOUT_S: of what runs on its own.
 function(arthronaut_test name)
   if(NOT ARTHRONAUT_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "ALONE;BY_CASE" "TIMEOUT_S;CASE_S" "SOURCES;LIBS;LABELS;APART" ${ARGN})
+  cmake_parse_arguments(ARG "ALONE;BY_CASE;WAITS" "TIMEOUT_S;CASE_S" "SOURCES;LIBS;LABELS;APART" ${ARGN})
   if(NOT ARG_TIMEOUT_S)
     set(ARG_TIMEOUT_S 900)
   endif()
@@ -144,6 +145,7 @@ set(working_directory ${CMAKE_CURRENT_BINARY_DIR})
 set(timeout_s ${ARG_TIMEOUT_S})
 set(case_s ${ARG_CASE_S})
 set(is_alone ${ARG_ALONE})
+set(waits ${ARG_WAITS})
 set(by_case ${ARG_BY_CASE})
 set(labels \"${ARG_LABELS}\")
 include(${CMAKE_SOURCE_DIR}/cmake/TestSuites.cmake)

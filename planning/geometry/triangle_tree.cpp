@@ -25,11 +25,13 @@ Bounds bounds_of(const TriangleMesh& mesh, std::int32_t triangle) {
 struct Segment {
   Vector3d from, inverse = Vector3d::Zero();  // one through its length along each axis
   std::array<bool, 3> stands_still{};         // along this axis
+  bool stands_still_anywhere = false;
 
   Segment(const Vector3d& from_mm, const Vector3d& to_mm) : from(from_mm) {
     for (int axis = 0; axis < 3; ++axis) {
       const double along = to_mm[axis] - from_mm[axis];
       stands_still[static_cast<std::size_t>(axis)] = std::abs(along) < 1e-12;
+      stands_still_anywhere |= std::abs(along) < 1e-12;
       if (std::abs(along) >= 1e-12) inverse[axis] = 1 / along;
     }
   }
@@ -37,6 +39,11 @@ struct Segment {
 
 // Whether it meets a box widened by a radius: slab by slab.
 bool meets(const Segment& segment, double radius, const Vector3d& min, const Vector3d& max) {
+  if (!segment.stands_still_anywhere) {  // nearly all: all three at once
+    const Eigen::Array3d a = (min.array() - radius - segment.from.array()) * segment.inverse.array(),
+                         b = (max.array() + radius - segment.from.array()) * segment.inverse.array();
+    return std::max(0.0, a.min(b).maxCoeff()) <= std::min(1.0, a.max(b).minCoeff());
+  }
   double enters = 0, leaves = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const double low = min[axis] - radius - segment.from[axis],

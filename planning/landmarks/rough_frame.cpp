@@ -138,6 +138,8 @@ class MirrorSearch {
       : points_(std::move(points)), surface_(surface) {
     center_ = std::accumulate(points_.begin(), points_.end(), Vector3d(Vector3d::Zero())) /
               static_cast<double>(points_.size());
+    for (const Vector3d& p : points_) moment_ += (p - center_) * (p - center_).transpose();
+    moment_ /= static_cast<double>(points_.size());
   }
 
   // The best plane among those whose normal lies across `joint`, the direction of the joint's end, to at most
@@ -154,7 +156,7 @@ class MirrorSearch {
         const Vector3d across = std::cos(angle) * u + std::sin(angle) * v;
         Mirror start{(std::cos(lean) * across + std::sin(lean) * joint).normalized()};
         start.offset_mm = center_.dot(start.normal);
-        start = step(start, 5);
+        start.cost = misfit_of(partners(start, 5)) / breadth(start.normal);
         starts.push_back(start);
       }
     }
@@ -162,7 +164,7 @@ class MirrorSearch {
     std::optional<Mirror> best;
     for (std::size_t i = 0; i < 4 && i < starts.size(); ++i) {
       Mirror refined = starts[i];
-      for (int k = 0; k < 15 && !stop.stop_requested(); ++k) refined = step(refined, 1);
+      for (int k = 0; k < 15 && !stop.stop_requested(); ++k) refined = step(refined);
       if (std::abs(refined.normal.dot(joint)) < greatest_sine && (!best || refined.cost < best->cost))
         best = refined;
     }
@@ -170,20 +172,31 @@ class MirrorSearch {
   }
 
  private:
-  // One step of the nearest-point iteration, over every `stride`th point: of all planes the one that takes
-  // the points nearest to their partners, which is the eigenvector of the smallest eigenvalue of their mutual
-  // moment.
-  [[nodiscard]] Mirror step(const Mirror& plane, std::size_t stride) const {
-    std::vector<std::pair<double, std::pair<Vector3d, Vector3d>>> pairs;
+  // Every `stride`th point, what of the surface is nearest to its mirror image, and how far that is off.
+  using Pair = std::pair<double, std::pair<Vector3d, Vector3d>>;
+  [[nodiscard]] std::vector<Pair> partners(const Mirror& plane, std::size_t stride) const {
+    std::vector<Pair> pairs;
+    pairs.reserve(points_.size() / stride + 1);
     for (std::size_t i = 0; i < points_.size(); i += stride) {
       const Vector3d& p = points_[i];
       const Vector3d mirrored = p - 2 * (p.dot(plane.normal) - plane.offset_mm) * plane.normal;
       const Vector3d nearest = surface_.closest_point(mirrored).point_mm;
       pairs.push_back({(nearest - mirrored).norm(), {p, nearest}});
     }
+    return pairs;
+  }
+
+  [[nodiscard]] static double misfit_of(const std::vector<Pair>& pairs) {
     double misfit = 0;
-    for (const auto& pair : pairs) misfit += std::min(pair.first, kGreatestMisfit_mm);
-    misfit /= static_cast<double>(pairs.size());
+    for (const Pair& pair : pairs) misfit += std::min(pair.first, kGreatestMisfit_mm);
+    return misfit / static_cast<double>(pairs.size());
+  }
+
+  // One step of the nearest-point iteration: of all planes the one that takes the points nearest to their
+  // partners, which is the eigenvector of the smallest eigenvalue of their mutual moment.
+  [[nodiscard]] Mirror step(const Mirror& plane) const {
+    std::vector<Pair> pairs = partners(plane, 1);
+    const double misfit = misfit_of(pairs);
     const auto kept = static_cast<std::ptrdiff_t>(0.85 * static_cast<double>(pairs.size()));
     std::nth_element(pairs.begin(), pairs.begin() + kept, pairs.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -196,7 +209,6 @@ class MirrorSearch {
     const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(moment + moment.transpose());
     Mirror next{solver.eigenvectors().col(0)};
     next.offset_mm = mean.dot(next.normal);
-    if (stride > 1) next.normal = plane.normal, next.offset_mm = plane.offset_mm;
     next.cost = misfit / breadth(plane.normal);
     return next;
   }
@@ -204,15 +216,13 @@ class MirrorSearch {
   // How wide the joint's end is along the normal, one standard deviation: of two planes that mirror it alike
   // the one between its sides is meant, since condyles and plateau are wider than they are deep.
   [[nodiscard]] double breadth(const Vector3d& normal) const {
-    Matrix3d moment = Matrix3d::Zero();
-    for (const Vector3d& p : points_) moment += (p - center_) * (p - center_).transpose();
-    moment /= static_cast<double>(points_.size());
-    return std::sqrt(normal.dot(moment * normal));
+    return std::sqrt(normal.dot(moment_ * normal));
   }
 
   std::vector<Vector3d> points_;
   const geometry::Surface& surface_;
   Vector3d center_;
+  Matrix3d moment_ = Matrix3d::Zero();  // about the center
 };
 
 // Which way along `forward` is the front: of a femur the notch lies behind; of a tibia the rim is bent in

@@ -69,8 +69,8 @@ std::optional<Vector3d> furthest(const std::vector<Vector3d>& points_mm, const V
   Vector3d sum = Vector3d::Zero();
   double weights = 0;
   for (std::size_t i = 0; i < points_mm.size(); ++i) {
+    if (reach - heights[i] >= cap_mm) continue;  // most: spared the division
     const double weight = 1 - (reach - heights[i]) / cap_mm;
-    if (weight <= 0) continue;
     sum += weight * points_mm[i];
     weights += weight;
   }

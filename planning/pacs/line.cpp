@@ -26,7 +26,11 @@ class LineConnection : public DcmTransportConnection {
   OFCondition clientSideHandshake() override { return inner_->clientSideHandshake(); }
   OFCondition renegotiate(const char* suite) override { return inner_->renegotiate(suite); }
   ssize_t read(void* buffer, size_t count) override {
-    return keep_to_allowance(count, true, [&](size_t admitted) { return inner_->read(buffer, admitted); });
+    return keep_to_allowance(count, true, [&](size_t admitted) {
+      const ssize_t done = inner_->read(buffer, admitted);
+      acknowledge_at_once();
+      return done;
+    });
   }
   ssize_t write(void* buffer, size_t count) override {
     return keep_to_allowance(count, false, [&](size_t admitted) { return inner_->write(buffer, admitted); });
@@ -44,6 +48,13 @@ class LineConnection : public DcmTransportConnection {
   }
 
  private:
+  // A peer writes in two parts, too (see prepare_socket), and most let the second wait for the
+  // acknowledgement of the first: for every answer. The kernel goes back to putting it off, so that this is
+  // asked for after every read.
+  void acknowledge_at_once() {
+    const int on = 1;
+    (void)::setsockopt(getSocket(), IPPROTO_TCP, TCP_QUICKACK, &on, sizeof(on));
+  }
   template <typename Transfer>
   ssize_t keep_to_allowance(size_t count, bool is_reading, const Transfer& transfer) {
     const std::size_t admitted = allowance_.admit(count, is_reading);

@@ -49,6 +49,7 @@ HostilePeer::HostilePeer(Habit habit) : habit_(std::move(habit)), port_(free_por
 
 HostilePeer::~HostilePeer() {
   thread_.request_stop();
+  (void)listens(port_);  // a caller ends its wait for one
   thread_.join();
   ASC_dropNetwork(&network_);
 }

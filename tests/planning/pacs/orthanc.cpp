@@ -30,14 +30,6 @@ sockaddr_in loopback(int port) {
   return address;
 }
 
-bool listens(int port) {
-  const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const sockaddr_in address = loopback(port);
-  const bool is_there = ::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
-  ::close(socket);
-  return is_there;
-}
-
 }  // namespace
 
 int free_port() {
@@ -49,6 +41,14 @@ int free_port() {
   ::close(socket);
   if (!is_bound) throw std::runtime_error("no free port");
   return ntohs(address.sin_port);
+}
+
+bool listens(int port) {
+  const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const sockaddr_in address = loopback(port);
+  const bool is_there = ::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+  ::close(socket);
+  return is_there;
 }
 
 Orthanc::Orthanc(OrthancForm form)

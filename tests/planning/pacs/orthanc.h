@@ -13,6 +13,8 @@
 namespace arthronaut::test {
 
 [[nodiscard]] int free_port();
+// Whether somebody takes a connection at this port of loopback.
+[[nodiscard]] bool listens(int port);
 
 struct OrthancForm {
   std::string encoding = "Latin1";  // of its answers
