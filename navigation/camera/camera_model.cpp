@@ -14,7 +14,7 @@ namespace {
 struct Roots {
   double a = 0, b = 0, w = 0, d = 0;
 };
-std::optional<Roots> roots_at(const Eigen::Vector3d& point, double n2, double xi) {
+inline std::optional<Roots> roots_at(const Eigen::Vector3d& point, double n2, double xi) {
   const double z = point.z(), r2 = point.head<2>().squaredNorm();
   const double a = n2 - 1, b = a + 4 * n2 * xi, w2 = z * z - a * r2, d2 = z * z - b * r2;
   if (!(z > 0) || !(w2 > 0) || !(d2 > 0)) return std::nullopt;
@@ -90,8 +90,8 @@ std::optional<Eigen::Vector2d> CameraModel::project(const Eigen::Vector3d& point
   const auto roots = roots_at(point_in_camera_mm, refracting_square(fluid_model_, index_ratio_), xi_);
   if (!roots) return std::nullopt;
   const double k = 2 * index_ratio_ * focal_ / (roots->w + roots->d);
-  return Eigen::Vector2d(center_ +
-                         k * point_in_camera_mm.head<2>().cwiseProduct(Eigen::Vector2d(1, aspect_)));
+  return Eigen::Vector2d(center_.x() + k * point_in_camera_mm.x(),
+                         center_.y() + k * (point_in_camera_mm.y() * aspect_));
 }
 
 // The closed form of the header, and its derivative: with S = W + D, a = n^2 - 1, b = a + 4 n^2 xi, v = (X,
@@ -105,13 +105,17 @@ std::optional<Eigen::Vector2d> CameraModel::project(const Eigen::Vector3d& point
   const auto roots = roots_at(point_in_camera_mm, refracting_square(fluid_model_, index_ratio_), xi_);
   if (!roots) return std::nullopt;
   const auto [a, b, w, d] = *roots;
+  // Number by number: most of what follows a marker asks for hundreds of these a frame.
   const double s = w + d, k = 2 * index_ratio_ * focal_ / s;
-  const Eigen::Vector2d axis_scale(1, aspect_);
-  d_pixel_d_point.leftCols<2>() =
-      k * (Eigen::Matrix2d::Identity() + ((a / w + b / d) / s) * v * v.transpose());
-  d_pixel_d_point.col(2) = -k * (z / s) * (1 / w + 1 / d) * v;
-  d_pixel_d_point.row(1) *= aspect_;
-  return center_ + k * v.cwiseProduct(axis_scale);
+  const double x = v.x(), y = v.y(), bend = (a / w + b / d) / s;
+  const double by_z = -k * (z / s) * (1 / w + 1 / d);
+  d_pixel_d_point(0, 0) = k * (1 + bend * x * x);
+  d_pixel_d_point(0, 1) = k * (bend * x * y);
+  d_pixel_d_point(0, 2) = by_z * x;
+  d_pixel_d_point(1, 0) = k * (bend * y * x) * aspect_;
+  d_pixel_d_point(1, 1) = k * (1 + bend * y * y) * aspect_;
+  d_pixel_d_point(1, 2) = by_z * y * aspect_;
+  return Eigen::Vector2d(center_.x() + k * x, center_.y() + k * (y * aspect_));
 }
 
 // With u = c + k v, k = 2 n f / S: xi moves S alone, by dD/dxi = -2 n^2 R^2 / D.

@@ -125,7 +125,7 @@ struct DirectFit::State {
     smear = std::clamp(smear + step[kSmear], -0.7, 0.9);
     smear_factor = static_cast<float>(std::exp(smear));
     gamma = std::clamp(gamma + step[kGamma], 1.0, 3.0);
-    light += step.tail<kLightTerms>().cast<float>();
+    light += step.segment<kLightTerms>(kLight).cast<float>();
     return pose.camera_from_marker.translation_mm.z() > 0;
   }
   // From here back to where the fit started.
@@ -193,7 +193,7 @@ void DirectFit::guess_light(State& state) {
 }
 
 void DirectFit::linearise(const State& state, bool is_first, Linearised& result) {
-  static_assert(kCount <= kRow && kRow == kProductSize);
+  static_assert(kCount <= kRow && kRow == kProductSize && kVelocity % kPixelsTogether == 0);
   result = Linearised();
   ProductSum products;
   for (Row& gradient : edge_gradients_) gradient.setZero();
@@ -206,6 +206,7 @@ void DirectFit::linearise(const State& state, bool is_first, Linearised& result)
   const auto explain = processor_has_avx2() ? explain_pixels_avx2 : explain_pixels;
   ExplainedPixels explained;
   int left = pixels_.count();
+  const int telling = state.exposed.shows_motion() ? kRow : kVelocity;
   for (std::size_t b = 0; b < levels_.size(); ++b, left -= kPixelsTogether) {
     const PixelBlocks::Block& block = pixels_.blocks()[b];
     explain(light, block.seen, levels_[b], explained);
@@ -222,7 +223,7 @@ void DirectFit::linearise(const State& state, bool is_first, Linearised& result)
       result.code_share.add(weight, explained.code[lane], residual);
       edge_gradients_[block.edge[lane]] += std::sqrt(weight) * residual * row;
     }
-    products.add(explained.rows);
+    products.add(explained.rows, telling);
   }
   result.scale = 1.4826 * geometry::median_in_place(std::span(sorted_));
   result.products = products.take().topLeftCorner<kCount, kCount>().cast<double>();
@@ -297,7 +298,10 @@ DirectPose DirectFit::refine(const camera::GrayView& frame, const camera::Camera
     linearise(state, iteration == 0, at);
     at.prior = prior;
     // While the code is smeared on purpose, what else smears it stays as it is.
-    if (state.coarse > 0) at.prior.segment<kLight - kVelocity>(kVelocity) *= 1e6;
+    if (state.coarse > 0) {
+      at.prior.segment<2>(kSmear) *= 1e6;
+      at.prior.segment<6>(kVelocity) *= 1e6;
+    }
     certainty = (is_rough ? kRoughStride : 1) / (kCorrelatedPixels * state.noise * state.noise);
     at.normal = certainty * at.products;
     at.normal.diagonal() += at.prior;

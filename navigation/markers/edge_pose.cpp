@@ -120,7 +120,11 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
       is_inlier[of_row[r]] = robust > 0;
       if (robust <= 0) continue;
       const double weight = robust / (sigma_px * sigma_px);
-      normal.noalias() += weight * row.jacobian * row.jacobian.transpose();
+      // The half that is looked at.
+      const Vector7d weighed = weight * row.jacobian;
+      for (int column = 0; column < 7; ++column) {
+        for (int k = column; k < 7; ++k) normal(k, column) += weighed[k] * row.jacobian[column];
+      }
       gradient.noalias() += weight * row.residual_px * row.jacobian;
       squares += robust * ratio * ratio;
       weights += robust;

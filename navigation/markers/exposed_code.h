@@ -25,6 +25,8 @@ class ExposedCode {
   // Sets the motion for the calls that follow, looked at in so many moments (1 to kMaxMoments).
   void move(const ExposedPose& pose, int moment_count);
   static constexpr int kMaxMoments = ExposedMoments::kMost;
+  // One moment, in the middle of the exposure, shows none: its derivatives by velocity and change are zero.
+  [[nodiscard]] bool shows_motion() const { return code_.count > 1; }
 
   // Along eight rays at once, smeared by sigmas in cells along the marker's x and y: 0 dark, 1 bright; the
   // margin of one cell around the square is bright. A cell must be at least two and a half sigma wide.

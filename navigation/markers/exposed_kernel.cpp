@@ -20,9 +20,9 @@ void explain_pixels(const FittedLight& light, const SeenPixels& pixels, const Se
   explain(light, pixels, levels, explained);
 }
 
-void add_products(const float (&rows)[kPixelsTogether][kProductSize],
+void add_products(const float (&rows)[kPixelsTogether][kProductSize], int count,
                   float (&sum)[kProductSize][kProductSize]) {
-  add_up(rows, sum);
+  add_up(rows, count, sum);
 }
 
 }  // namespace arthronaut::markers

@@ -45,12 +45,13 @@ struct SeenPixels {
   alignas(32) float weight[kPixelsTogether];
 };
 
-// The unknowns of the direct fit: pose (6), velocity and its change over the exposure (x, y, about the
-// normal), smear, gamma, and the light: bias (cubic) and gain (quadratic) as polynomials of the place.
+// The unknowns of the direct fit: pose (6), smear, gamma, the light: bias (cubic) and gain (quadratic) as
+// polynomials of the place; and, last, velocity and its change over the exposure (x, y, about the normal), of
+// which a picture of one moment says nothing.
 struct DirectUnknowns {
-  static constexpr int kVelocity = 6, kChange = 9, kSmear = 12, kGamma = 13, kLight = 14;
   static constexpr int kBiasTerms = 10, kGainTerms = 6, kLightTerms = kBiasTerms + kGainTerms;
-  static constexpr int kCount = kLight + kLightTerms;
+  static constexpr int kSmear = 6, kGamma = 7, kLight = 8;
+  static constexpr int kVelocity = kLight + kLightTerms, kChange = kVelocity + 3, kCount = kChange + 3;
 };
 
 // The light as the fit has it.
@@ -80,10 +81,11 @@ void explain_pixels(const FittedLight& light, const SeenPixels& pixels, const Se
 void explain_pixels_avx2(const FittedLight& light, const SeenPixels& pixels, const SeenLevels& levels,
                          ExplainedPixels& explained);
 
-// Adds row * row^T of eight rows to the sum, of which the half below the diagonal counts.
-void add_products(const float (&rows)[kPixelsTogether][kProductSize],
+// Adds row * row^T of eight rows to the sum, of which the half below the diagonal counts; of the rows' first
+// `count` numbers, a multiple of eight: beyond them all are zero.
+void add_products(const float (&rows)[kPixelsTogether][kProductSize], int count,
                   float (&sum)[kProductSize][kProductSize]);
-void add_products_avx2(const float (&rows)[kPixelsTogether][kProductSize],
+void add_products_avx2(const float (&rows)[kPixelsTogether][kProductSize], int count,
                        float (&sum)[kProductSize][kProductSize]);
 
 }  // namespace arthronaut::markers

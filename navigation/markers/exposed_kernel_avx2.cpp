@@ -12,9 +12,9 @@ void explain_pixels_avx2(const FittedLight& light, const SeenPixels& pixels, con
   explain(light, pixels, levels, explained);
 }
 
-void add_products_avx2(const float (&rows)[kPixelsTogether][kProductSize],
+void add_products_avx2(const float (&rows)[kPixelsTogether][kProductSize], int count,
                        float (&sum)[kProductSize][kProductSize]) {
-  add_up(rows, sum);
+  add_up(rows, count, sum);
 }
 
 }  // namespace arthronaut::markers

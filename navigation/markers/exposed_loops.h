@@ -177,7 +177,7 @@ inline void explain(const FittedLight& light, const SeenPixels& pixels, const Se
     load(from, value);
     columns[column] = by_code * value;
   };
-  for (int i = 0; i < At::kVelocity; ++i) take(levels.by_pose[i], i);
+  for (int i = 0; i < At::kSmear; ++i) take(levels.by_pose[i], i);
   for (int i = 0; i < 3; ++i) take(levels.by_velocity[i], At::kVelocity + i);
   for (int i = 0; i < 3; ++i) take(levels.by_change[i], At::kChange + i);
   take(levels.by_smear, At::kSmear);
@@ -195,12 +195,12 @@ inline void explain(const FittedLight& light, const SeenPixels& pixels, const Se
 }
 
 // Eight columns at a time, which take the same of the rows.
-inline void add_up(const float (&rows)[kPixelsTogether][kProductSize],
+inline void add_up(const float (&rows)[kPixelsTogether][kProductSize], int count,
                    float (&sum)[kProductSize][kProductSize]) {
   constexpr int kWide = 8, kColumns = 8;
   static_assert(kWide % kColumns == 0);
-  for (int column = 0; column < DirectUnknowns::kCount; column += kColumns) {
-    for (int first = column / kWide * kWide; first < kProductSize; first += kWide) {
+  for (int column = 0; column < count; column += kColumns) {
+    for (int first = column / kWide * kWide; first < count; first += kWide) {
       Floats parts[kColumns], row;
       for (int i = 0; i < kColumns; ++i) load(&sum[column + i][first], parts[i]);
       for (int k = 0; k < kPixelsTogether; ++k) {

@@ -12,8 +12,9 @@ class ProductSum {
  public:
   using Square = Eigen::Matrix<float, kProductSize, kProductSize>;
 
-  void add(const float (&rows)[kPixelsTogether][kProductSize]) {
-    processor_has_avx2() ? add_products_avx2(rows, sum_) : add_products(rows, sum_);
+  // Of a row's first `count` numbers, a multiple of eight; the others are zero.
+  void add(const float (&rows)[kPixelsTogether][kProductSize], int count = kProductSize) {
+    processor_has_avx2() ? add_products_avx2(rows, count, sum_) : add_products(rows, count, sum_);
   }
   // Of the rows so far; starts anew.
   [[nodiscard]] Square take() {

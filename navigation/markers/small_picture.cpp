@@ -105,8 +105,12 @@ void SquareSearch::sum_rows(bool without_white) {
     std::uint32_t* here = &sums_[static_cast<std::size_t>(y + 1) * (width_ + 1)];
     std::uint32_t row_sum = 0, last = 0;
     here[0] = 0;
+    if (!without_white) {
+      for (int x = 0; x < width_; ++x) here[x + 1] = above[x + 1] + (row_sum += in[x]);
+      continue;
+    }
     for (int x = 0; x < width_; ++x) {
-      if (!without_white || in[x] < kWhite) last = in[x];
+      if (in[x] < kWhite) last = in[x];
       row_sum += last;
       here[x + 1] = above[x + 1] + row_sum;
     }

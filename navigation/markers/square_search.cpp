@@ -168,10 +168,12 @@ void SquareSearch::label_regions() {
       parents[i] = parents[parents[i]];
     }
   }
-  std::fill(labels_.begin(), labels_.end(), -1);
+  auto next = labels_.begin();
   for (const Run& run : runs) {
     const int label = parents[run.label];
-    std::fill_n(&labels_[static_cast<std::size_t>(run.row) * width_ + run.first], run.end - run.first, label);
+    const auto first = labels_.begin() + static_cast<std::ptrdiff_t>(run.row) * width_ + run.first;
+    std::fill(next, first, -1);
+    next = std::fill_n(first, run.end - run.first, label);
     Region& region = regions_[label];
     region.left = std::min(region.left, run.first);
     region.right = std::max(region.right, run.end - 1);
@@ -179,6 +181,7 @@ void SquareSearch::label_regions() {
     region.bottom = run.row;
     region.area += run.end - run.first;
   }
+  std::fill(next, labels_.end(), -1);
 }
 
 void SquareSearch::trace_outline(int label, const Region& region, const camera::CameraModel& camera) {

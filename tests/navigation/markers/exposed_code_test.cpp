@@ -156,8 +156,8 @@ TEST(ExposedKernel, GivesTheSameBitsOnEveryProcessor) {
                                              wide[kProductSize][kProductSize] = {};
   for (auto& row : rows)
     for (float& value : row) value = normal(random);
-  add_products(rows, plain);
-  add_products_avx2(rows, wide);
+  add_products(rows, kProductSize, plain);
+  add_products_avx2(rows, kProductSize, wide);
   EXPECT_EQ(std::memcmp(plain, wide, sizeof plain), 0);
 }
 
@@ -254,6 +254,27 @@ TEST(ProductSum, AddsProductsOfRows) {
   }
   EXPECT_LT((products.take() - expected).cwiseAbs().maxCoeff(), 1e-4F);
   EXPECT_EQ(products.take().cwiseAbs().maxCoeff(), 0);
+}
+
+// Without a motion the last of the unknowns are left out, and the sums of the others stay the same to the
+// bit.
+TEST(ProductSum, LeavesOutWhatAPictureOfOneMomentDoesNotShow) {
+  const RigidTransform facing{Eigen::Quaterniond(0, 1, 0, 0), {0, 0, 20}};
+  ExposedCode exposed(codes_4x4_50()[0], 4.0);
+  exposed.move({facing, geometry::Vector6d::Constant(0.1), geometry::Vector6d::Constant(0.05)}, 1);
+  EXPECT_FALSE(exposed.shows_motion());
+  Fitted fit = some_fit(3);
+  exposed.look(some_rays(facing, 3), fit.levels);
+  ExplainedPixels explained;
+  explain_pixels(fit.light, fit.pixels, fit.levels, explained);
+  ProductSum all, first;
+  all.add(explained.rows);
+  first.add(explained.rows, DirectUnknowns::kVelocity);
+  const ProductSum::Square sum = all.take();
+  EXPECT_GT(sum.diagonal().head<6>().minCoeff(), 0);
+  EXPECT_EQ(sum, first.take());
+  exposed.move({facing, geometry::Vector6d::Constant(0.1), geometry::Vector6d::Zero()}, 2);
+  EXPECT_TRUE(exposed.shows_motion());
 }
 
 }  // namespace
