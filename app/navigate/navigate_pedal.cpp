@@ -352,9 +352,10 @@ RailContext NavigateView::rail_context() const {
   return context;
 }
 
-// The probe stops drawing with a touch; the screen stays, so that the distance is read in large.
+// What came of it is read in large, also once the step is done; but for a guide that is in the hand.
 void NavigateView::take_touch(bool is_control_point) {
-  choices_.layout = layout(theatre::LiveOperation::now_s());
+  if (theatre::LiveOperation::now_s() - choices_.guidance_seen_s > kGuideAway_s)
+    choices_.layout = NavigateLayout::Register;
   if (is_control_point)
     ask(operation::TouchControlPoint{});
   else

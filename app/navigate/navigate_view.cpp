@@ -23,7 +23,6 @@ namespace {
 
 using Phase = theatre::LiveState::Phase;
 
-constexpr double kGuideAway_s = 2;
 constexpr double kRefusal_s = 6;  // long enough to be read
 
 }  // namespace
@@ -260,7 +259,7 @@ void NavigateView::read_live() {
 }
 
 NavigateLayout NavigateView::layout(double now_s) const {
-  return choices_.layout.value_or(layout_of(*live_, now_s - choices_.guidance_seen_s));
+  return choices_.layout.value_or(layout_of(*live_, now_s - choices_.guidance_seen_s, choices_.looked_at));
 }
 
 void NavigateView::follow_reached(const NavigateDisplay& display, double now_s) {

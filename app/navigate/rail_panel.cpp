@@ -170,14 +170,14 @@ void draw_states(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
     else
       states.push_back({sign(frame.intrinsics_are_known, Severity::Bad), "Lens"});
     states.push_back({sign(frame.world_is_seen(), Severity::Bad), "Marker"});
-    const bool registers = screen.layout == NavigateLayout::Register;
-    const auto* tool = state.source->pipeline.tools.find_tool(registers ? state.source->pipeline.probe_name
-                                                                        : state.source->pipeline.guide_name);
+    const bool is_of_probe = screen.is_of_probe();
+    const auto* tool = state.source->pipeline.tools.find_tool(
+        is_of_probe ? state.source->pipeline.probe_name : state.source->pipeline.guide_name);
     const bool is_seen =
         tool != nullptr &&
         (tracker ? tracker::state_of(frame.outside, tool->marker_id) == tracker::BodyState::Tracked
                  : pipeline::body_in(frame, tool->marker_id).camera_from_body.has_value());
-    states.push_back({sign(is_seen, Severity::Caution), registers ? "Probe" : "Guide"});
+    states.push_back({sign(is_seen, Severity::Caution), is_of_probe ? "Probe" : "Guide"});
     const auto standing = state.registration->in_force.standing;
     states.push_back({waits_for_time_out(state) || screen.display.is_unverified ? Severity::Caution
                       : standing == operation::Standing::Stands                 ? sign(true, Severity::Good)

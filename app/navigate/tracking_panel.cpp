@@ -15,7 +15,7 @@ bool is_needed(const NavigateScreen& screen, int marker_id) {
   const pipeline::PipelineOptions& options = screen.options();
   const auto* probe = options.tools.find_tool(options.probe_name);
   const auto* guide = options.tools.find_tool(options.guide_name);
-  const auto* tool = screen.layout == NavigateLayout::Register ? probe : guide;
+  const auto* tool = screen.is_of_probe() ? probe : guide;
   return tool != nullptr && tool->marker_id == marker_id;
 }
 
