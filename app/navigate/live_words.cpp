@@ -1,6 +1,7 @@
 #include "app/navigate/live_words.h"
 
 #include "app/widgets/controls.h"
+#include "navigation/sources/recovering_source.h"
 
 namespace arthronaut::navigate {
 
@@ -74,11 +75,15 @@ bool needs_pictures(NextAction action) {
 }
 }  // namespace
 
-std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction action) {
+std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction action,
+                                   const std::string& trouble_words) {
   if (!needs_pictures(action)) return "";
   switch (trouble) {
-    case theatre::SourceTrouble::NoPicture:
-      return "wait: no picture comes";
+    case theatre::SourceTrouble::NoPicture: {
+      // Somebody has to do something about it: no waiting ends that.
+      const std::size_t at = trouble_words.find(sources::kFormatChanged);
+      return at == std::string::npos ? "wait: no picture comes" : trouble_words.substr(at) + " (K)";
+    }
     case theatre::SourceTrouble::Plain:
       return "look after light and camera: the picture is plain";
     case theatre::SourceTrouble::Frozen:
