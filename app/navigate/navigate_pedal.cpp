@@ -77,6 +77,7 @@ std::string NavigateView::next_step() {
   if (resume_.is_looking()) return "wait: the case's last operation is looked for";
   if (cameras_.is_open()) {
     const auto pictures = cameras_.chosen();
+    if (cameras_.chosen_does_not_answer()) return pictures->name + " does not answer: open it all the same";
     return pictures ? "open " + pictures->name : "type the address of a stream, then Enter";
   }
   if (left_behind() != nullptr) return "resume the operation that was left";
@@ -101,13 +102,14 @@ std::string NavigateView::next_step() {
   if (takes_guide_in_simulation()) return "take the guide (simulation)";
   if (action == NextAction::CheckWorldMarker && registration().must_be_found_anew())
     return place_anew_words(registration().way_out());
-  if (action == NextAction::VerifyByTouch) return words_of_verifying(*live_->operation);
-  if (action == NextAction::CheckControlPoint) return words_of_checking(*live_->operation);
+  const std::string hand = words_of_simulated_hand(action);
+  if (action == NextAction::VerifyByTouch) return words_of_verifying(*live_->operation) + hand;
+  if (action == NextAction::CheckControlPoint) return words_of_checking(*live_->operation) + hand;
   if (action == NextAction::RegisterAnew) return words_of_registering_anew(*live_->operation);
   if (action == NextAction::RecordDrilled && guided->bundle != norms::Bundle::Whole)
     return beside + "when the tunnel " + tunnels::name_of(*guided) + " is drilled: say so";
   const bool starts = action == NextAction::StartSource || action == NextAction::PlanTunnel;
-  if (!starts) return beside + words_of(action);
+  if (!starts) return beside + words_of(action) + hand;
   if (must_set_up()) return "calibrate camera and tools in Set up";
   const bool have_ended = live_->phase == Phase::Ended && live_->picture != nullptr;
   return (have_ended ? "the pictures have ended: " : "") + words_of_start();
@@ -322,7 +324,9 @@ bool NavigateView::is_in_wrong_medium() const {
 std::string NavigateView::words_without_pictures() const {
   const NextAction action = live_->operation->next_action;
   const bool needs_none = action == NextAction::CheckWorldMarker && registration().must_be_found_anew();
-  return is_running() && !needs_none ? navigate::words_without_pictures(live_->trouble, action) : "";
+  return is_running() && !needs_none
+             ? navigate::words_without_pictures(live_->trouble, action, live_->trouble_words)
+             : "";
 }
 
 bool NavigateView::must_set_up() const {

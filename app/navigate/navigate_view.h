@@ -17,6 +17,7 @@
 #include "app/navigate/navigate_scene.h"
 #include "app/navigate/navigate_setup.h"
 #include "app/navigate/pose_sharing.h"
+#include "app/navigate/resting_tip.h"
 #include "app/navigate/started_source.h"
 #include "app/navigate/theatre_bones.h"
 #include "app/navigate/theatre_layout.h"
@@ -110,6 +111,9 @@ class NavigateView : public mode::Mode {
   // Every bone with a planned tunnel, the one that is navigated first.
   [[nodiscard]] std::vector<FinishedBone> finished_bones() const;
   [[nodiscard]] bool finishes() const;  // all tunnels of this bone are drilled
+  [[nodiscard]] bool holds_simulated_probe() const;
+  // Behind a step that is done by a touch: whether the simulated hand lets it be taken now; empty for others.
+  [[nodiscard]] std::string words_of_simulated_hand(operation::NextAction action) const;
   [[nodiscard]] bool takes_guide_in_simulation() const;
   [[nodiscard]] bool is_in_wrong_medium() const;
   [[nodiscard]] std::string words_without_pictures() const;  // empty: what is next can be done
@@ -183,9 +187,12 @@ class NavigateView : public mode::Mode {
     theatre::LiveStatePtr live;  // and not told to be on the screen yet; else null
     double since_s = 0;          // when that was begun
   } drawn_;
+  double judged_s_ = 0;  // when it was judged whether live_ is of now: once for all that a frame shows
   theatre::LiveStatePtr live_ = TheatreBones::nothing();  // of this frame, of the chosen bone; never null
-  RegistrationWords words_;                               // of its registration
-  StartedSource started_;                                 // last
+  RestingTip resting_;
+  RegistrationWords words_;            // of its registration
+  RegistrationWords words_of_before_;  // the same beside a picture that is not of now
+  StartedSource started_;              // last
   sounds::SoundWatch heard_;
   sounds::Player player_;
   struct Lent {  // to an exercise: what was started last is its own; see lend()

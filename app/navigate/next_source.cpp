@@ -13,9 +13,7 @@ std::optional<sources::SourceKind> NavigateView::source_kind() const {
   return live_->operation->source->kind;
 }
 
-bool NavigateView::pictures_are_of_now() const {
-  return is_live(live_.get(), theatre::LiveOperation::now_s());
-}
+bool NavigateView::pictures_are_of_now() const { return is_live(live_.get(), judged_s_); }
 
 bool NavigateView::can_simulate() const {
   if (model_ == nullptr) return false;
@@ -45,10 +43,21 @@ bool NavigateView::simulates() const {
                          : can_simulate() && !choices_.has_real_scope;
 }
 
+bool NavigateView::holds_simulated_probe() const {
+  return started_.is_simulated(SimulatedPart::Scratch) || started_.is_simulated(SimulatedPart::Touch);
+}
+
+std::string NavigateView::words_of_simulated_hand(NextAction action) const {
+  const bool touches = action == NextAction::VerifyByTouch || action == NextAction::ConfirmByTouch ||
+                       action == NextAction::SetControlPoint || action == NextAction::CheckControlPoint;
+  if (!touches || !is_running() || !holds_simulated_probe()) return "";
+  return resting_.rests() ? ". Now: the probe rests" : ". Wait: the probe moves";
+}
+
 // The scripted surgeon holds the probe: the guide is taken by starting the other part of the script.
 bool NavigateView::takes_guide_in_simulation() const {
-  return live_->operation->next_action == NextAction::BringGuide &&
-         started_.is_simulated(SimulatedPart::Scratch) && live_->phase == Phase::Running && can_simulate();
+  return live_->operation->next_action == NextAction::BringGuide && holds_simulated_probe() &&
+         live_->phase == Phase::Running && can_simulate();
 }
 
 std::string NavigateView::words_of_start() const {
