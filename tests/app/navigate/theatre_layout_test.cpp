@@ -189,6 +189,16 @@ TEST(TheatreLayout, BesideTheNumbersTheTargetIsAsLargeAsTheyAllow) {
   }
 }
 
+// The 3D view under the target shows a bone, and not a stripe of one.
+TEST(TheatreLayout, UnderTheTargetTheSceneHasAThirdOfTheRoom) {
+  for (const Shape& shape : kShapes) {
+    SCOPED_TRACE(shape.name);
+    const TheatreLayout l = Screen(shape).layout(true);
+    if (!l.scene_is_in_block || std::string(shape.name).starts_with("two")) continue;
+    EXPECT_GT(l.scene.height, 0.32F * l.block.height);
+  }
+}
+
 // Every instruction stands in letters for afar, whole, on every screen; so do the numbers.
 TEST(TheatreLayout, WhatGuidesIsReadFromAfar) {
   for (const Shape& shape : kShapes) {
