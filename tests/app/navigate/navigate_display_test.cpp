@@ -150,8 +150,8 @@ TEST(NavigateDisplay, TheLayoutFollowsWhatIsDone) {
   EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Guide);
 }
 
-// What is touched to verify is told of by the probe's panel, whatever was seen of a guide before: there stands
-// how far off the bone it was.
+// What is touched to verify is told of by the probe's panel, whatever was seen of a guide before: there
+// stands how far off the bone it was.
 TEST(NavigateDisplay, TheLayoutIsOfTheToolThatTheStepTakes) {
   using operation::NextAction;
   using operation::Step;
@@ -163,9 +163,9 @@ TEST(NavigateDisplay, TheLayoutIsOfTheToolThatTheStepTakes) {
   };
   for (const bool has_evidence : {false, true}) {
     shown.operation.drilled.has_evidence = has_evidence;
-    for (const NextAction action : {NextAction::VerifyByTouch, NextAction::SetControlPoint,
-                                    NextAction::CheckControlPoint, NextAction::RegisterAnew,
-                                    NextAction::StartSource})  // nothing is verified yet
+    for (const NextAction action :
+         {NextAction::VerifyByTouch, NextAction::SetControlPoint, NextAction::CheckControlPoint,
+          NextAction::RegisterAnew, NextAction::StartSource})  // nothing is verified yet
       EXPECT_EQ(after(action), NavigateLayout::Register) << to_text(action);
     for (const NextAction action : {NextAction::CheckGuide, NextAction::BringGuide,
                                     NextAction::FollowBullseye, NextAction::RecordDrilled})
