@@ -80,9 +80,12 @@ std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction ac
   if (!needs_pictures(action)) return "";
   switch (trouble) {
     case theatre::SourceTrouble::NoPicture: {
-      // Somebody has to do something about it: no waiting ends that.
       const std::size_t at = trouble_words.find(sources::kFormatChanged);
-      return at == std::string::npos ? "wait: no picture comes" : trouble_words.substr(at) + " (K)";
+      if (at == std::string::npos) return "wait: no picture comes";
+      // Somebody has to do something about it: no waiting ends that. What it was stands in the panel.
+      const std::size_t size = at + sources::kFormatChanged.size();
+      return "format changed to " + trouble_words.substr(size, trouble_words.find(':', size) - size) +
+             ": set the processor back, or choose the camera (K)";
     }
     case theatre::SourceTrouble::Plain:
       return "look after light and camera: the picture is plain";
