@@ -2,6 +2,7 @@
 
 #include <imgui_stdlib.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/widgets/wrapped_text.h"
@@ -24,6 +25,11 @@ float width_beside(const widgets::Ui& ui, float width, const CardLine& line, flo
                                                                                                   : 0;
 }
 
+// What a sign takes before the words of a line that has no name; the name of any other stands behind it.
+float width_of_sign(const CardLine& line, float letters_px) {
+  return line.name.empty() && line.severity != widgets::Severity::Quiet ? 1.2F * letters_px : 0;
+}
+
 // As widgets::wrapped() breaks it, which knows the font in its own size alone.
 std::string in_lines(const ImFont* font, float size_px, const std::string& words, float width) {
   return widgets::wrapped(font, words, width * font->FontSize / size_px);
@@ -32,11 +38,11 @@ std::string in_lines(const ImFont* font, float size_px, const std::string& words
 // The names in small letters, what they say in letters for afar, beside or under them.
 float height_of(const widgets::Ui& ui, float width, const Card& card, float letters_px) {
   float height = card.keys.empty() ? 0 : ui.theme.px(10);
-  const auto add = [&](const std::string& words) {
+  const auto add = [&](const std::string& words, float indent = 0) {
     if (!words.empty())
       height += ui.theme.afar
-                    ->CalcTextSizeA(letters_px, 1e9F, width,
-                                    in_lines(ui.theme.afar, letters_px, words, width).c_str())
+                    ->CalcTextSizeA(letters_px, 1e9F, 0,
+                                    in_lines(ui.theme.afar, letters_px, words, width - indent).c_str())
                     .y;
   };
   add(card.title);
@@ -44,7 +50,7 @@ float height_of(const widgets::Ui& ui, float width, const Card& card, float lett
     height += ui.theme.px(8);
     const bool has_own_line = !line.name.empty() && width_beside(ui, width, line, letters_px) <= 0;
     if (has_own_line) height += ui.theme.title->FontSize;
-    add(line.text);
+    add(line.text, width_of_sign(line, letters_px));
   }
   add(card.keys);
   return height;
@@ -67,9 +73,9 @@ void draw_card(const widgets::Ui& ui, const widgets::Rect& area, const Card& car
   ui.log.note_state("card_letters", std::to_string(std::lround(100 * letters_px / ui.theme.afar->FontSize)));
   const auto put = [&](ImFont* font, float size_px, ImU32 color, const std::string& words, float indent) {
     if (words.empty()) return;
-    const std::string lines = in_lines(font, size_px, words, box.width);
-    draw.AddText(font, size_px, {box.x + indent, box.y}, color, lines.c_str(), nullptr, box.width);
-    (void)box.cut_top(font->CalcTextSizeA(size_px, 1e9F, box.width, lines.c_str()).y);
+    const std::string lines = in_lines(font, size_px, words, box.width - indent);
+    draw.AddText(font, size_px, {box.x + indent, box.y}, color, lines.c_str());
+    (void)box.cut_top(font->CalcTextSizeA(size_px, 1e9F, 0, lines.c_str()).y);
   };
   put(ui.theme.afar, letters_px, widgets::kText, card.title, 0);
   for (const CardLine& line : card.lines) {
@@ -77,8 +83,10 @@ void draw_card(const widgets::Ui& ui, const widgets::Rect& area, const Card& car
     const bool is_quiet = line.severity == widgets::Severity::Quiet;
     const float radius = name->FontSize * 0.4F, beside = width_beside(ui, box.width, line, letters_px);
     const float lower = beside > 0 ? (letters_px - name->FontSize) * 0.75F : 0;  // on the same base line
+    const float sign = width_of_sign(line, letters_px);
+    const float beside_px = sign > 0 ? letters_px : name->FontSize;  // of the letters that it stands before
     if (!is_quiet)
-      widgets::draw_sign(draw, {box.x + radius, box.y + lower + name->FontSize / 2}, radius, line.severity);
+      widgets::draw_sign(draw, {box.x + radius, box.y + lower + beside_px / 2}, radius, line.severity);
     const float indent = is_quiet ? 0 : 3 * radius;
     if (beside > 0)
       draw.AddText(name, name->FontSize, {box.x + indent, box.y + lower}, widgets::kQuietText,
@@ -86,7 +94,7 @@ void draw_card(const widgets::Ui& ui, const widgets::Rect& area, const Card& car
     else
       put(name, name->FontSize, widgets::kQuietText, line.name, indent);
     put(ui.theme.afar, letters_px, is_quiet ? widgets::kText : widgets::color_of(line.severity), line.text,
-        beside);
+        std::max(beside, sign));
   }
   if (!card.keys.empty()) (void)box.cut_top(ui.theme.px(10));
   put(ui.theme.afar, letters_px, widgets::kAccent, card.keys, 0);

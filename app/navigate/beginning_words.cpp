@@ -29,6 +29,17 @@ std::string in_words(const plan_review::TunnelVerdict& verdict) {
   return verdict.is_fine() ? "" : (verdict.is_wrong() ? "; WRONG: " : "; look: ") + verdict.in_short();
 }
 
+// All of it: what is confirmed was read.
+std::string in_full(const plan_review::TunnelVerdict& verdict) {
+  std::string words;
+  const auto add = [&](const char* head, const std::vector<std::string>& reasons) {
+    for (const std::string& reason : reasons) words += (&reason == &reasons.front() ? head : "; ") + reason;
+  };
+  add("; WRONG: ", verdict.wrong);
+  add("; look: ", verdict.look);
+  return words;
+}
+
 std::string plan_and_verdict(const std::optional<operation::PlannedTunnel>& plan,
                              const plan_review::TunnelVerdict& verdict) {
   return plan_in_words(plan) + in_words(verdict);
@@ -104,6 +115,7 @@ Card time_out_card(const operation::OperationState& state, const std::string& pa
                    const plan_review::TunnelVerdict& verdict) {
   Card card{"navigate.time_out", "", time_out_lines(state, patient, verdict), ""};
   for (CardLine& line : card.lines) {
+    if (line.topic == CardLine::Topic::Plan) line.text = plan_in_words(state.plan) + in_full(verdict);
     if (line.topic != CardLine::Topic::CameraAndTools) continue;
     line.name.clear();  // its text names them
     line.text = without_dates(line.text);

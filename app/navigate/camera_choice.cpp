@@ -51,23 +51,40 @@ void CameraChoice::close() {
   previews_.close();
   offered_.clear();
   chosen_ = 0;
-  is_open_ = wants_focus_ = is_typing_ = false;
+  is_open_ = wants_focus_ = is_typing_ = was_chosen_ = false;
   text_.clear();
   trouble_.clear();
 }
 
+void CameraChoice::prefer_what_answers() {
+  if (was_chosen_ || !chosen_does_not_answer()) return;
+  for (std::size_t i = 0; i < offered_.size() && previews_.is_shown(i); ++i)
+    if (previews_.latest(i).picture != nullptr) {
+      chosen_ = i;
+      return;
+    }
+}
+
+bool CameraChoice::chosen_does_not_answer() const {
+  return is_open_ && chosen_ < offered_.size() && previews_.is_shown(chosen_) &&
+         previews_.latest(chosen_).does_not_answer();
+}
+
 void CameraChoice::choose_field() {
+  was_chosen_ = true;
   chosen_ = offered_.size();
   wants_focus_ = true;
 }
 
 void CameraChoice::choose_next() {
+  was_chosen_ = true;
   chosen_ = (chosen_ + 1) % (offered_.size() + 1);
   wants_focus_ = chosen_ == offered_.size();
 }
 
 void CameraChoice::choose_next_offered() {
   if (offered_.empty()) return;
+  was_chosen_ = true;
   chosen_ = chosen_ + 1 < offered_.size() ? chosen_ + 1 : 0;
   wants_focus_ = false;
 }
@@ -107,7 +124,8 @@ std::optional<LivePictures> CameraChoice::take_address(std::string typed) {
 }
 
 std::string_view CameraChoice::keys() const {
-  if (!wants_text()) return "K or V: the next one    Space, or a click: open it    Page up or Esc: none";
+  if (!wants_text())
+    return "K or V: the next one    Space, Enter or a click: open it    Page up or Esc: none";
   return offered_.empty() ? "Enter: open it    Esc: none" : "Enter, or a click: open it    Esc: none";
 }
 
@@ -127,6 +145,7 @@ std::optional<LivePictures> CameraChoice::draw_rows(const widgets::Ui& ui, widge
 
 std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widgets::Rect& video) {
   if (!is_open_) return std::nullopt;
+  prefer_what_answers();
   const float row = ui.theme.px(56);
   // Pictures as large as there is room for them.
   const float count = static_cast<float>(offered_.size());

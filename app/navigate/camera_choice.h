@@ -48,6 +48,11 @@ class CameraChoice {
   void choose_next();
   // The same for a foot, which types nothing: past the field, where it would be caught.
   void choose_next_offered();
+  // Where nobody has chosen yet and what is chosen does not answer: the first one that gives pictures. Every
+  // frame.
+  void prefer_what_answers();
+  // What is chosen was asked for a picture, and gives none.
+  [[nodiscard]] bool chosen_does_not_answer() const;
   // Empty: nothing is on offer, or the field is chosen.
   [[nodiscard]] std::optional<LivePictures> chosen() const;
   [[nodiscard]] std::size_t count() const { return offered_.size(); }
@@ -79,6 +84,7 @@ class CameraChoice {
   std::vector<LivePictures> offered_;
   std::size_t chosen_ = 0;  // offered_.size(): the field
   bool is_open_ = false, wants_focus_ = false, is_typing_ = false;
+  bool was_chosen_ = false;  // by a hand
   std::string text_, trouble_, tracker_;
   previews::SourcePreviews previews_;
 };

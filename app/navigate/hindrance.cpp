@@ -99,6 +99,8 @@ std::string words_of_setup(const operation::OperationState& state, Needs needs) 
 
 }  // namespace
 
+bool needs_guide(const operation::OperationState& state) { return needs_of(state) == Needs::Guide; }
+
 std::string why_not_tracked(const pipeline::FrameResult& result, int marker_id, const std::string& name) {
   if (result.outside.bodies.empty()) return words_of(pipeline::body_in(result, marker_id).state, name);
   const tracker::BodyState outside = tracker::state_of(result.outside, marker_id);

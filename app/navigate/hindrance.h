@@ -13,6 +13,8 @@ namespace arthronaut::navigate {
 // tracker sees it: "bone marker not seen"; empty while it is tracked.
 [[nodiscard]] std::string why_not_tracked(const pipeline::FrameResult& result, int marker_id,
                                           const std::string& name);
+// What is to be done next is done by the guide.
+[[nodiscard]] bool needs_guide(const operation::OperationState& state);
 // What in the newest picture keeps the next action from being done, the first thing where there are several;
 // empty while nothing does. trouble: of the source. Of pictures that do not come it says nothing:
 // words_without_pictures() does.

@@ -1,6 +1,7 @@
 #include "app/navigate/live_words.h"
 
 #include "app/widgets/controls.h"
+#include "navigation/sources/recovering_source.h"
 
 namespace arthronaut::navigate {
 
@@ -74,11 +75,18 @@ bool needs_pictures(NextAction action) {
 }
 }  // namespace
 
-std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction action) {
+std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction action,
+                                   const std::string& trouble_words) {
   if (!needs_pictures(action)) return "";
   switch (trouble) {
-    case theatre::SourceTrouble::NoPicture:
-      return "wait: no picture comes";
+    case theatre::SourceTrouble::NoPicture: {
+      const std::size_t at = trouble_words.find(sources::kFormatChanged);
+      if (at == std::string::npos) return "wait: no picture comes";
+      // Somebody has to do something about it: no waiting ends that. What it was stands in the panel.
+      const std::size_t size = at + sources::kFormatChanged.size();
+      return "format changed to " + trouble_words.substr(size, trouble_words.find(':', size) - size) +
+             ": set the processor back, or choose the camera (K)";
+    }
     case theatre::SourceTrouble::Plain:
       return "look after light and camera: the picture is plain";
     case theatre::SourceTrouble::Frozen:

@@ -19,9 +19,9 @@ namespace arthronaut::navigate {
 // What is to be done about an alarm that no touch of the control point can take away.
 [[nodiscard]] std::string place_anew_words(operation::WayOut way_out);
 // What to do instead of something that needs pictures while the source gives none that show anything; empty
-// where that is no hindrance.
-[[nodiscard]] std::string words_without_pictures(theatre::SourceTrouble trouble,
-                                                 operation::NextAction action);
+// where that is no hindrance. trouble_words: why none come, as the source says it.
+[[nodiscard]] std::string words_without_pictures(theatre::SourceTrouble trouble, operation::NextAction action,
+                                                 const std::string& trouble_words = "");
 // What stands before the step's own words where it can be done all the same, as it takes somebody's word: "no
 // picture comes; ". Empty while pictures come, and for all other steps.
 [[nodiscard]] std::string words_beside_no_picture(theatre::SourceTrouble trouble,

@@ -26,6 +26,7 @@ void NavigateView::add_actions(widgets::Actions& actions) {
   actions.add({"navigate.menu", "Menu", "Everything that can be done here, and every state", GLFW_KEY_ENTER,
                0, false, [this] { return model_ != nullptr; }, [this] { return choices_.shows_menu; },
                [this] {
+                 if (cameras_.is_open()) return take_next_step();
                  choices_.shows_menu = !choices_.shows_menu;
                  choices_.shows_more = false;
                }});
@@ -40,7 +41,7 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                0,
                false,
                simulates,
-               [this] { return is_running() && started_.is_simulated(SimulatedPart::Scratch); },
+               [this] { return is_running() && holds_simulated_probe(); },
                [this] { start_simulation(SimulatedPart::Scratch); },
                {"start the simulation instead", running}});
   actions.add({"navigate.drill",
@@ -77,6 +78,10 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                  end_source();
                },
                {"stop", [this] { return is_under_way(*live_) && !cameras_.is_open(); }}});
+  // Of a source that gives none there is nothing to lose by a slip of the hand.
+  const auto gives_pictures = [this] {
+    return is_running() && !cameras_.is_open() && live_->trouble != theatre::SourceTrouble::NoPicture;
+  };
   actions.add({"navigate.camera",
                "Camera",
                "Navigates with a camera that is connected, or with a stream",
@@ -86,7 +91,7 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                [this] { return model_ != nullptr && model_->has_bone(choices_.bone); },
                [this] { return cameras_.is_open(); },
                [this] { choose_camera(); },
-               {"choose a camera instead", [this] { return is_running() && !cameras_.is_open(); }}});
+               {"choose a camera instead", gives_pictures}});
   actions.add({"navigate.address",
                "Type an address",
                "Of a stream, of a camera, or of an outside tracker that sees the tools (igtl://HOST:PORT)",
@@ -96,7 +101,7 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                [this] { return model_ != nullptr && model_->has_bone(choices_.bone); },
                {},
                [this] { type_address(); },
-               {"choose a camera instead", [this] { return is_running() && !cameras_.is_open(); }}});
+               {"choose a camera instead", gives_pictures}});
   actions.add({"navigate.digitise", "Probe draws",
                "While on, where the probe's tip goes is kept for the registration", GLFW_KEY_D, 0, false,
                [this] { return is_running() && !holds_for_time_out(*live_->operation); },

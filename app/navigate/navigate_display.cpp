@@ -86,6 +86,26 @@ std::string headline_of(theatre::SourceTrouble trouble) {
   }
 }
 
+// The probe's part of the operation: how it was touched is what is looked at.
+bool is_of_probe(operation::Step step) {
+  using operation::Step;
+  return step == Step::WorldMarker || step == Step::Digitise || step == Step::Register ||
+         step == Step::Verify;
+}
+
+bool asks_for_probe(const operation::OperationState& state) {
+  using operation::NextAction;
+  switch (state.next_action) {
+    case NextAction::CheckGuide:
+    case NextAction::ConfirmTimeOut:
+      return false;
+    case NextAction::StartSource:  // other pictures, to go on where these ended
+      return state.verification == operation::Verification::NotYet;
+    default:
+      return is_of_probe(operation::step_of(state.next_action));
+  }
+}
+
 // Why nothing guides. True: it does not whatever the next pictures show, until somebody does something about
 // it.
 bool explain(NavigateDisplay& display, const theatre::LiveState& live) {
@@ -248,14 +268,16 @@ bool is_of_source_before(const theatre::LiveState& live) {
   return live.phase == Phase::Starting || (live.phase == Phase::Failed && live.picture == nullptr);
 }
 
-NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s) {
-  constexpr double kHold_s = 2;
-  if (live.phase == Phase::NoSource || since_guidance_s < kHold_s) return NavigateLayout::Guide;
+NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s,
+                         std::optional<operation::Step> looked_at) {
+  if (live.phase == Phase::NoSource || since_guidance_s < kGuideAway_s) return NavigateLayout::Guide;
   const operation::OperationState& state = *live.operation;
   const bool stands = state.registration->in_force.standing == operation::Standing::Stands;
+  if (!stands) return NavigateLayout::Register;
+  if (state.guided_lately) return NavigateLayout::Guide;
+  if (looked_at ? is_of_probe(*looked_at) : asks_for_probe(state)) return NavigateLayout::Register;
   // Once it was aimed by it, strokes that may go on are not what is looked at.
-  const bool is_aimed_by = state.guided_lately || state.drilled.has_evidence;
-  return stands && (is_aimed_by || !state.draws) ? NavigateLayout::Guide : NavigateLayout::Register;
+  return state.drilled.has_evidence || !state.draws ? NavigateLayout::Guide : NavigateLayout::Register;
 }
 
 bool is_live(const theatre::LiveState* live, double now_s) {

@@ -47,9 +47,12 @@ struct NavigateDisplay {
 
 // What fills the screen beside the picture: the registration that is being made, or the way to the plan.
 enum class NavigateLayout { Register, Guide };
-// since_guidance_s: how long ago guidance was valid last; infinite when it never was. A guide that is hidden
-// for a moment does not change the screen.
-[[nodiscard]] NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s);
+// A guide that is hidden for no longer than this does not change the screen.
+inline constexpr double kGuideAway_s = 2;
+// That of the tool which the step takes: of the one of now, or of the one that the surgeon went back to.
+// since_guidance_s: how long ago guidance was valid last; infinite when it never was.
+[[nodiscard]] NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s,
+                                       std::optional<operation::Step> looked_at = std::nullopt);
 
 // Whether the newest picture is of this moment: NavigateDisplay::is_live, without its words.
 [[nodiscard]] bool is_live(const theatre::LiveState* live, double now_s);

@@ -1,6 +1,7 @@
 // The panels of the theatre screen. Each reads and draws; none of them keeps a pose.
 #pragma once
 
+#include "app/navigate/hindrance.h"
 #include "app/navigate/navigate_display.h"
 #include "app/navigate/operation_rail.h"
 #include "app/navigate/registration_words.h"
@@ -41,6 +42,11 @@ struct NavigateScreen {
   std::string sound_trouble = "";                           // why none can be heard; empty: it can
   std::string sharing = "";  // what goes out by OpenIGTLink; empty: nothing is asked for
 
+  // The tool that is told of is the probe. Once the step is done what was touched last still stands there,
+  // and what is taken next is looked for already.
+  [[nodiscard]] bool is_of_probe() const {
+    return layout == NavigateLayout::Register && (looked_at || !needs_guide(*live->operation));
+  }
   // Of the newest picture; preconditions: display.has_picture.
   [[nodiscard]] const pipeline::FrameResult& frame() const { return live->operation->frame; }
   [[nodiscard]] const pipeline::PipelineOptions& options() const { return live->operation->source->pipeline; }

@@ -64,6 +64,7 @@ PedalContext NavigateView::pedal_context() {
   context.chooses_pictures = cameras_.is_open();
   if (const auto pictures = cameras_.is_open() ? cameras_.chosen() : std::nullopt)
     context.pictures = pictures->name;
+  context.pictures_do_not_answer = cameras_.is_open() && cameras_.chosen_does_not_answer();
   context.searches = resume_.is_looking();
   context.was_left = left_behind() != nullptr;
   context.exercise = lent_step();
@@ -76,7 +77,8 @@ PedalContext NavigateView::pedal_context() {
   context.must_choose = bones_.must_choose(choices_.bone);
   context.edited_verdict = judged_edited_.verdict().worst();
   context.stops_once_open = started_.stops_once_open();
-  context.can_take_guide = is_running() && started_.is_simulated(SimulatedPart::Scratch) && can_simulate();
+  context.can_take_guide = is_running() && holds_simulated_probe() && can_simulate();
+  if (is_running() && holds_simulated_probe()) context.hand_rests = resting_.rests();
   context.must_set_up = must_set_up();
   context.start = words_of_start();
   return context;
@@ -278,9 +280,10 @@ RailContext NavigateView::rail_context() const {
   return context;
 }
 
-// The probe stops drawing with a touch; the screen stays, so that the distance is read in large.
+// What came of it is read in large, also once the step is done; but for a guide that is in the hand.
 void NavigateView::take_touch(bool is_control_point) {
-  choices_.layout = layout(theatre::LiveOperation::now_s());
+  if (theatre::LiveOperation::now_s() - choices_.guidance_seen_s > kGuideAway_s)
+    choices_.layout = NavigateLayout::Register;
   if (is_control_point)
     ask(operation::TouchControlPoint{});
   else

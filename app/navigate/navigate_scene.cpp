@@ -79,18 +79,21 @@ void NavigateScene::show(const widgets::Ui& ui, const NavigateScreen& screen) {
 void NavigateScene::draw(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
   if (screen.drawn_bone == nullptr) return;
   show(ui, screen);
-  // Beside pictures that come, a key would wait for the large one.
-  pane_.smooth_at_rest(!ui.by_processor || screen.live == nullptr || !is_under_way(*screen.live));
-  pane_.draw(ui, "navigate.view", area);
-  const ShownScene& shown = renewal_.shown();
-  // A guide that is not known is amiss only while it is to be followed.
-  const bool is_missed = shown.layout == NavigateLayout::Guide && !screen.display.guidance_is_valid;
-  // In a pane too narrow for all of it, which bone it is.
-  std::string caption = caption_of(screen, asks_for_strokes(shown.layout, shown.registration.get()));
+  // In a pane too narrow for all of it, which bone it is; and nothing of the bone lies under it.
+  std::string caption =
+      caption_of(screen, asks_for_strokes(renewal_.shown().layout, renewal_.shown().registration.get()));
   ImFont* const font = ui.theme.strong;
   if (font->CalcTextSizeA(font->FontSize, 1e9F, 0, caption.c_str()).x > area.width - ui.theme.px(28))
     caption = caption.substr(0, caption.find_first_of(":."));
-  widgets::caption(ui, area, is_missed ? widgets::kCaution : widgets::kText, caption);
+  widgets::Rect view = area;
+  const widgets::Rect above = view.cut_top(font->FontSize + ui.theme.px(18));
+  // Beside pictures that come, a key would wait for the large one.
+  pane_.smooth_at_rest(!ui.by_processor || screen.live == nullptr || !is_under_way(*screen.live));
+  pane_.draw(ui, "navigate.view", view);
+  const ShownScene& shown = renewal_.shown();
+  // A guide that is not known is amiss only while it is to be followed.
+  const bool is_missed = shown.layout == NavigateLayout::Guide && !screen.display.guidance_is_valid;
+  widgets::caption(ui, above, is_missed ? widgets::kCaution : widgets::kText, caption);
 }
 
 }  // namespace arthronaut::navigate

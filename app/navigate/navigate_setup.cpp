@@ -50,7 +50,7 @@ theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, const 
   const bones::BoneKind bone = key.bone;
   theatre::TheatreSource source = source_of(model, bone, sources::SourceKind::Simulation);
   operation::SourceSetup& setup = source.setup;
-  setup.title = part == SimulatedPart::Scratch ? "Simulated operation: probe" : "Simulated operation: drill";
+  setup.title = part == SimulatedPart::Drill ? "Simulated operation: drill" : "Simulated operation: probe";
   setup.pipeline.calibrated =
       std::make_shared<const camera::CalibrationRecord>(open_case::camera_record_of(true, case_folder));
   setup.pipeline.calibration = setup.pipeline.calibrated->calibration;
@@ -63,6 +63,7 @@ theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, const 
   simulation.camera = simulator::standard_camera();
   simulation.tools = tools::standard_tools();
   simulation.rest_count = kPlacesToTouch;
+  simulation.draws = part != SimulatedPart::Touch;
   simulation.bone = bone;
   simulation.plan = *model.tunnel(key);
   simulation.refractive_index = setup.pipeline.refractive_index;
@@ -70,7 +71,7 @@ theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, const 
   const auto truth = std::make_shared<std::optional<tunnels::Tunnel>>();
   source.truth = [truth] { return *truth; };
   source.open = [simulation, part, truth]() -> std::unique_ptr<sources::FrameSource> {
-    if (part == SimulatedPart::Scratch)
+    if (part != SimulatedPart::Drill)
       return std::make_unique<simulator::SimulatedOperation>(simulation, simulator::Phase::Scratch);
     auto drilling = std::make_unique<simulator::SimulatedOperation>(simulation, simulator::Phase::Drill);
     *truth = drilling->drilled_tunnel();

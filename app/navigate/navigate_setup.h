@@ -11,7 +11,8 @@
 
 namespace arthronaut::navigate {
 
-enum class SimulatedPart { Scratch, Drill };
+// Touch: the probe rests at the places that verify, without the strokes before.
+enum class SimulatedPart { Scratch, Touch, Drill };
 
 // Why the simulated operation can't aim at this tunnel of the case: no plan, no landmarks. Empty when it can.
 [[nodiscard]] std::string missing_for_simulation(const open_case::PlanModel& model,

@@ -23,7 +23,6 @@ namespace {
 
 using Phase = theatre::LiveState::Phase;
 
-constexpr double kGuideAway_s = 2;
 constexpr double kRefusal_s = 6;  // long enough to be read
 
 }  // namespace
@@ -48,7 +47,7 @@ mode::ModeTitle NavigateView::title() const {
 void NavigateView::case_opened(const mode::OpenCase& opened) {
   bones_.open(opened.model, opened.folder, opened.read_only);
   live_ = TheatreBones::nothing();
-  words_ = {};
+  words_ = words_of_before_ = {};
   started_ = {};
   lent_.reset();
   choices_ = {};
@@ -237,6 +236,9 @@ void NavigateView::read_live() {
     live_ = TheatreBones::nothing();
   }
   choices_.follow(*live_->operation);
+  const pipeline::FrameResult& frame = live_->operation->frame;
+  resting_.follow(frame.timestamp_ns,
+                  frame.tip_is_valid ? std::optional(frame.tip_in_world_mm) : std::nullopt);
   if (choices_.goes_to_other_bone && !is_under_way(*live_)) {
     choices_.goes_to_other_bone = false;
     take_other_bone();
@@ -255,12 +257,13 @@ void NavigateView::read_live() {
       is_of_source_before(*live_) == is_of_source_before(*seen))
     return;
   words_ = words_of(*live_);
+  words_of_before_ = without_praise(words_);
   if (registration().change_count != seen->operation->registration->change_count)
     choices_.overlay_shown_at_s = theatre::LiveOperation::now_s();
 }
 
 NavigateLayout NavigateView::layout(double now_s) const {
-  return choices_.layout.value_or(layout_of(*live_, now_s - choices_.guidance_seen_s));
+  return choices_.layout.value_or(layout_of(*live_, now_s - choices_.guidance_seen_s, choices_.looked_at));
 }
 
 void NavigateView::follow_reached(const NavigateDisplay& display, double now_s) {
@@ -273,7 +276,8 @@ void NavigateView::follow_reached(const NavigateDisplay& display, double now_s) 
 }
 
 NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double now_s, bool by_processor) {
-  NavigateScreen screen{live_.get(), display, words_, choices_.bone};
+  const bool is_of_before = display.has_picture && !display.is_live;
+  NavigateScreen screen{live_.get(), display, is_of_before ? words_of_before_ : words_, choices_.bone};
   if (model_ != nullptr && model_->has_bone(choices_.bone)) {
     // The one that guides: an edit that was not taken over is drawn in Plan alone.
     if (const auto& plan = live_->operation->plan) {
@@ -341,7 +345,7 @@ void NavigateView::sound(double now_s) {
 void NavigateView::tick(double /*now_s*/) {
   if (model_ != nullptr) bones_.offer_plans();
   read_live();
-  const double now = theatre::LiveOperation::now_s();
+  const double now = judged_s_ = theatre::LiveOperation::now_s();
   if (read_notice_.are_read(notice_, now) && is_running()) notice_.clear();
   sound(now);
 }
@@ -358,7 +362,7 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   read_live();
   if (model_ != nullptr) judge_plans();
   drawn_.live = live_;
-  const double now = drawn_.since_s = theatre::LiveOperation::now_s();
+  const double now = judged_s_ = drawn_.since_s = theatre::LiveOperation::now_s();
   NavigateDisplay display = display_of(live_.get(), now);
   const bool was_refused = lent_ && now - lent_->refused_s < kRefusal_s;
   if (live_->phase == Phase::NoSource && !acts_now(pedal_step(*live_, pedal_context())))
@@ -383,10 +387,16 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   // Where nothing is registered there is nobody to coach.
   const bool is_all_scene =
       screen.is_exercise && screen.layout == NavigateLayout::Register && layout.scene_is_in_block;
+  // While nothing guides, nor did so a moment ago, the target's empty room shows the bone.
+  const bool has_no_target = screen.layout == NavigateLayout::Guide && layout.scene_is_in_block &&
+                             layout.scene.x == layout.target.x &&
+                             now - choices_.guidance_seen_s > kGuideAway_s;
+  const widgets::Rect in_place_of_target{layout.target.x, layout.target.y, layout.target.width,
+                                         layout.scene.y + layout.scene.height - layout.target.y};
   if (!is_covered || !layout.scene_is_in_block)
-    scene_.draw(ui, is_all_scene ? layout.block : layout.scene, screen);
+    scene_.draw(ui, is_all_scene ? layout.block : has_no_target ? in_place_of_target : layout.scene, screen);
   if (!is_covered && !is_all_scene) {
-    if (screen.layout == NavigateLayout::Guide) draw_bullseye(ui, layout.target, screen);
+    if (screen.layout == NavigateLayout::Guide && !has_no_target) draw_bullseye(ui, layout.target, screen);
     if (screen.layout == NavigateLayout::Register)
       draw_registration(ui, layout.main, screen);
     else if (screen.display.guidance_is_valid)

@@ -17,6 +17,7 @@
 #include "app/navigate/navigate_scene.h"
 #include "app/navigate/navigate_setup.h"
 #include "app/navigate/pose_sharing.h"
+#include "app/navigate/resting_tip.h"
 #include "app/navigate/started_source.h"
 #include "app/navigate/theatre_bones.h"
 #include "app/navigate/theatre_layout.h"
@@ -109,6 +110,7 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] std::vector<FinishedBone> finished_bones() const;
   [[nodiscard]] bool must_set_up() const;  // before pictures can be navigated
   [[nodiscard]] bool simulates() const;    // the source that is started next is the simulated operation
+  [[nodiscard]] bool holds_simulated_probe() const;
   void take_touch(bool is_control_point);
   void add_registration_actions(widgets::Actions& actions);
   // Of two tunnels in one bone, which is drilled: tunnel_choice.cpp.
@@ -173,9 +175,12 @@ class NavigateView : public mode::Mode {
     theatre::LiveStatePtr live;  // and not told to be on the screen yet; else null
     double since_s = 0;          // when that was begun
   } drawn_;
+  double judged_s_ = 0;  // when it was judged whether live_ is of now: once for all that a frame shows
   theatre::LiveStatePtr live_ = TheatreBones::nothing();  // of this frame, of the chosen bone; never null
-  RegistrationWords words_;                               // of its registration
-  StartedSource started_;                                 // last
+  RestingTip resting_;
+  RegistrationWords words_;            // of its registration
+  RegistrationWords words_of_before_;  // the same beside a picture that is not of now
+  StartedSource started_;              // last
   sounds::SoundWatch heard_;
   sounds::Player player_;
   struct Lent {  // to an exercise: what was started last is its own; see lend()

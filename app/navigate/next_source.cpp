@@ -13,9 +13,7 @@ std::optional<sources::SourceKind> NavigateView::source_kind() const {
   return live_->operation->source->kind;
 }
 
-bool NavigateView::pictures_are_of_now() const {
-  return is_live(live_.get(), theatre::LiveOperation::now_s());
-}
+bool NavigateView::pictures_are_of_now() const { return is_live(live_.get(), judged_s_); }
 
 bool NavigateView::can_simulate() const {
   if (model_ == nullptr) return false;
@@ -43,6 +41,10 @@ void NavigateView::start_same_kind() {
 bool NavigateView::simulates() const {
   return started_.kind() ? *started_.kind() == sources::SourceKind::Simulation
                          : can_simulate() && !choices_.has_real_scope;
+}
+
+bool NavigateView::holds_simulated_probe() const {
+  return started_.is_simulated(SimulatedPart::Scratch) || started_.is_simulated(SimulatedPart::Touch);
 }
 
 std::string NavigateView::words_of_start() const {

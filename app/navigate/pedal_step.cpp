@@ -41,7 +41,8 @@ Kind kind_of(const theatre::LiveState& live, const PedalContext& context, NextAc
   if (finishes(context.bones, context.bone)) return Kind::Finish;
   if (awaits_picture(live)) return Kind::WaitForPicture;
   if (is_in_wrong_medium(live)) return Kind::ChangeMedium;
-  if (is_running(live) && !finds_anew && !words_without_pictures(live.trouble, action).empty())
+  if (is_running(live) && !finds_anew &&
+      !words_without_pictures(live.trouble, action, live.trouble_words).empty())
     return Kind::WaitForPictures;
   if (!context.guided) return Kind::PlanTunnel;
   if (waits_for_take_over(*live.operation)) return Kind::TakePlanOver;
@@ -68,16 +69,25 @@ std::string words_of_going_back(const PedalStep& step, const theatre::LiveState&
              : words_of(step.repeat, step.step, step.is_shown, live.trouble);
 }
 
+// Behind what is done by a touch: whether the simulated hand lets it be taken now.
+std::string words_of_simulated_hand(NextAction action, const std::optional<bool>& rests) {
+  const bool touches = action == NextAction::VerifyByTouch || action == NextAction::ConfirmByTouch ||
+                       action == NextAction::SetControlPoint || action == NextAction::CheckControlPoint;
+  if (!touches || !rests) return "";
+  return *rests ? ". Now: the probe rests" : ". Wait: the probe moves";
+}
+
 std::string words_of_acting(const PedalStep& step, const theatre::LiveState& live,
                             const PedalContext& context) {
   const operation::OperationState& state = *live.operation;
-  if (step.action == NextAction::VerifyByTouch) return words_of_verifying(state);
-  if (step.action == NextAction::CheckControlPoint) return words_of_checking(state);
+  const std::string hand = words_of_simulated_hand(step.action, context.hand_rests);
+  if (step.action == NextAction::VerifyByTouch) return words_of_verifying(state) + hand;
+  if (step.action == NextAction::CheckControlPoint) return words_of_checking(state) + hand;
   if (step.action == NextAction::RegisterAnew) return words_of_registering_anew(state);
   const std::string beside = is_running(live) ? words_beside_no_picture(live.trouble, step.action) : "";
   if (step.action == NextAction::RecordDrilled && context.guided->bundle != norms::Bundle::Whole)
     return beside + "when the tunnel " + tunnels::name_of(*context.guided) + " is drilled: say so";
-  return beside + words_of(step.action);
+  return beside + words_of(step.action) + hand;
 }
 
 }  // namespace
@@ -134,7 +144,8 @@ std::string words_of(const PedalStep& step, const theatre::LiveState& live, cons
     case Kind::OpenCase:
       return "open a case";
     case Kind::OpenPictures:
-      return "open " + context.pictures;
+      return context.pictures_do_not_answer ? context.pictures + " does not answer: open it all the same"
+                                            : "open " + context.pictures;
     case Kind::TypeAddress:
       return "type the address of a stream, then Enter";
     case Kind::WaitForSearch:
@@ -156,7 +167,7 @@ std::string words_of(const PedalStep& step, const theatre::LiveState& live, cons
     case Kind::ChangeMedium:
       return kWrongMedium;
     case Kind::WaitForPictures:
-      return words_without_pictures(live.trouble, step.action);
+      return words_without_pictures(live.trouble, step.action, live.trouble_words);
     case Kind::PlanTunnel:
       return words_of(NextAction::PlanTunnel);
     case Kind::TakePlanOver:

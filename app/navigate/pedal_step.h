@@ -56,6 +56,7 @@ struct PedalContext {
   bones::BoneKind bone = bones::BoneKind::Femur;  // that is navigated
   bool chooses_pictures = false;
   std::string pictures;  // those that are chosen; empty: an address is typed
+  bool pictures_do_not_answer = false;
   bool searches = false, was_left = false;
   std::string exercise;  // what it asks for; empty: there is none, or it asks for nothing
   bool goes_to_other_bone = false;
@@ -66,7 +67,8 @@ struct PedalContext {
   bool must_choose = false;
   tunnels::PlanCheck::Verdict edited_verdict = tunnels::PlanCheck::Verdict::Fine;
   bool stops_once_open = false;
-  bool can_take_guide = false;  // the simulation of the probe runs, and that of the guide can
+  bool can_take_guide = false;     // the simulation of the probe runs, and that of the guide can
+  std::optional<bool> hand_rests;  // the simulated one, where it holds the probe
   bool must_set_up = false;
   std::string start;  // how pictures are begun: "open the camera again"
 };

@@ -170,14 +170,14 @@ void draw_states(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
     else
       states.push_back({sign(frame.intrinsics_are_known, Severity::Bad), "Lens"});
     states.push_back({sign(frame.world_is_seen(), Severity::Bad), "Marker"});
-    const bool registers = screen.layout == NavigateLayout::Register;
-    const auto* tool = state.source->pipeline.tools.find_tool(registers ? state.source->pipeline.probe_name
-                                                                        : state.source->pipeline.guide_name);
+    const bool is_of_probe = screen.is_of_probe();
+    const auto* tool = state.source->pipeline.tools.find_tool(
+        is_of_probe ? state.source->pipeline.probe_name : state.source->pipeline.guide_name);
     const bool is_seen =
         tool != nullptr &&
         (tracker ? tracker::state_of(frame.outside, tool->marker_id) == tracker::BodyState::Tracked
                  : pipeline::body_in(frame, tool->marker_id).camera_from_body.has_value());
-    states.push_back({sign(is_seen, Severity::Caution), registers ? "Probe" : "Guide"});
+    states.push_back({sign(is_seen, Severity::Caution), is_of_probe ? "Probe" : "Guide"});
     const auto standing = state.registration->in_force.standing;
     states.push_back({waits_for_time_out(state) || screen.display.is_unverified ? Severity::Caution
                       : standing == operation::Standing::Stands                 ? sign(true, Severity::Good)
@@ -194,13 +194,18 @@ void draw_states(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
   }
   if (states.empty()) return;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  ImFont* const font = ui.theme.title;
-  const float radius = ui.theme.px(13);
-  // As far apart as the words leave room for.
-  float words_width = 0;
-  for (const State& state : states)
-    words_width += 2.6F * radius + font->CalcTextSizeA(font->FontSize, 1e9F, 0, state.name.c_str()).x;
-  const float gap = (area.width - words_width) / static_cast<float>(states.size());
+  // As far apart as the words leave room for, and no nearer than a sign is wide: rather in smaller letters.
+  ImFont* font = nullptr;
+  float radius = 0, gap = 0;
+  for (ImFont* const letters : {ui.theme.title, ui.theme.strong, ui.theme.body}) {
+    font = letters;
+    radius = ui.theme.px(13) * letters->FontSize / ui.theme.title->FontSize;
+    float words_width = 0;
+    for (const State& state : states)
+      words_width += 2.6F * radius + font->CalcTextSizeA(font->FontSize, 1e9F, 0, state.name.c_str()).x;
+    gap = (area.width - words_width) / static_cast<float>(states.size());
+    if (gap >= 1.5F * radius) break;
+  }
   float x = area.x;
   for (std::size_t i = 0; i < states.size(); ++i) {
     widgets::draw_sign(draw, {x + radius, area.center().y}, radius, states[i].severity);

@@ -304,6 +304,18 @@ RegistrationWords words_of(const theatre::LiveState& live) {
   return words;
 }
 
+RegistrationWords without_praise(RegistrationWords words) {
+  const auto quieten = [](SeverityText& row) {
+    if (row.severity == Severity::Good) row.severity = Severity::Quiet;
+  };
+  quieten(words.state);
+  for (SeverityText& row : words.numbers) quieten(row);
+  for (StrokeRow& row : words.strokes) quieten(row.text);
+  for (SeverityText& row : words.history) quieten(row);
+  if (words.touch) quieten(words.touch->number);
+  return words;
+}
+
 widgets::Severity severity_of_residual(double residual_mm) {
   const double off_mm = std::abs(residual_mm);
   return off_mm < 1                                             ? Severity::Good

@@ -72,6 +72,8 @@ struct RegistrationWords {
 // opened, or could not be: nobody knows yet what its pictures are of; nor before the time-out of a live
 // source: what was drawn by then may be of another patient.
 [[nodiscard]] RegistrationWords words_of(const theatre::LiveState& live);
+// The same with nothing called good: beside a picture that is not of now.
+[[nodiscard]] RegistrationWords without_praise(RegistrationWords words);
 
 // How far a touched point may lie off the bone to be good; beyond caution it is bad.
 [[nodiscard]] widgets::Severity severity_of_residual(double residual_mm);

@@ -13,11 +13,11 @@
 namespace arthronaut::navigate {
 
 // Which part of the simulated surgeon's script an operation goes on with: the probe, until what it registered
-// is verified by touches, or that step was passed over.
+// is verified by touches, or that step was passed over; once something is registered it draws no more.
 [[nodiscard]] inline SimulatedPart next_part(const operation::OperationState& state) {
   const bool stands = state.registration->in_force.standing == operation::Standing::Stands;
-  return stands && state.verification != operation::Verification::NotYet ? SimulatedPart::Drill
-                                                                         : SimulatedPart::Scratch;
+  if (!stands) return SimulatedPart::Scratch;
+  return state.verification == operation::Verification::NotYet ? SimulatedPart::Touch : SimulatedPart::Drill;
 }
 
 class StartedSource {

@@ -50,7 +50,7 @@ TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptio
     // wide.
     const float numbers = 6.8F * afar + 28 * options.scale;
     widgets::Rect column = rest.cut_left(std::min(rest.width - gap - numbers, rest.height * 0.8F), gap);
-    layout.target = column.cut_top(std::min(column.width, column.height * 0.72F), gap);
+    layout.target = column.cut_top(std::min(column.width, column.height * 0.62F), gap);
     layout.scene = column;
     layout.main = rest;
   } else {

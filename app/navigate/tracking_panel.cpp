@@ -15,7 +15,7 @@ bool is_needed(const NavigateScreen& screen, int marker_id) {
   const pipeline::PipelineOptions& options = screen.options();
   const auto* probe = options.tools.find_tool(options.probe_name);
   const auto* guide = options.tools.find_tool(options.guide_name);
-  const auto* tool = screen.layout == NavigateLayout::Register ? probe : guide;
+  const auto* tool = screen.is_of_probe() ? probe : guide;
   return tool != nullptr && tool->marker_id == marker_id;
 }
 
@@ -133,7 +133,11 @@ void draw_registration_row(const widgets::Ui& ui, const NavigateScreen& screen) 
     return widgets::status_row(ui, Severity::Caution, "Registration", "waits for the time-out");
   const bool is_skipped = state.verification == operation::Verification::Skipped;
   // In one line on the smallest screen: how well it fits stands in the registration panel.
-  widgets::status_row(ui, is_skipped ? Severity::Caution : Severity::Good, "Registration",
+  widgets::status_row(ui,
+                      is_skipped               ? Severity::Caution
+                      : screen.display.is_live ? Severity::Good
+                                               : Severity::Quiet,
+                      "Registration",
                       widgets::plus_minus(known.in_force.registration->predicted_tre_mm) + " mm, " +
                           (state.verification == operation::Verification::ByTouches ? "verified"
                            : is_skipped                                             ? "verification skipped"

@@ -43,6 +43,7 @@ class RateMeter {
 
 std::string words_of(const Preview& preview) {
   if (!preview.trouble.empty()) return preview.trouble;
+  if (preview.does_not_answer()) return "does not answer";
   if (preview.picture == nullptr) return kBeingOpened;
   const std::string size = std::to_string(preview.size_px.x()) + " x " + std::to_string(preview.size_px.y());
   const std::string known =
@@ -70,6 +71,7 @@ class SourcePreview::Reader {
       preview.trouble = known->line->trouble();
       preview.remark = known->line->remark();
     }
+    preview.waited_s = std::chrono::duration<double>(RateMeter::Clock::now() - begun_).count();
     if (worker_.has_ended() && !worker_.failure().empty()) preview.trouble = worker_.failure();
     return preview;
   }
@@ -103,6 +105,7 @@ class SourcePreview::Reader {
     }
   }
 
+  const RateMeter::Clock::time_point begun_ = RateMeter::Clock::now();
   Worker worker_;
 };
 

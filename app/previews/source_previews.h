@@ -29,8 +29,14 @@ struct Preview {
   double frames_per_second = 0;  // measured where it is live, else what the file says; 0: not known yet
   std::string trouble = {};      // why no picture comes
   std::string remark = {};       // what is wrong with those that come
+  double waited_s = 0;           // for the first one, since it was asked for
+  // None came, and none is to be expected soon; a stream that is there takes less.
+  [[nodiscard]] bool does_not_answer() const {
+    constexpr double kAnswers_s = 4;
+    return picture == nullptr && (!trouble.empty() || waited_s > kAnswers_s);
+  }
 };
-// "1920 x 1080, 59.9/s" and the remark, the trouble, or that it is being opened.
+// "1920 x 1080, 59.9/s" and the remark, the trouble, that it is being opened, or does not answer.
 [[nodiscard]] std::string words_of(const Preview& preview);
 
 // One source, read on a thread of its own. The destructor waits for the picture that is being made.
@@ -54,6 +60,9 @@ class SourcePreviews {
   void show(const std::vector<Opener>& openers);
   void close();
   [[nodiscard]] bool is_shown(std::size_t index) const { return index < previews_.size(); }
+  [[nodiscard]] Preview latest(std::size_t index) const {  // precondition: is_shown()
+    return previews_[index].preview->latest();
+  }
   // Picture on the left, beside it the name, and below it the words. True: it was clicked on.
   [[nodiscard]] bool draw(const widgets::Ui& ui, const widgets::Rect& row, std::size_t index,
                           const std::string& name, bool is_chosen);

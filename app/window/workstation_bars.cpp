@@ -182,7 +182,7 @@ void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& 
 void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(area.min(), area.max(), widgets::kPanel);
-  ImFont* const font = ui.theme.body;
+  ImFont* font = ui.theme.body;
   const float y = area.y + (area.height - font->FontSize) / 2;
   const auto width_of = [&](const std::string& words) {
     return font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str()).x;
@@ -194,6 +194,9 @@ void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Re
   // Beside what always stands there. Of a folder its end tells which it is; a warning stands whole, in
   // smaller letters where it is long.
   const float room = area.width - standing - 2 * edge;
+  if (ImFont* const large = ui.theme.title;
+      warns && large->CalcTextSizeA(large->FontSize, 1e9F, 0, text.c_str()).x <= room)
+    font = large;
   const widgets::LinesWithin said =
       warns ? widgets::lines_within(font, text, room, area.height)
             : widgets::LinesWithin{widgets::fitting_end(font, text, room), font->FontSize};

@@ -276,13 +276,21 @@ void WorkstationWindow::dispatch_keys() {
   const auto prefixes = action_prefixes();
   const bool has_pedals = std::find(prefixes.begin(), prefixes.end(), "navigate.") != prefixes.end() ||
                           std::find(prefixes.begin(), prefixes.end(), "setup.next") != prefixes.end();
+  // In theatre what a pedal cannot do is said beside the step; of the window's own keys nothing is said
+  // there.
+  const auto is_of_window = [this](const widgets::KeyPress& press) {
+    return std::ranges::any_of(actions_.all(), [&](const widgets::Action& action) {
+      return action.key == press.key && action.mods == press.mods &&
+             (action.id.starts_with("app.") || action.id.starts_with("mode."));
+    });
+  };
   room_.press_pedals(actions_, action_prefixes(), ImGui::GetIO().WantTextInput);
   for (widgets::KeyPress press : window_.keys()) {
     log_.add("keys", 1);
     if (has_pedals && press.mods == 0) press.key = room_.meaning_of(press.key);
     if (actions_.press(press, action_prefixes()))
       untaken_.forget();
-    else if (!has_pedals || opening_ != nullptr)
+    else if (!has_pedals || opening_ != nullptr || is_of_window(press))
       untaken_.note(press, actions_, action_prefixes(), opening_ != nullptr, GraphicsWindow::now_s());
     // What is typed after the key that opens a text field is meant for the field.
     const bool awaits_text = shows_start()   ? start_.awaits_text()

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kStepsPerFrame = 2;  // of 0.5 mm: 30 mm/s at 30 frames a second
 constexpr int kLiftFrames = 5;
 constexpr double kLiftMm = 4;
-constexpr int kRestFrames = 45;  // a hand needs a second to press a key meanwhile
+constexpr int kRestFrames = 120;  // a learner reads that it rests, and presses a pedal meanwhile
 
 // Stops of the strokes, `count` of them, each as far from those before as can be.
 std::vector<ProbePose> places_to_rest(const Staging& staging, int count) {
@@ -58,7 +58,7 @@ Script scratch_script(const SimulationOptions& options, const Staging& staging) 
       add(probe, false);
     }
   };
-  for (std::size_t s = 0; s < staging.strokes.size(); ++s) {
+  for (std::size_t s = 0; options.draws && s < staging.strokes.size(); ++s) {
     const auto& stroke = staging.strokes[s];
     for (std::size_t i = 0; i < stroke.size(); i += kStepsPerFrame) add(stroke[i].bone_from_marker, true);
     if (s + 1 < staging.strokes.size()) lift(stroke.back(), staging.strokes[s + 1].front());
@@ -66,7 +66,7 @@ Script scratch_script(const SimulationOptions& options, const Staging& staging) 
   if (options.rest_count == 0) return script;
   std::vector<ProbePose> places = places_to_rest(staging, options.rest_count);
   places.push_back(places.front());
-  ProbePose at = staging.strokes.back().back();
+  ProbePose at = options.draws ? staging.strokes.back().back() : places.front();
   for (const ProbePose& place : places) {
     lift(at, place);
     for (int i = 0; i < kRestFrames; ++i) add(place.bone_from_marker, true);

@@ -62,6 +62,8 @@ struct SimulatedOperation::State {
       throw InvalidInput(
           "simulator: frames_per_second must be above 0, frame_count and rest_count not below 0");
     }
+    if (!options.draws && options.rest_count == 0)
+      throw InvalidInput("simulator: without strokes rest_count must be above 0");
     // The board alone needs no place in the knee.
     if (phase != Phase::Calibrate) {
       staging = stage_operation(options, bone);

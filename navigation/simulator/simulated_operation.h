@@ -32,7 +32,8 @@ struct SimulationOptions {
   std::uint64_t seed = 1;
   int frames_per_second = 30;
   int frame_count = 0;  // 0: the phase's own length; else its motion sampled in so many frames
-  int rest_count = 0;   // Scratch: places where the tip rests for 1.5 s after the strokes, to touch them
+  int rest_count = 0;   // Scratch: places where the tip rests for 4 s after the strokes, to touch them
+  bool draws = true;    // Scratch: false, with a rest_count: no strokes, the places alone
   double drill_error_mm = 0.6, drill_error_deg = 1.0;  // how well the scripted surgeon aims
   double square_mm = 1.5;                              // of the checkerboard
   SurroundingsOptions surroundings;                    // in all phases but Calibrate

@@ -57,8 +57,8 @@ class RecoveringSource final : public FrameSource {
 
  private:
   void tell_size(const Eigen::Vector2i& now_px) {
-    tell(info_.name + ": gives pictures of " + size_text(now_px) + " now, and gave such of " +
-         size_text(info_.image_size_px) + ": another camera, or another format");
+    tell(std::string(kFormatChanged) + size_text(now_px) + ": set the processor back to " +
+         size_text(info_.image_size_px) + ", or choose the camera again");
   }
 
   camera::FramePtr take() {

@@ -67,8 +67,11 @@ void SourceWatch::shown_until(double age_ms, std::int64_t now_ns) {
   is_slow_ = 2 * too_old_.count() >= too_old_.size() || (is_slow_ && now_ns - slow_ns_ < kReadable_ns);
 }
 
+bool SourceWatch::are_too_few() const { return gap_ms_ > kFew_ms && 2 * gap_ms_ > replaced_ms_; }
+
 std::int64_t SourceWatch::silence_ns() const {
-  if (!is_slow_) return kSilence_ns;
+  // However slow the machine is: of a source that falls silent it says nothing.
+  if (!is_slow_ || !are_too_few()) return kSilence_ns;
   return std::clamp(static_cast<std::int64_t>(3e6 * gap_ms_), kSilence_ns, kLongestSilence_ns);
 }
 
@@ -120,7 +123,7 @@ bool SourceWatch::picture(const pipeline::PictureObservation& view, double guida
     late_said_ns_ = now_ns;
     return set(
         SourceTrouble::Slow,
-        gap_ms_ > kFew_ms && 2 * gap_ms_ > replaced_ms_
+        are_too_few()
             ? files::format("%.0f a second are too few: each is too old to guide by before the next one",
                             1000 / gap_ms_)
             : files::format("Each is over %.0f ms old before the next one is shown: end other programs",

@@ -50,6 +50,7 @@ class SourceWatch {
  private:
   bool set(SourceTrouble trouble, const std::string& words);
   [[nodiscard]] std::int64_t silence_ns() const;
+  [[nodiscard]] bool are_too_few() const;  // of a slow source: it is its rate, and not the machine
 
   double late_after_ms_ = 1000 * kLateAfter_s;
   SourceTrouble trouble_ = SourceTrouble::None;

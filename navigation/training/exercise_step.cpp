@@ -33,8 +33,10 @@ std::string exercise_step(Goal goal, const operation::OperationState& state,
       if (holds_probe) return "take the guide: G";
       if (state.frame.guidance.state == guidance::GuidanceState::WorldMarkerLost)
         return "bring the bone's marker into view";
-      return state.guided_lately ? "follow the bullseye; on the plan: Enter, done"
-                                 : "bring the guide into view";
+      // What is away is looked for at once: there is no bullseye to follow.
+      return state.guided_lately && state.frame.guidance.state != guidance::GuidanceState::GuideLost
+                 ? "follow the bullseye; on the plan: Enter, done"
+                 : "bring the guide into view";
     case Goal::Register:
       return state.verification == operation::Verification::ByTouches ? "verified: Enter, done" : "";
     case Goal::Drill:

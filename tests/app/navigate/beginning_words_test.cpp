@@ -53,6 +53,17 @@ TEST(TimeOutCard, Hazard20NamesPatientKneePlanCameraToolsAndMedium) {
   EXPECT_EQ(line_of(time_out_card(state, "", {}), "Plan").text, "none");
 }
 
+// What is confirmed was read: of what speaks against the plan nothing is counted in place of being said.
+TEST(TimeOutCard, SaysAllThatSpeaksAgainstThePlan) {
+  operation::OperationState state;
+  state.source = std::make_shared<const operation::SourceSetup>();
+  state.plan = plan();
+  const plan_review::TunnelVerdict verdict{{"Wall: thin", "Length: short"},
+                                           {"Grid: proposed", "Bone: rough"}};
+  EXPECT_EQ(line_of(time_out_card(state, "", verdict), "Plan").text,
+            "8.5 mm wide, 31.2 mm long; WRONG: Wall: thin; Length: short; look: Grid: proposed; Bone: rough");
+}
+
 // A probe or a guide that nobody measured is marked.
 TEST(TimeOutCard, MarksToolsThatNobodyMeasured) {
   auto source = std::make_shared<operation::SourceSetup>();
@@ -78,7 +89,7 @@ TEST(TimeOutCard, SaysWhatSpeaksAgainstThePlan) {
   const CardLine wrong = line_of(
       time_out_card(state, "", {.wrong = {"Wall: -3.5 mm"}, .look = {"Bone: check the side"}}), "Plan");
   EXPECT_EQ(wrong.severity, Severity::Bad);
-  EXPECT_EQ(wrong.text, "8.5 mm wide, 31.2 mm long; WRONG: Wall: -3.5 mm (and 1 to look at)");
+  EXPECT_EQ(wrong.text, "8.5 mm wide, 31.2 mm long; WRONG: Wall: -3.5 mm; look: Bone: check the side");
   const CardLine look = line_of(time_out_card(state, "", {.look = {"Bone: check the side"}}), "Plan");
   EXPECT_EQ(look.severity, Severity::Caution);
   EXPECT_EQ(look.text, "8.5 mm wide, 31.2 mm long; look: Bone: check the side");

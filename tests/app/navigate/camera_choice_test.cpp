@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "app/navigate/known_streams.h"
 #include "planning/files/private_folder.h"
+#include "planning/geometry/error.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::navigate {
@@ -42,6 +45,41 @@ TEST(CameraChoice, WhatWasUsedBeforeIsChosen) {
   EXPECT_EQ(choice.chosen(), stream);
   choice.open({{0, "Webcam"}}, {"rtsp://tower/scope"}, LivePictures{"Scope", 3, ""});
   EXPECT_EQ(choice.chosen()->name, "Webcam") << "it is gone";
+}
+
+// Gives a picture every few milliseconds.
+class Gives final : public sources::FrameSource {
+ public:
+  [[nodiscard]] const sources::SourceInfo& info() const override { return info_; }
+  [[nodiscard]] camera::FramePtr next() override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return std::make_shared<camera::Frame>();
+  }
+
+ private:
+  sources::SourceInfo info_;
+};
+
+// A sender that is off now gives its place to one that is on, until a hand has chosen.
+TEST(CameraChoice, WhatAnswersIsChosenInPlaceOfWhatDoesNot) {
+  const LivePictures silent{"udp://@:5000", std::nullopt, "udp://@:5000"};
+  CameraChoice choice;
+  choice.open({}, {"udp://@:5000", "udp://@:5001"}, silent,
+              [&](const LivePictures& one) -> std::unique_ptr<sources::FrameSource> {
+                if (one == silent) throw DeviceError("nobody there");
+                return std::make_unique<Gives>();
+              });
+  EXPECT_EQ(choice.chosen(), silent);
+  for (int i = 0; i < 2000 && choice.chosen() == silent; ++i) {
+    choice.prefer_what_answers();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(choice.chosen()->address, "udp://@:5001");
+  EXPECT_FALSE(choice.chosen_does_not_answer());
+  choice.choose_next_offered();
+  choice.prefer_what_answers();
+  EXPECT_EQ(choice.chosen(), silent) << "a hand wants it all the same";
+  EXPECT_TRUE(choice.chosen_does_not_answer());
 }
 
 // A stream whose sender was not on yet is kept nowhere. The foot that asks again gets it, and no webcam.

@@ -146,7 +146,35 @@ TEST(NavigateDisplay, TheLayoutFollowsWhatIsDone) {
   EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Guide) << "it was aimed by";
   shown.operation.drilled.has_evidence = false;
   shown.operation.draws = false;
+  shown.operation.next_action = operation::NextAction::BringGuide;
   EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Guide);
+}
+
+// What is touched to verify is told of by the probe's panel, whatever was seen of a guide before: there
+// stands how far off the bone it was.
+TEST(NavigateDisplay, TheLayoutIsOfTheToolThatTheStepTakes) {
+  using operation::NextAction;
+  using operation::Step;
+  constexpr double kLongAgo = 1e9;
+  Shown shown;
+  const auto after = [&](NextAction action, std::optional<Step> looked_at = std::nullopt) {
+    shown.operation.next_action = action;
+    return layout_of(shown.whole(), kLongAgo, looked_at);
+  };
+  for (const bool has_evidence : {false, true}) {
+    shown.operation.drilled.has_evidence = has_evidence;
+    for (const NextAction action :
+         {NextAction::VerifyByTouch, NextAction::SetControlPoint, NextAction::CheckControlPoint,
+          NextAction::RegisterAnew, NextAction::StartSource})  // nothing is verified yet
+      EXPECT_EQ(after(action), NavigateLayout::Register) << to_text(action);
+    for (const NextAction action : {NextAction::CheckGuide, NextAction::BringGuide,
+                                    NextAction::FollowBullseye, NextAction::RecordDrilled})
+      EXPECT_EQ(after(action), NavigateLayout::Guide) << to_text(action);
+    EXPECT_EQ(after(NextAction::BringGuide, Step::Verify), NavigateLayout::Register) << "gone back to";
+    EXPECT_EQ(after(NextAction::VerifyByTouch, Step::Guide), NavigateLayout::Guide);
+  }
+  shown.operation.guided_lately = true;
+  EXPECT_EQ(after(NextAction::CheckControlPoint), NavigateLayout::Guide) << "the guide is in the hand";
 }
 
 // Before there is a registration the lost marker is what keeps one from being made, so it is said first.

@@ -105,6 +105,20 @@ TEST(RegistrationWords, NothingIsGreenBesideAnAlarm) {
   EXPECT_EQ(words.touch->number.severity, Severity::Quiet);
 }
 
+// Nor beside a picture of before: what was good then nobody knows of now.
+TEST(RegistrationWords, NothingIsGreenBesideAPictureThatIsNotOfNow) {
+  using widgets::Severity;
+  RegistrationWords words;
+  words.state = {Severity::Good, "Confirmed", ""};
+  words.numbers = {{Severity::Good, "At the tunnel", ""}, {Severity::Bad, "Next best pose", ""}};
+  words.touch = TouchText{{Severity::Good, "Touch 1", ""}, ""};
+  words = without_praise(words);
+  EXPECT_EQ(words.state.severity, Severity::Quiet);
+  EXPECT_EQ(words.touch->number.severity, Severity::Quiet);
+  EXPECT_EQ(words.numbers[0].severity, Severity::Quiet);
+  EXPECT_EQ(words.numbers[1].severity, Severity::Bad) << "what is bad stays so";
+}
+
 // Where nothing guides yet, nothing is to be judged.
 TEST(RegistrationWords, SpeakOfWhatGuidesOnlyWhereSomethingDoes) {
   Known known;

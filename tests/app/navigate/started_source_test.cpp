@@ -39,7 +39,7 @@ TEST(StartedSource, TheSimulationGoesOnWithTheProbeUntilItIsVerified) {
   auto stands = std::make_shared<operation::RegistrationState>();
   stands->in_force.standing = operation::Standing::Stands;
   state.registration = stands;
-  EXPECT_EQ(next_part(state), SimulatedPart::Scratch);
+  EXPECT_EQ(next_part(state), SimulatedPart::Touch);
   for (const auto verification : {operation::Verification::ByTouches, operation::Verification::Skipped}) {
     state.verification = verification;
     EXPECT_EQ(next_part(state), SimulatedPart::Drill);

@@ -61,16 +61,20 @@ bool overlap(const Rect& a, const Rect& b) {
 
 // Everything that can be asked of the surgeon.
 std::vector<std::string> all_words() {
-  std::vector<std::string> words{"choose the tunnel femur AM (1); V: PL (2)",
-                                 "when the tunnel femur PL is drilled: say so",
-                                 "then the tunnel femur PL (2), or take the world marker out",
-                                 "resume the operation that was left",
-                                 "start the simulated operation",
-                                 "take the guide (simulation)",
-                                 "the pictures have ended: start the simulated operation",
-                                 words_of(operation::NextAction::VerifyByTouch) + ", 3 to go",
-                                 "calibrate camera and tools in Set up",
-                                 "wait: the case's last operation is looked for"};
+  std::vector<std::string> words{
+      "choose the tunnel femur AM (1); V: PL (2)",
+      "when the tunnel femur PL is drilled: say so",
+      "then the tunnel femur PL (2), or take the world marker out",
+      "resume the operation that was left",
+      "start the simulated operation",
+      "take the guide (simulation)",
+      "the pictures have ended: start the simulated operation",
+      words_of(operation::NextAction::VerifyByTouch) + ", 3 to go",
+      words_of(operation::NextAction::VerifyByTouch) + ", 3 to go. Wait: the probe moves",
+      words_without_pictures(theatre::SourceTrouble::NoPicture, operation::NextAction::VerifyByTouch,
+                             "the source's format changed to 1280 x 720: set"),
+      "calibrate camera and tools in Set up",
+      "wait: the case's last operation is looked for"};
   for (const auto way_out : {operation::WayOut::StrokesAnew, operation::WayOut::MarkerPlacedAnew})
     words.push_back(place_anew_words(way_out));
   operation::OperationState state;
@@ -186,6 +190,16 @@ TEST(TheatreLayout, BesideTheNumbersTheTargetIsAsLargeAsTheyAllow) {
     if (stands_under_it || std::string(shape.name).starts_with("two")) continue;
     const bool is_as_wide_as_it_can_be = l.main.width < 7.5F * screen.theme.afar->FontSize;
     EXPECT_TRUE(std::min(l.target.width, l.target.height) > 0.6F * l.block.height || is_as_wide_as_it_can_be);
+  }
+}
+
+// The 3D view under the target shows a bone, and not a stripe of one.
+TEST(TheatreLayout, UnderTheTargetTheSceneHasAThirdOfTheRoom) {
+  for (const Shape& shape : kShapes) {
+    SCOPED_TRACE(shape.name);
+    const TheatreLayout l = Screen(shape).layout(true);
+    if (!l.scene_is_in_block || std::string(shape.name).starts_with("two")) continue;
+    EXPECT_GT(l.scene.height, 0.32F * l.block.height);
   }
 }
 

@@ -16,6 +16,11 @@ TEST(WordsWithoutPictures, TakeThePlaceOfWhatNeedsThem) {
   using theatre::SourceTrouble;
   EXPECT_EQ(words_without_pictures(SourceTrouble::NoPicture, NextAction::GoOnDrawing),
             "wait: no picture comes");
+  EXPECT_EQ(words_without_pictures(SourceTrouble::NoPicture, NextAction::VerifyByTouch,
+                                   "No picture comes: the source's format changed to 1280 x 720: set the "
+                                   "processor back to 1920 x 1080, or choose the camera again"),
+            "format changed to 1280 x 720: set the processor back, or choose the camera (K)")
+      << "no waiting ends that";
   EXPECT_EQ(words_without_pictures(SourceTrouble::Frozen, NextAction::ShowWorldMarker),
             "look after cable and camera: the picture is frozen");
   EXPECT_NE(words_without_pictures(SourceTrouble::Plain, NextAction::FollowBullseye), "");

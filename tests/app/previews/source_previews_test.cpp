@@ -61,6 +61,7 @@ TEST(SourcePreview, TakesNoCameraFromTheOperation) {
 
 TEST(SourcePreview, SaysWhatItWaitsForAndWhyThereIsNone) {
   EXPECT_EQ(words_of({}), "is being opened");
+  EXPECT_EQ(words_of({.waited_s = 5}), "does not answer");
   EXPECT_EQ(words_of({.trouble = "camera 0: no signal"}), "camera 0: no signal");
   const SourcePreview none(
       []() -> std::unique_ptr<sources::FrameSource> { throw DeviceError("nobody there"); });

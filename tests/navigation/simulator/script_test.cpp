@@ -77,6 +77,12 @@ TEST_F(ScriptTest, ScratchRestsAtPlacesToTouch) {
   EXPECT_LT((places.front() - places.back()).norm(), 1e-9);
   for (std::size_t a = 0; a < 4; ++a)
     for (std::size_t b = 0; b < a; ++b) EXPECT_GT((places[a] - places[b]).norm(), 3);
+  // Without strokes the same places, at once.
+  resting.draws = false;
+  const Script touching = scratch_script(resting, staging_);
+  EXPECT_LT(touching.size(), script.size() - strokes.size() + 10);
+  const Eigen::Vector3d first = *touching[20].bone_from_probe * tip_in_probe_;
+  EXPECT_LT((first - places.front()).norm(), 1e-9);
 }
 
 // The guide ends on the line it aims at and stays there while the drill goes in.

@@ -310,7 +310,9 @@ TEST(CameraDevice, TellsThatTheFormatHasChanged) {
   ASSERT_NE(source->next(), nullptr);
   room.camera().first_mode = 1;
   ++room.camera().source_changes;
-  EXPECT_GE(told_after_ms(*source, "gives pictures of 64 x 48 now, and gave such of 320 x 240"), 0);
+  EXPECT_GE(
+      told_after_ms(*source, "the source's format changed to 64 x 48: set the processor back to 320 x 240"),
+      0);
 }
 
 // A card whose signal comes back in another format is refused for as long as that lasts, and taken up again

@@ -281,6 +281,19 @@ TEST_F(SourceWatchTest, WhatIsLateByItselfIsNotBlamedOnItsRate) {
   EXPECT_THAT(watch_.words(), HasSubstr("end other programs"));
 }
 
+// The sender is gone: that is not the computer's fault, however late it was with the pictures before.
+TEST_F(SourceWatchTest, Hazard3ASilentSourceIsNotBlamedOnTheMachine) {
+  for (int i = 0; i < 30; ++i) {
+    watch_.shown_until(1200, now_ns_);
+    pictures(well_, 16);
+    now_ns_ += 300 * kMs;
+  }
+  ASSERT_EQ(watch_.trouble(), SourceTrouble::Slow);
+  ASSERT_THAT(watch_.words(), HasSubstr("end other programs"));
+  silence(200);
+  EXPECT_EQ(watch_.trouble(), SourceTrouble::NoPicture);
+}
+
 // A record keeps the words: what they tell of is found again, of every one that is said.
 TEST_F(SourceWatchTest, ItsWordsTellWhatIsWrong) {
   std::vector<SourceTrouble> told;

@@ -25,7 +25,11 @@ TEST(ExerciseStep, OfAPartIsItsOwn) {
             "tilt the handle to all sides, then Enter: done");
   EXPECT_EQ(step(Goal::Pivot, Held::Guide, kNothing), "take the probe: G");
   EXPECT_EQ(step(Goal::Aim, Held::Guide, kNothing), "bring the guide into view");
-  EXPECT_EQ(step(Goal::Aim, Held::Guide, [](auto& state, auto&) { state.guided_lately = true; }),
+  EXPECT_EQ(step(Goal::Aim, Held::Guide,
+                 [](auto& state, auto&) {
+                   state.guided_lately = true;
+                   state.frame.guidance.state = guidance::GuidanceState::Valid;
+                 }),
             "follow the bullseye; on the plan: Enter, done");
   EXPECT_EQ(step(Goal::Aim, Held::Guide,
                  [](auto& state, auto&) {
@@ -33,6 +37,13 @@ TEST(ExerciseStep, OfAPartIsItsOwn) {
                    state.frame.guidance.state = guidance::GuidanceState::WorldMarkerLost;
                  }),
             "bring the bone's marker into view");
+  EXPECT_EQ(step(Goal::Aim, Held::Guide,
+                 [](auto& state, auto&) {
+                   state.guided_lately = true;
+                   state.frame.guidance.state = guidance::GuidanceState::GuideLost;
+                 }),
+            "bring the guide into view")
+      << "there is no bullseye to follow";
   EXPECT_EQ(step(Goal::Aim, Held::Probe, kNothing), "take the guide: G");
 }
 
