@@ -174,8 +174,8 @@ void PlanHistory::redo() {
   describe();
 }
 
-void PlanHistory::settle(double now_s) {
-  if (now_s - moved_at_s_ > kRest_s) settle_now();
+void PlanHistory::settle(double now_s, bool is_held) {
+  if (!is_held && now_s - moved_at_s_ > kRest_s) settle_now();
 }
 
 void PlanHistory::settle_now() {
@@ -197,6 +197,24 @@ std::string PlanHistory::save_now() {
 void PlanHistory::describe() {
   status_.undo_what = can_undo() ? steps_[position_ - 1].what : "";
   status_.redo_what = can_redo() ? steps_[position_].what : "";
+}
+
+std::set<bones::BoneKind> PlanHistory::bones_of(std::size_t step) const {
+  std::set<bones::BoneKind> changed;
+  for (const auto bone : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+    const auto on_bone = [bone](State of) {
+      of.measurements.clear();
+      const auto is_of_other_tunnel = [&](const auto& one) { return one.first.bone != bone; };
+      std::erase_if(of.plan.tunnels, is_of_other_tunnel);
+      std::erase_if(of.plan.mesh_sha256, is_of_other_tunnel);
+      const auto is_of_other = [&](const auto& one) { return one.first != bone; };
+      std::erase_if(of.landmarks, is_of_other);
+      std::erase_if(of.landmark_states, is_of_other);
+      return of;
+    };
+    if (!(on_bone(steps_[step].before) == on_bone(steps_[step].after))) changed.insert(bone);
+  }
+  return changed;
 }
 
 void PlanHistory::go_to(std::size_t position) {

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -50,8 +51,9 @@ class PlanHistory {
   [[nodiscard]] bool can_undo() const { return position_ > 0; }
   [[nodiscard]] bool can_redo() const { return position_ < steps_.size(); }
 
-  // Ends a movement that has rested for half a second, which saves it.
-  void settle(double now_s);
+  // Ends a movement that has rested for half a second, which saves it; never one that is held, which goes on
+  // however long the hand, or a machine under load, pauses.
+  void settle(double now_s, bool is_held = false);
   void settle_now();
   // The same, and what could not be saved is tried again. Why the disk holds another plan than the model by
   // now; empty where it is the model's. PlanModel::save_now() is this.
@@ -76,6 +78,8 @@ class PlanHistory {
   [[nodiscard]] std::size_t position() const { return position_; }
   // Precondition: step < step_count().
   [[nodiscard]] const std::string& step_name(std::size_t step) const { return steps_[step].what; }
+  // Whose tunnels or landmarks it changed. Precondition: as above.
+  [[nodiscard]] std::set<bones::BoneKind> bones_of(std::size_t step) const;
   // Undoes or redoes until so many steps are done; at most step_count().
   void go_to(std::size_t position);
   [[nodiscard]] const PlanStatus& status() const { return status_; }

@@ -3,6 +3,7 @@
 
 #include "app/case/case_side.h"
 #include "app/command_line/command.h"
+#include "app/library/plan_verdict.h"
 #include "app/library/workstation_library.h"
 #include "planning/cases/case_lock.h"
 #include "planning/cases/case_note.h"
@@ -26,7 +27,7 @@ struct CasesArguments {
   std::string set_side, to_side, take_over;
   std::string side, state, order = "newest";
   std::string search;
-  bool as_json = false, as_csv = false, with_identity = false;
+  bool as_json = false, as_csv = false, with_identity = false, checks = false;
 };
 
 // What was done, in words; nothing beside what another program is to read.
@@ -59,7 +60,27 @@ std::vector<CaseRecord> looked_at(library::Library& known) {
   });
 }
 
-void print(const Context& context, const std::vector<CaseRecord>& records, std::size_t known_count) {
+// As far as they are known; those that are not are made where that is asked for, seconds each.
+library::PlanVerdicts verdicts_of(const std::vector<CaseRecord>& records, bool checks) {
+  Progress progress("Checking plans", static_cast<long>(records.size()));
+  library::PlanVerdicts verdicts;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const CaseRecord& record = records[i];
+    progress.advance_to(static_cast<long>(i));
+    if (!record.is_there || record.planned.empty()) continue;
+    auto verdict = workstation_library::plan_verdict(record.folder);
+    if (!verdict && checks) {
+      verdict = workstation_library::judge_plan(cases::load_case(record.folder),
+                                                cases::load_bone_doubts(record.folder));
+      workstation_library::keep_plan_verdict(record.folder, *verdict);
+    }
+    if (verdict) verdicts[record.folder] = *std::move(verdict);
+  }
+  return verdicts;
+}
+
+void print(const Context& context, const std::vector<CaseRecord>& records,
+           const library::PlanVerdicts& verdicts, std::size_t known_count) {
   for (const CaseRecord& record : records) {
     context.say(record.name + (record.side.empty() ? "" : ", " + record.side + " knee") + ": " +
                 std::string(to_text(record.state())));
@@ -67,7 +88,10 @@ void print(const Context& context, const std::vector<CaseRecord>& records, std::
     const std::string outcome = record.last_outcome();
     if (record.is_there && record.problem.empty()) {
       const std::size_t count = record.sessions.size();
-      std::string line = "    changed " + record.changed_utc.substr(0, 10) + "; " + record.plan_in_words();
+      const auto verdict = verdicts.find(record.folder);
+      std::string line =
+          "    changed " + record.changed_utc.substr(0, 10) + "; " +
+          workstation_library::plan_in_words(record, verdict == verdicts.end() ? nullptr : &verdict->second);
       if (count > 0)
         line +=
             "; " + std::to_string(count) + (count == 1 ? " session" : " sessions") + ", the last: " + outcome;
@@ -142,12 +166,13 @@ void list_cases(const Context& context, const CasesArguments& arguments) {
   if (!added.empty() && !arguments.as_json && !arguments.as_csv)
     std::erase_if(records, [&](const CaseRecord& record) { return !added.contains(record.folder); });
   if (named != nullptr && query.words.empty()) identities = library::read_identities(records);
+  const library::PlanVerdicts verdicts = verdicts_of(records, arguments.checks);
   if (arguments.as_json)
-    library::write_cases_json("-", records, named);
+    library::write_cases_json("-", records, named, verdicts);
   else if (arguments.as_csv)
     files::write_atomically("-", library::cohort_csv(records, named));
   else
-    print(context, records, all.size());
+    print(context, records, verdicts, all.size());
 }
 
 }  // namespace
@@ -192,6 +217,8 @@ void add_cases_command(CLI::App& app, Context& context) {
   sub->add_option("--sort", arguments->order, "The order")
       ->check(CLI::IsMember({"newest", "name", "created", "state", "offset"}))
       ->capture_default_str();
+  sub->add_flag("--check", arguments->checks,
+                "Check the plans of the cases listed that nobody has checked as they are now: seconds each");
   CLI::Option* json = sub->add_flag("--json", arguments->as_json, "The list as JSON");
   sub->add_flag("--csv", arguments->as_csv, "The cohort as CSV, a row for each session")->excludes(json);
   sub->add_flag("--with-identity", arguments->with_identity,

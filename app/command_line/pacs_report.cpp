@@ -87,9 +87,9 @@ std::vector<std::string> lines_of(const pacs::FindSummary& found) {
     for (const auto& study : patient.studies) {
       std::string modalities;
       for (const auto& modality : study.modalities) modalities += " " + modality;
-      lines.push_back("  " + (study.date.empty() ? "undated" : cases::date_in_words(study.date)) +
-                      modalities + quoted(study.description) + ": " +
-                      with_count(study.series_count, "series", "series") + ", " +
+      const std::string date = cases::date_in_words(study.date);
+      lines.push_back("  " + (date.empty() ? "undated" : date) + modalities + quoted(study.description) +
+                      ": " + with_count(study.series_count, "series", "series") + ", " +
                       with_count(study.image_count, "image", "images"));
       lines.push_back("    study UID " + study.uid);
       for (const auto& series : study.series) {

@@ -24,6 +24,7 @@
 #include "planning/plan_export/markups_file.h"
 #include "planning/plan_export/plan_export.h"
 #include "planning/plan_review/proposed_landmarks.h"
+#include "planning/plan_review/tunnel_verdict.h"
 #include "planning/tunnels/diameter_range.h"
 #include "planning/tunnels/tunnel.h"
 
@@ -190,7 +191,10 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
       tunnels_json.back()["bone_doubts"] = words_of(doubts[key.bone]);
     } else {
       describe_tunnel(context, knee, review, key, verdict);
-      for (const std::string& doubt : words_of(doubts[key.bone])) context.say("  ! Bone: " + doubt);
+      const std::string side = plan_review::side_doubt(doubts);
+      if (!side.empty()) context.say("  x Side: " + side);
+      for (const std::string& doubt : plan_review::doubts_but_side(doubts, key.bone))
+        context.say("  ! Bone: " + doubt);
     }
   }
   if (!arguments.as_json) {
@@ -238,11 +242,12 @@ plan_export::ExportSummary exported(const PlanArguments& arguments, const cases:
   return plan_export::export_plan(knee, arguments.export_folder);
 }
 
-// wrong: what the checks say of the plan, which is written as it is: told, and no doubt about what was
-// written.
+// wrong: what speaks against the plan, which is written as it is: told, and no doubt about what was written,
+// unless it is of the other knee.
 void export_to(const PlanArguments& arguments, Context& context, const cases::Case& knee,
-               const std::vector<std::string>& wrong) {
-  const auto summary = exported(arguments, knee);
+               const std::vector<std::string>& wrong, const std::string& side_doubt) {
+  auto summary = exported(arguments, knee);
+  if (!side_doubt.empty()) summary.doubts.insert(summary.doubts.begin(), side_doubt);
   if (!arguments.as_json)
     for (const auto& file : summary.files) context.say("Wrote " + file.string());
   if (!arguments.as_json)
@@ -387,7 +392,7 @@ void add_plan_command(CLI::App& app, Context& context) {
     auto by_shape = plan_review::propose_landmarks(shown, plan_review::Proposing::Planned);
     shown.plan = knee.plan;
     if (is_proposed) by_shape.try_emplace(key_of(*arguments).bone, std::move(proposed));
-    const plan_review::CaseReview review(shown, by_shape);
+    const plan_review::CaseReview review(shown, by_shape, plan_review::side_doubt(doubts));
     if (arguments->by_default) verdict = judged(shown, review, key_of(*arguments), doubts, verdict);
     show(*arguments, context, shown, review, doubts, verdict);
     if (arguments->versions.keeps) {
@@ -395,7 +400,10 @@ void add_plan_command(CLI::App& app, Context& context) {
           cases::keep_plan_version(arguments->case_folder, knee.plan, knee.side, arguments->versions.words);
       if (!arguments->as_json) context.say("Kept as version " + std::to_string(kept.number) + ".");
     }
-    if (!arguments->export_folder.empty()) export_to(*arguments, context, knee, wrong_in_plan(review));
+    if (!arguments->export_folder.empty())
+      export_to(*arguments, context, knee,
+                plan_review::verdict_of_plan(shown, plan_review::checks_of_plan(review), doubts).wrong,
+                plan_review::side_doubt(doubts));
     if (!verdict.is_reliable) context.say_unreliable("The default plan", verdict.reasons);
   });
 }

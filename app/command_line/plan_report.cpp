@@ -81,14 +81,6 @@ PlanVerdict judged(const cases::Case& knee, const plan_review::CaseReview& revie
   return verdict;
 }
 
-std::vector<std::string> wrong_in_plan(const plan_review::CaseReview& review) {
-  std::vector<std::string> wrong;
-  for (const auto& [key, measured] : review.tunnels())
-    for (const std::string& words : tunnels::wrong_in_words(review.checks(key)))
-      wrong.push_back(tunnels::name_of(key) + ": " + words);
-  return wrong;
-}
-
 void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,
                      const tunnels::TunnelKey& key, const PlanVerdict& verdict) {
   const auto& [tunnel, measured] = review.tunnels().at(key);

@@ -30,9 +30,6 @@ struct PlanVerdict {
                                  const tunnels::TunnelKey& key, const cases::BoneDoubts& doubts,
                                  PlanVerdict verdict);
 
-// What the checks call wrong of all tunnels.
-[[nodiscard]] std::vector<std::string> wrong_in_plan(const plan_review::CaseReview& review);
-
 // Lines for the user: entry, direction, what was measured, every check.
 // Precondition of both: the review, which is of this case, has the tunnel.
 void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,

@@ -17,7 +17,7 @@ bool has_thumbnail(const fs::path& case_folder) {
 ThumbnailCase load_for_thumbnail(const fs::path& case_folder) {
   constexpr std::size_t kTriangles = 30'000;
   ThumbnailCase loaded{cases::load_case(case_folder), {}};
-  loaded.verdict = judge_plan(loaded.knee);
+  loaded.verdict = judge_plan(loaded.knee, cases::load_bone_doubts(case_folder));
   cases::Case& knee = loaded.knee;
   for (auto& [kind, bone] : knee.bones) bone.mesh = *scene::simplified(bone.mesh, kTriangles);
   return loaded;

@@ -16,7 +16,7 @@ inline constexpr int kThumbnailWidth = 200, kThumbnailHeight = 160;
 [[nodiscard]] bool has_thumbnail(const std::filesystem::path& case_folder);
 struct ThumbnailCase {
   cases::Case knee;
-  PlanVerdict verdict;
+  plan_review::TunnelVerdict verdict;
 };
 // The case, its bones as coarse as a small picture needs, and what is wrong in its plan: seconds where they
 // are fine. Throws IoError or InvalidInput for a case that cannot be read.

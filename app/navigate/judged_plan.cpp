@@ -35,9 +35,8 @@ void JudgedPlan::judge(const open_case::PlanModel& model,
       key, plan_review::MeasuredTunnel{plan->tunnel, tunnels::measure(plan->tunnel, model.surface(bone))});
   const auto checks = plan_review::checks_of(key, measured, model.surroundings(bone),
                                              model.knee_surroundings(), model.landmark_check(bone));
-  const auto doubts = doubts_.find(bone);
   verdict_ = plan_review::verdict_of(
-      checks, doubts == doubts_.end() ? std::vector<cases::BoneDoubt>{} : doubts->second,
+      bone, checks, doubts_,
       model.surroundings(bone).has_grid()
           ? landmarks::grid_doubt(bone, model.landmarks(bone), model.landmark_states(bone))
           : "");

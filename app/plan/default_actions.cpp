@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/plan/plan_view.h"
+#include "planning/plan_review/tunnel_verdict.h"
 
 namespace arthronaut::plan {
 
@@ -14,6 +15,12 @@ void PlanView::make_defaults(const std::vector<tunnels::TunnelKey>& keys,
                              std::function<void(std::vector<MadeTunnel>)> then) {
   state_.placing = Placing::Nothing;
   state_.hint = {};
+  // On the other knee every landmark, and so every default, would be another one.
+  state_.asks_side = !plan_review::side_doubt(bone_doubts_).empty();
+  if (state_.asks_side) {
+    state_.hint = {"No default plan yet: say first which knee it is. The side is in doubt."};
+    return;
+  }
   history_.settle_now();
   defaults_.start(*model_, keys);
   take_made_ = std::move(then);

@@ -24,7 +24,6 @@ void PlanView::select_landmark(std::size_t row) {
   const auto& marks = model_->landmarks(state_.key.bone);
   const auto at = marks.find(landmark());
   if (at == marks.end()) return;
-  state_.shows_lateral = false;
   bones_.look_at(at->second, state_.key.bone);
   state_.shown_revision = 0;
   slices_.set_cross(at->second);

@@ -1,9 +1,10 @@
-// The true lateral view of the femur: a radiograph made of its surface along the line through both condyles,
-// so that these are superposed, with Bernard and Hertel's grid, the norm and the tunnel on it. Where surgeons
-// read the percentages; a real radiograph is always a little turned.
+// The lateral view of a bone: a radiograph made of its surface. Of the femur along the line through both
+// condyles, so that these are superposed, with Bernard and Hertel's grid, the norm and the tunnel on it; of
+// the tibia along its plateau, with the line on which Amis and Jakob measure from front to back. Where
+// surgeons read the percentages; a real radiograph is always a little turned.
 #pragma once
 
-#include <vector>
+#include <string>
 
 #include "app/case/plan_model.h"
 #include "app/scene/reslice.h"
@@ -15,14 +16,26 @@ namespace arthronaut::plan {
 class LateralView {
  public:
   void open(const open_case::PlanModel* model);  // another case
-  void draw(const widgets::Ui& ui, const widgets::Rect& area);
+  struct Shown {
+    bones::BoneKind bone = bones::BoneKind::Femur;  // none: this is said
+    bool landmarks = false;
+    std::string landmark = {};  // that is worked on: named in the picture
+  };
+  void draw(const widgets::Ui& ui, const widgets::Rect& area, const Shown& shown);
 
  private:
-  void draw_grid(const widgets::Ui& ui, const widgets::Rect& area) const;
+  [[nodiscard]] ImVec2 at(const widgets::Rect& area, const Eigen::Vector3d& point_mm) const;
+  void draw_femoral_grid(const widgets::Ui& ui, const widgets::Rect& area) const;
+  void draw_tibial_line(const widgets::Ui& ui, const widgets::Rect& area) const;
+  void draw_landmarks(const widgets::Ui& ui, const widgets::Rect& area, const Shown& shown) const;
+  // Returns what is said of their entries.
+  std::string draw_tunnels(const widgets::Ui& ui, const widgets::Rect& area, bones::BoneKind bone) const;
+  void show_percents(const widgets::Ui& ui, const widgets::Rect& area, bones::BoneKind bone) const;
 
   const open_case::PlanModel* model_ = nullptr;
   scene::SlicePlane plane_;
   Eigen::Vector2i size_px_{0, 0};
+  bones::BoneKind bone_ = bones::BoneKind::Femur;  // of the texture
   widgets::GreyTexture texture_;
 };
 

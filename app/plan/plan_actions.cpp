@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "app/plan/plan_view.h"
 #include "app/plan/tunnel_moves.h"
@@ -118,6 +119,18 @@ void PlanView::add_tunnel_actions(widgets::Actions& actions) {
                }});
 }
 
+void PlanView::step(bool back) {
+  history_.settle_now();
+  if (back ? !history_.can_undo() : !history_.can_redo()) return;
+  const std::size_t step = back ? history_.position() - 1 : history_.position();
+  std::string what = history_.step_name(step);
+  what[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(what[0])));
+  back ? history_.undo() : history_.redo();
+  const auto bones = history_.bones_of(step);
+  if (!bones.empty() && !bones.contains(state_.key.bone)) work_on_bone(*bones.begin());
+  state_.hint = {(back ? "Took back: " : "Did again: ") + what, true, model_->revision()};
+}
+
 void PlanView::add_history_actions(widgets::Actions& actions) {
   actions.add({"plan.undo",
                "Undo",
@@ -127,7 +140,7 @@ void PlanView::add_history_actions(widgets::Actions& actions) {
                true,
                [this] { return history_.can_undo(); },
                {},
-               [this] { history_.undo(); }});
+               [this] { step(true); }});
   actions.add({"plan.redo",
                "Redo",
                "Does it again",
@@ -136,7 +149,7 @@ void PlanView::add_history_actions(widgets::Actions& actions) {
                true,
                [this] { return history_.can_redo(); },
                {},
-               [this] { history_.redo(); }});
+               [this] { step(false); }});
   const auto in_conflict = [this] { return history_.is_in_conflict(); };
   actions.add({"plan.take_theirs",
                "Take theirs",
@@ -260,10 +273,10 @@ void PlanView::add_view_actions(widgets::Actions& actions) {
                  state_.shows_grid = !state_.shows_grid;
                  state_.shown_revision = 0;
                }});
-  actions.add(
-      {"plan.xray", "Radiograph", "The true lateral view of the femur, with the grid on it", GLFW_KEY_X, 0,
-       false, [this] { return model_ != nullptr && model_->has_bone(BoneKind::Femur); },
-       [this] { return state_.shows_lateral; }, [this] { state_.shows_lateral = !state_.shows_lateral; }});
+  actions.add({"plan.xray", "Radiograph",
+               "The lateral view of the bone that is worked on, with its grid on it", GLFW_KEY_X, 0, false,
+               [this] { return model_ != nullptr; }, [this] { return state_.shows_lateral; },
+               [this] { state_.shows_lateral = !state_.shows_lateral; }});
   actions.add({"plan.see_through", "See through", "The bone turns translucent", GLFW_KEY_T, 0, false,
                [this] { return model_ != nullptr; }, [this] { return bones_.is_see_through(); },
                [this] { bones_.see_through(!bones_.is_see_through()); }});

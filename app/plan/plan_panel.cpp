@@ -11,6 +11,8 @@
 #include "planning/files/local_time.h"
 #include "planning/files/unit_signs.h"
 #include "planning/files/utc_clock.h"
+#include "planning/landmarks/grid_landmarks.h"
+#include "planning/plan_review/tunnel_verdict.h"
 
 namespace arthronaut::plan {
 
@@ -68,9 +70,14 @@ void button_pair(const widgets::Ui& ui, const char* left, const char* right, flo
   widgets::action_button(ui, right, (1 - share) * width);
 }
 
-void draw_saved(const widgets::Ui& ui, const open_case::PlanStatus& status) {
+void draw_saved(const widgets::Ui& ui, const PlanPanel& panel) {
+  const open_case::PlanStatus& status = panel.history.status();
   button_pair(ui, "plan.undo", "plan.redo");
-  widgets::status_row(ui, severity_of_save(status.save), "Plan", status.text);
+  // No tick for a plan that is none.
+  const bool is_none =
+      status.save == open_case::PlanStatus::Save::Saved && panel.model.knee().plan.tunnels.empty();
+  widgets::status_row(ui, is_none ? widgets::Severity::Quiet : severity_of_save(status.save), "Plan",
+                      is_none ? "none; " + status.text : status.text);
 }
 
 // What draw_saved() needs beyond its one line: a conflict and a failure have more words.
@@ -105,19 +112,28 @@ void draw_next(const widgets::Ui& ui, const NextStep& next) {
   ui.log.note_button("plan.next", at, {at.x + width, at.y + height});
 }
 
-// What spoke against the bone when it was made: all that follows from its shape is as doubtful.
-void draw_bone_doubts(const widgets::Ui& ui, const PlanPanel& panel) {
-  const auto doubts = panel.doubts.find(panel.key.bone);
-  const std::size_t count = doubts == panel.doubts.end() ? 0 : doubts->second.size();
-  ui.log.note_state("bone_doubts", std::to_string(count));
-  for (std::size_t i = 0; i < count; ++i)
-    widgets::status_row(ui, widgets::Severity::Caution, "Bone", words_of(doubts->second[i]));
+// What spoke against the bone when it was made, but for the side, and of its grid: all that follows from them
+// is as doubtful.
+void draw_doubts(const widgets::Ui& ui, const PlanPanel& panel) {
+  const bones::BoneKind bone = panel.key.bone;
+  const auto doubts = panel.doubts.find(bone);
+  ui.log.note_state("bone_doubts", std::to_string(doubts == panel.doubts.end() ? 0 : doubts->second.size()));
+  for (const std::string& doubt : plan_review::doubts_but_side(panel.doubts, bone))
+    widgets::status_row(ui, widgets::Severity::Caution, "Bone", doubt);
+  const bool has_grid = panel.model.has_bone(bone) && panel.model.surroundings(bone).has_grid();
+  const std::string grid =
+      !has_grid ? ""
+                : landmarks::grid_doubt(bone, panel.model.landmarks(bone), panel.model.landmark_states(bone));
+  ui.log.note_state("grid_doubt", grid);
+  if (!grid.empty()) widgets::status_row(ui, widgets::Severity::Caution, "Grid", grid);
 }
 
 void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
   const auto tunnel = panel.model.tunnel(panel.key);
+  const std::string side = plan_review::side_doubt(panel.doubts);
+  if (!side.empty()) widgets::status_row(ui, widgets::Severity::Bad, "Side", side);
   if (!tunnel) {
-    draw_bone_doubts(ui, panel);
+    draw_doubts(ui, panel);
     widgets::text_in(ui.theme.body, widgets::kText,
                      "No tunnel yet. Press P and click on the bone where it is to begin.");
     return;
@@ -129,14 +145,19 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
                      "Leaves the bone " + place_from_entry(geometry.exit_mm - geometry.entry_on_surface_mm,
                                                            panel.model.axes(panel.key.bone)));
   ImGui::Dummy({0, ui.theme.px(4)});
-  draw_bone_doubts(ui, panel);
-  for (const tunnels::PlanCheck* const check : worst_first(panel.model.checks(panel.key))) {
+  const auto checks = plan_review::as_side_is_doubted(panel.model.checks(panel.key), side);
+  bool has_doubts = false;
+  for (const tunnels::PlanCheck* const check : worst_first(checks)) {
+    // What is wrong first: it must not be pushed out of sight by what is only to be looked at.
+    if (check->verdict != tunnels::PlanCheck::Verdict::Wrong && !std::exchange(has_doubts, true))
+      draw_doubts(ui, panel);
     ImGui::BeginGroup();
     widgets::status_row(ui, severity_of(check->verdict), check->name, files::with_signs(check->text));
     ImGui::EndGroup();
     if (ImGui::IsItemHovered() && !check->source.empty())
       widgets::tooltip(ui, files::with_signs(check->source));
   }
+  if (!has_doubts) draw_doubts(ui, panel);
   widgets::text_in(ui.theme.body, widgets::kQuietText,
                    "Customary values, not limits of safety. The surgeon decides.");
 }
@@ -309,7 +330,7 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
       draw_versions(ui, panel, ui.theme.px(110) + more, clicked);
       break;
   }
-  draw_saved(ui, panel.history.status());
+  draw_saved(ui, panel);
   widgets::end_panel();
   return clicked;
 }

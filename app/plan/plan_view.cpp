@@ -82,7 +82,7 @@ bool PlanView::awaits_shape() const {
 }
 
 void PlanView::tick(double now_s) {
-  history_.settle(now_s);
+  history_.settle(now_s, state_.is_held);
   history_.look_at_disk(now_s);
   follow_plan();
   follow_defaults();
@@ -232,7 +232,8 @@ void PlanView::show_content() {
 
 void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   if (state_.shows_lateral) {
-    lateral_.draw(ui, area);
+    const bool on_landmarks = state_.page == PanelPage::Landmarks;
+    lateral_.draw(ui, area, {state_.key.bone, on_landmarks, on_landmarks ? landmark() : ""});
     widgets::Rect rest = area;
     rest.cut_top(ui.theme.px(130));  // below its caption, which has a line for each bundle
     return draw_hint(ui, rest);
@@ -318,6 +319,7 @@ std::vector<PaneMark> PlanView::marks() const {
 void PlanView::follow(const PaneEvent& event) {
   if (!model_->has_bone(state_.key.bone)) return;
   if (!event.pressed.empty()) state_.has_dragged = false;
+  state_.is_held = !event.dragged.empty();
   const auto tunnel = model_->tunnel(state_.key);
   if (tunnel && event.dragged == "entry") {
     const auto to = dragged_over(bones_.visible(), state_.key.bone, tunnel->entry_mm, event.drag_ray,

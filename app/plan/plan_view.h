@@ -48,6 +48,7 @@ class PlanView : public mode::Mode {
     history_.settle_now();
     leave_defaults("Plan was left");  // elsewhere nobody sees the plan change
     tour_.plan_mode_left();
+    state_.is_held = false;
     bones_.let_go_of_picture();
   }
   void tick(double now_s) override;
@@ -60,6 +61,7 @@ class PlanView : public mode::Mode {
   [[nodiscard]] bool has_running_work() const override {
     return export_.is_running() || history_.status().save == open_case::PlanStatus::Save::Failed;
   }
+  void begin_tour_when_opened() { tour_.begin_when_opened(); }
   [[nodiscard]] bool awaits_text() const override { return version_field_.awaits_text(); }
   [[nodiscard]] bool is_busy() const override {
     return history_.is_moving() || defaults_.is_running() || slices_.is_loading() || volume_.is_preparing() ||
@@ -72,6 +74,8 @@ class PlanView : public mode::Mode {
   // plan_actions.cpp
   void add_view_actions(widgets::Actions& actions);
   void add_history_actions(widgets::Actions& actions);
+  // Says what was undone or done again, and turns to the bone of which it was.
+  void step(bool back);
   void add_tunnel_actions(widgets::Actions& actions);
   void add_placing_actions(widgets::Actions& actions);
   void place_entry(const scene::SceneRay& ray);
@@ -179,6 +183,7 @@ class PlanView : public mode::Mode {
     std::size_t landmark = 0;  // row of landmark_rows()
     bool asks_side = false;    // which knee it is
     bool has_dragged = false;
+    bool is_held = false;  // the mouse drags something of the plan: its step goes on
     // Where the aim's handle is while it is held: under the mouse, wherever the tunnel ends.
     std::optional<Eigen::Vector3d> held_aim_mm = {};
     bool along = false;  // the slices, of the tunnel that is worked on

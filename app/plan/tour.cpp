@@ -78,7 +78,10 @@ Tour::Tour(fs::path file) : file_(std::move(file)) { load(); }
 void Tour::case_opened(bool is_built_in) {
   is_built_in_ = is_built_in;
   go_to(step_);
+  if (std::exchange(begins_when_opened_, false) && is_built_in) begin();
 }
+
+void Tour::begin_when_opened() { begins_when_opened_ = true; }
 
 void Tour::begin() {
   go_to(state_ == State::Done ? TourStep::Look : step_);

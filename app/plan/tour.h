@@ -48,9 +48,10 @@ class Tour {
 
   // Another case: the tour is of the built-in knee alone, and waits while another one is open.
   void case_opened(bool is_built_in);
-  void begin();           // from where it was left, from the start after its end
-  void leave();           // the offer, too: it is then not made again
-  void plan_mode_left();  // the last step leads out of it, and is then done
+  void begin();              // from where it was left, from the start after its end
+  void begin_when_opened();  // the built-in knee, as the next case
+  void leave();              // the offer, too: it is then not made again
+  void plan_mode_left();     // the last step leads out of it, and is then done
   // Once a frame: goes on when the step is done.
   void follow(const TourFacts& facts);
 
@@ -74,7 +75,7 @@ class Tour {
   std::filesystem::path file_;
   State state_ = State::Offered;
   TourStep step_ = TourStep::Look;
-  bool is_built_in_ = false;
+  bool is_built_in_ = false, begins_when_opened_ = false;
   std::optional<TourFacts> at_begin_;                       // of the step
   std::set<bones::BoneKind> landmarks_seen_, checks_seen_;  // in this step
 };

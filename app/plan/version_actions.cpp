@@ -72,12 +72,10 @@ void PlanView::say_of_version(int number, const cases::VersionWords& words) {
 void PlanView::export_plan() {
   history_.settle_now();
   state_.hint = {};
-  std::vector<std::string> wrong;
-  for (const auto& [key, tunnel] : model_->tunnels())
-    for (const std::string& words : tunnels::wrong_in_words(model_->checks(key)))
-      wrong.push_back(tunnels::name_of(key) + ": " + words);
-  if (const std::string side = plan_review::side_doubt(bone_doubts_); !side.empty()) wrong.push_back(side);
-  export_.start(model_->knee(), model_->revision(), case_folder_, std::move(wrong));
+  plan_review::CheckedPlan checks;
+  for (const auto& [key, tunnel] : model_->tunnels()) checks[key] = model_->checks(key);
+  export_.start(model_->knee(), model_->revision(), case_folder_,
+                plan_review::verdict_of_plan(model_->knee(), checks, bone_doubts_).wrong);
 }
 
 void PlanView::take_markups(const std::filesystem::path& file) {

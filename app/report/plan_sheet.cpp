@@ -18,6 +18,7 @@
 #include "planning/files/format.h"
 #include "planning/files/unit_signs.h"
 #include "planning/plan_review/landmark_check.h"
+#include "planning/plan_review/tunnel_verdict.h"
 
 namespace arthronaut::report {
 
@@ -302,8 +303,10 @@ double Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm, d
     }
     y_mm += pdf_.paragraph_height_mm(width_mm - word_mm, text, {.size_pt = size_pt}) + gap_mm;
   };
-  if (const auto doubts = content_.bone_doubts.find(kind); doubts != content_.bone_doubts.end())
-    for (const std::string& doubt : words_of(doubts->second)) row("look", true, "Bone: " + doubt);
+  const std::string side = plan_review::side_doubt(content_.bone_doubts);
+  if (!side.empty()) row("wrong", true, "Side: " + side);
+  for (const std::string& doubt : plan_review::doubts_but_side(content_.bone_doubts, kind))
+    row("look", true, "Bone: " + doubt);
   if (const std::string doubt = grid_doubt(content_, kind); !doubt.empty())
     row("look", true, "Grid: " + doubt);
   if (of_graft == nullptr) {

@@ -364,6 +364,7 @@ void Report::result_pictures() {
         "Blue: as planned. Banded: as the CT after the operation shows it, where that is reliable.",
         {.size_pt = 8, .ink = kGray});
   } else if (!content_.session) {
+    pages_.heading("The plan from the joint and from its inner side", (kWidthMm - 6) / 2 + 8);
     pictures(joint_view(), scene::ViewDirection::Medial);
   }
 }

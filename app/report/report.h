@@ -39,8 +39,8 @@ struct ReportOptions {
 // registration; the report says so when there is none. By the output's ending: .json and .csv are the same
 // numbers for other programs, anything else is a PDF. Atomic. Throws IoError, InvalidInput (a broken case, a
 // session that is not there), DeviceError (no OpenGL at all for the pictures). Returns, in words, which
-// sessions are not in it since they cannot be read, and that its own is no longer what was recorded; the
-// report says so too. Reads all of that session, to hash it.
+// sessions are not in it since they cannot be read, that its own is no longer what was recorded, and that the
+// plan's side is in doubt; the report says so too. Reads all of that session, to hash it.
 std::vector<std::string> write_report(const std::filesystem::path& case_folder,
                                       const std::filesystem::path& output, const ReportOptions& options = {});
 // The bytes of such a file. Throws as write_report.

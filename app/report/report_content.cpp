@@ -230,6 +230,9 @@ std::vector<std::string> shortcomings_of(const Content& content) {
   if (content.check.outcome == recording::SessionCheck::Outcome::Broken)
     sentences.push_back("the session " + content.session_name + (content.session_name.empty() ? "" : " ") +
                         "is no longer what was recorded: " + recording::check_words(content.check));
+  if (const std::string side = plan_review::side_doubt(content.bone_doubts);
+      !side.empty() && !content.knee.plan.tunnels.empty())
+    sentences.push_back("the plan is wrong, and reported all the same: " + side);
   return sentences;
 }
 
@@ -326,7 +329,8 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
       (void)take_session(*it, Registration::Tried, content);
   }
   const auto by_shape = plan_review::propose_landmarks(content.knee, plan_review::Proposing::Planned);
-  content.review = std::make_unique<const plan_review::CaseReview>(content.knee, by_shape);
+  content.review = std::make_unique<const plan_review::CaseReview>(
+      content.knee, by_shape, plan_review::side_doubt(content.bone_doubts));
   content.is_of_another_surface = is_of_another_surface(content);
   add_other_sessions(sessions, content);
   add_postoperative(content);

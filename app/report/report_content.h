@@ -95,7 +95,8 @@ inline constexpr double kGatheredShare = 0.3;
 // InvalidInput (file, place, reason).
 [[nodiscard]] Content gather(const std::filesystem::path& folder, const ReportOptions& options);
 
-// What the report tells less of than was recorded, or tells of what was not: a sentence each.
+// What the report tells less of than was recorded, tells of what was not, or of a plan of the other side: a
+// sentence each.
 [[nodiscard]] std::vector<std::string> shortcomings_of(const Content& content);
 // What speaks against the landmarks that percentages and axes of this bone follow from, in words that follow
 // "Grid: "; empty where somebody has looked at them all, and where they give none.

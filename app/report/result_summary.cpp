@@ -86,10 +86,8 @@ std::vector<TunnelResult> results_of(const Content& content) {
 void draw_plan_verdicts(FlowingPages& pages, const Content& content) {
   for (const auto& [key, measured] : content.review->tunnels()) {
     const auto checks = content.review->checks(key);
-    const auto doubts = content.bone_doubts.find(key.bone);
-    const plan_review::TunnelVerdict verdict = plan_review::verdict_of(
-        checks, doubts == content.bone_doubts.end() ? std::vector<cases::BoneDoubt>{} : doubts->second,
-        grid_doubt(content, key.bone));
+    const plan_review::TunnelVerdict verdict =
+        plan_review::verdict_of(key.bone, checks, content.bone_doubts, grid_doubt(content, key.bone));
     const auto unmade =
         std::ranges::count(checks, tunnels::PlanCheck::Verdict::NotChecked, &tunnels::PlanCheck::verdict);
     const std::string name = "Checks of the " + tunnels::name_of(key) + ": ";

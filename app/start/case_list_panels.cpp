@@ -17,25 +17,24 @@ using library::CaseRecord;
 using library::CaseState;
 using widgets::Severity;
 
-using workstation_library::PlanVerdict;
+using plan_review::TunnelVerdict;
 
-// A tick says that every bone is planned and that no check finds it wrong; nobody has looked: no tick.
-Severity severity_of_plan(const CaseRecord& record, const PlanVerdict* verdict) {
+// A tick says that every bone is planned and that nothing speaks against it; nobody has looked: no tick.
+Severity severity_of_plan(const CaseRecord& record, const TunnelVerdict* verdict) {
   if (record.planned.empty() || verdict == nullptr) return Severity::Quiet;
-  if (!verdict->wrong.empty()) return Severity::Caution;
+  if (!verdict->is_fine()) return Severity::Caution;
   return record.is_planned_whole() ? Severity::Good : Severity::Quiet;  // nor for half a plan
 }
 
-std::string plan_in_words(const CaseRecord& record, const PlanVerdict* verdict) {
-  if (record.planned.empty()) return record.plan_in_words();
-  if (verdict == nullptr) return record.plan_in_words() + "; not checked yet";
-  if (verdict->wrong.empty()) return record.plan_in_words();
-  const std::size_t more = verdict->wrong.size() - 1;
-  return record.plan_in_words() + "; wrong: " + verdict->wrong.front() +
-         (more > 0 ? "; and " + std::to_string(more) + " more" : "");
+// While it is found out, that is what is said.
+std::string plan_words(const CaseRecord& record, const CasePictures& pictures) {
+  const TunnelVerdict* const verdict = pictures.verdict_of(record.folder);
+  if (verdict == nullptr && !record.planned.empty() && record.is_there && pictures.is_coming(record.folder))
+    return record.plan_in_words() + "; being checked\u2026";
+  return workstation_library::plan_in_words(record, verdict);
 }
 
-Severity severity_of(const CaseRecord& record, const PlanVerdict* verdict) {
+Severity severity_of(const CaseRecord& record, const TunnelVerdict* verdict) {
   switch (record.state()) {
     case CaseState::Missing:
       return Severity::Caution;
@@ -95,8 +94,8 @@ void CaseList::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
   draw_head(ui, rest.cut_top(ui.theme.px(devices_.empty() ? 108 : 146)));
   widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-                        {"start.accept", "start.browse", "start.pacs", "start.built_in", "start.note",
-                         "start.trends", "start.forget", "start.back"});
+                        {"start.accept", "start.browse", "start.pacs", "start.built_in", "start.tour",
+                         "start.note", "start.trends", "start.forget", "start.back"});
   const widgets::Rect side = rest.cut_right(ui.theme.px(560), ui.theme.px(12));
   draw_list(ui, rest);
   draw_details(ui, side);
@@ -247,11 +246,11 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
                      widgets::fitting(font, record.name, wide - ui.theme.px(12) - side_wide) + side);
   widgets::draw_text(draw, ui.theme.body, at.x + width - right, at.y + ui.theme.px(6), widgets::kQuietText,
                      when_in_words(used_utc(record), files::utc_now()));
-  const PlanVerdict* const verdict = pictures_.verdict_of(record.folder);
+  const TunnelVerdict* const verdict = pictures_.verdict_of(record.folder);
   const Severity severity = severity_of(record, verdict);
   widgets::draw_sign(draw, {x + ui.theme.px(10), at.y + ui.theme.px(48)}, ui.theme.px(9), severity);
   const std::size_t count = record.sessions.size();
-  std::string what = capital(record.state() == CaseState::Planned ? plan_in_words(record, verdict)
+  std::string what = capital(record.state() == CaseState::Planned ? plan_words(record, pictures_)
                                                                   : std::string(to_text(record.state())));
   if (record.state() != CaseState::Planned && (severity == Severity::Caution || severity == Severity::Bad))
     what += ": " + record.last_outcome() + doubts_in_words(record);
@@ -282,7 +281,7 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
       widgets::text_in(
           ui.theme.body, widgets::kQuietText,
           "A right knee to learn on. What is changed in it stays; the simulated operation in F2 drills "
-          "what was planned.");
+          "what was planned. Tour (F9) leads through planning on it, in some minutes.");
     widgets::end_panel();
     return;
   }
@@ -292,7 +291,7 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_picture(*ImGui::GetWindowDrawList(),
                record->is_there && record->problem.empty() ? pictures_.of(record->folder) : nullptr, place);
   ImGui::Dummy({width, place.height});
-  const PlanVerdict* const verdict = pictures_.verdict_of(record->folder);
+  const TunnelVerdict* const verdict = pictures_.verdict_of(record->folder);
   const Severity severity = severity_of(*record, verdict);
   if (record->state() != CaseState::Planned && (severity == Severity::Caution || severity == Severity::Bad))
     widgets::status_row(ui, severity, capital(std::string(to_text(record->state()))), record->last_outcome());
@@ -301,7 +300,7 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
                         files::within_folder(record->folder, record->part_problem));
   if (!record->side.empty()) widgets::status_row(ui, Severity::Quiet, "Side", record->side + " knee");
   if (record->problem.empty())
-    widgets::status_row(ui, severity_of_plan(*record, verdict), "Plan", plan_in_words(*record, verdict));
+    widgets::status_row(ui, severity_of_plan(*record, verdict), "Plan", plan_words(*record, pictures_));
   if (const library::SessionFacts* last = record->last_session()) {
     std::string words;
     for (const std::string& part : {files::local_day(last->started_utc), last->what(), last->outcome()})

@@ -30,7 +30,7 @@ const widgets::VideoTexture* CasePictures::of(const fs::path& case_folder) {
   return nullptr;
 }
 
-const workstation_library::PlanVerdict* CasePictures::verdict_of(const fs::path& case_folder) const {
+const plan_review::TunnelVerdict* CasePictures::verdict_of(const fs::path& case_folder) const {
   const auto known = verdicts_.find(case_folder);
   return known != verdicts_.end() && known->second ? &*known->second : nullptr;
 }

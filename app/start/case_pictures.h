@@ -29,9 +29,12 @@ class CasePictures {
   // Of a case that is in view. Null while it has none; it is then the next to be made. A case that cannot be
   // drawn stays without.
   [[nodiscard]] const widgets::VideoTexture* of(const std::filesystem::path& case_folder);
+  // Of a case in view that has no picture yet, but will.
+  [[nodiscard]] bool is_coming(const std::filesystem::path& case_folder) const {
+    return !shown_.contains(case_folder) && !without_.contains(case_folder);
+  }
   // What is wrong in its plan; null until of() has its picture.
-  [[nodiscard]] const workstation_library::PlanVerdict* verdict_of(
-      const std::filesystem::path& case_folder) const;
+  [[nodiscard]] const plan_review::TunnelVerdict* verdict_of(const std::filesystem::path& case_folder) const;
   void poll();
   // From here on nothing is drawn off-screen until another picture is asked for: waits while one is drawn,
   // not while its case is read, which goes on for itself and comes to nothing.
@@ -50,7 +53,7 @@ class CasePictures {
 
   std::function<void()> wake_;
   std::map<std::filesystem::path, std::unique_ptr<widgets::VideoTexture>> shown_;
-  std::map<std::filesystem::path, std::optional<workstation_library::PlanVerdict>> verdicts_;
+  std::map<std::filesystem::path, std::optional<plan_review::TunnelVerdict>> verdicts_;
   std::set<std::filesystem::path> without_;  // have none, and will have none until forget_all()
   std::filesystem::path wanted_, made_;      // next to be made; being made
   std::shared_ptr<Making> shared_ = std::make_shared<Making>();                                // never null

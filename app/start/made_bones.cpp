@@ -79,7 +79,8 @@ void draw_sketch(const widgets::Ui& ui, const widgets::Rect& area, Side side, bo
   centered(ui.theme.strong, area.y + ui.theme.px(4), widgets::kText,
            side == Side::Right ? "Right knee (R)" : "Left knee (L)");
   centered(ui.theme.body, area.y + area.height - words, widgets::kQuietText,
-           side == Side::Right ? "fibula at the left of the picture" : "fibula at the right of the picture");
+           side == Side::Right ? "seen from in front: fibula at its left"
+                               : "seen from in front: fibula at its right");
 }
 
 // LPS: x grows to the patient's left.
@@ -96,7 +97,9 @@ MadeBones::MadeBones(std::function<void()> make_current, std::function<void()> w
 
 void MadeBones::show(const importing::BoneImport& import) {
   is_there_ = false;
-  if (import.bones.empty() && import.image)
+  // Of a CT, too: a fibula that hung on the tibia is taken off it, and the bones tell no side any more.
+  has_slices_ = import.image.has_value();
+  if (has_slices_)
     slices_.show(import.image->volume);
   else
     slices_.clear();
@@ -135,7 +138,8 @@ std::optional<Side> MadeBones::draw(const widgets::Ui& ui, const widgets::Rect& 
     }
   }
   ui.log.note_state("made_bones", is_there_ ? "shown" : "none");
-  if (!is_there_) (void)slices_.draw(ui, rest);
+  if (has_slices_)
+    (void)slices_.draw(ui, is_there_ ? rest.cut_right(0.58F * rest.width, ui.theme.px(8)) : rest);
   if (is_there_) {
     (void)pane_.draw(ui, "start.bones", rest);
     ImDrawList& draw = *ImGui::GetWindowDrawList();

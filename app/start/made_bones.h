@@ -1,5 +1,6 @@
 // What an import has made, to be looked at before it becomes a case: the bones from in front of the patient,
-// or slices of images without bones, and what a right and a left knee look like from there.
+// slices of the images that they are of, or that have none, and what a right and a left knee look like from
+// there.
 #pragma once
 
 #include <functional>
@@ -31,6 +32,7 @@ class MadeBones {
   std::function<void()> wake_;
   widgets::ScenePane pane_;
   SideSlices slices_;
+  bool has_slices_ = false;
   worker::Awaited<Meshes> thinning_;
   bool is_there_ = false;
 };

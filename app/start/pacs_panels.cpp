@@ -280,7 +280,8 @@ void PacsPane::draw_row_of(const widgets::Ui& ui, const Row& row, std::size_t /*
     if (!row.patient->sex.empty()) words += "  \u2013  " + row.patient->sex;
     counts = counted(row.patient->study_count, "study", "studies");
   } else {
-    words = row.study->date.empty() ? "undated" : cases::date_in_words(row.study->date);
+    words = cases::date_in_words(row.study->date);
+    if (words.empty()) words = "undated";
     for (const std::string& modality : row.study->modalities) words += " " + modality;
     if (!row.study->description.empty()) words += "  \u2013  " + row.study->description;
     counts = counted(row.study->series_count, "series", "series");

@@ -1,5 +1,5 @@
 // Images of which nobody has said the knee: slices that show where the fibula lies, with the patient's sides
-// beside them. For images without bones, of which nothing could be drawn otherwise.
+// beside them.
 #pragma once
 
 #include <Eigen/Core>

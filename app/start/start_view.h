@@ -33,6 +33,8 @@ class StartView {
   // empty: none is open.
   void enter(const std::filesystem::path& open_case);
   void leave();  // something else comes to the front
+  [[nodiscard]] bool shows_cases() const { return state_.page == Page::Cases; }
+  void open_built_in() { open_({}); }
   // A folder or file from outside: a case is opened, 3D Slicer's markups are for the case that is open
   // (take_markups()), anything else is looked into for the import.
   void take(const std::filesystem::path& path);

@@ -24,7 +24,11 @@ std::vector<WhoseLine> whose_knee(const std::optional<cases::Identity>& identity
   }
   const std::string knee = std::string(bones::to_text(side)) + " knee";
   WhoseLine of_case = line_of_case(case_name);
-  if (lines.empty()) return {of_case, {"", knee, false}};  // there is room for the whole name
+  if (lines.size() < 2) {  // there is room for the whole name
+    lines.push_back(of_case);
+    lines.push_back({"", knee, false});
+    return lines;
+  }
   of_case.rest += "  \u2013  " + knee;
   lines.push_back(of_case);
   return lines;

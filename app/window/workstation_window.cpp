@@ -122,6 +122,18 @@ void WorkstationWindow::add_actions() {
                 {"quit", [this] { return has_running_work(); }}});
   add_screen_actions();
   start_.add_actions(actions_);
+  actions_.add({"start.tour",
+                "Tour",
+                "Opens the built-in knee and leads through planning on it, in some minutes",
+                GLFW_KEY_F9,
+                0,
+                false,
+                [this] { return start_.shows_cases(); },
+                {},
+                [this] {
+                  plan_->begin_tour_when_opened();
+                  start_.open_built_in();
+                }});
   paint_.add_actions(actions_);
   for (const auto& mode : modes_) mode->add_actions(actions_);
   if (!options_.list_widgets) return;

@@ -35,17 +35,15 @@ std::string name_of(const std::string& dicom_name) {
 std::string date_in_words(const std::string& date) {
   const bool is_dicom =
       date.size() == 8 && std::all_of(date.begin(), date.end(), [](char c) { return c >= '0' && c <= '9'; });
+  // "00010101" and the like is what a program leaves that took the patient's data out.
+  constexpr std::string_view kEarliestYear = "1850";
+  if (date.substr(0, kEarliestYear.size()) < kEarliestYear) return "";
   return is_dicom ? date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6) : date;
 }
 
 std::string Identity::name_in_words() const { return name_of(patient_name); }
 
-std::string Identity::birth_date_in_words() const {
-  const std::string words = date_in_words(birth_date);
-  // "00010101" and the like is what a program leaves that took the patient's data out.
-  constexpr std::string_view kEarliestYear = "1850";
-  return words.substr(0, kEarliestYear.size()) < kEarliestYear ? std::string() : words;
-}
+std::string Identity::birth_date_in_words() const { return date_in_words(birth_date); }
 
 std::string Identity::in_words() const {
   std::string words;

@@ -109,11 +109,15 @@ Identities read_identities(std::span<const CaseRecord> records) {
 }
 
 void write_cases_json(const std::filesystem::path& file, std::span<const CaseRecord> records,
-                      const Identities* identities) {
+                      const Identities* identities, const PlanVerdicts& verdicts) {
   nlohmann::ordered_json document = {{"format", "arthronaut.cases"}, {"version", 1}};
   document["cases"] = nlohmann::ordered_json::array();
   for (const CaseRecord& record : records) {
     auto node = to_json(record);
+    if (const auto checked = verdicts.find(record.folder); checked != verdicts.end())
+      node["plan_verdict"] = {{"worst", to_text(checked->second.worst())},
+                              {"wrong", checked->second.wrong},
+                              {"look", checked->second.look}};
     const bool is_named = identities != nullptr && identities->contains(record.folder);
     if (const auto* found = is_named ? &identities->at(record.folder) : nullptr)
       node["identity"] = {{"patient_name", found->patient_name},

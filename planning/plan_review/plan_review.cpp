@@ -1,5 +1,8 @@
 #include "planning/plan_review/plan_review.h"
 
+#include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include "planning/norms/insertion_norms.h"
@@ -86,7 +89,24 @@ std::vector<tunnels::PlanCheck> checks_of(const tunnels::TunnelKey& key, const M
   return checks;
 }
 
-CaseReview::CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, ProposedBone>& by_shape) {
+std::vector<tunnels::PlanCheck> as_side_is_doubted(std::vector<tunnels::PlanCheck> checks,
+                                                   const std::string& side_doubt) {
+  // What no axis that tells lateral from medial, and no landmark proposed by the side, has a part in.
+  constexpr std::array<std::string_view, 5> kOfNoSide = {"Length", "Wall", "Diameter", "Opening",
+                                                         "Between the tunnels"};
+  if (side_doubt.empty()) return checks;
+  for (tunnels::PlanCheck& check : checks)
+    if (check.verdict == tunnels::PlanCheck::Verdict::Fine &&
+        std::ranges::find(kOfNoSide, check.name) == kOfNoSide.end())
+      check = {.verdict = tunnels::PlanCheck::Verdict::NotChecked,
+               .name = check.name,
+               .text = "not checked: the side is in doubt"};
+  return checks;
+}
+
+CaseReview::CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, ProposedBone>& by_shape,
+                       std::string side_doubt)
+    : side_doubt_(std::move(side_doubt)) {
   knee_.is_of_two_frames = knee.is_of_two_frames;
   for (const auto& [kind, bone] : knee.bones) {
     if (bone.mesh.empty()) continue;
@@ -112,7 +132,8 @@ CaseReview::CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, 
 
 std::vector<tunnels::PlanCheck> CaseReview::checks(const tunnels::TunnelKey& key) const {
   if (!has_bone(key.bone)) return {};
-  return checks_of(key, planned_, bone(key.bone).surroundings, knee_, landmark_check(key.bone));
+  return as_side_is_doubted(
+      checks_of(key, planned_, bone(key.bone).surroundings, knee_, landmark_check(key.bone)), side_doubt_);
 }
 
 }  // namespace arthronaut::plan_review

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "planning/cases/case.h"
@@ -58,13 +59,19 @@ using MeasuredPlan = std::map<tunnels::TunnelKey, MeasuredTunnel>;
                                                         const tunnels::KneeSurroundings& knee,
                                                         const tunnels::PlanCheck& of_landmarks);
 
+// The same while the side of the knee is in doubt, for a reason that is not empty: what is fine on a knee of
+// that side alone, as an entry on the lateral wall, is not checked. What is not fine stays so.
+[[nodiscard]] std::vector<tunnels::PlanCheck> as_side_is_doubted(std::vector<tunnels::PlanCheck> checks,
+                                                                 const std::string& side_doubt);
+
 // A case that is only looked at.
 class CaseReview {
  public:
   // Takes the landmarks as the case has them: what they don't give is not checked. Half a second a bone.
   // by_shape: what propose_landmarks() gave of these bones; of a bone that is not in it no landmark is
-  // checked.
-  explicit CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, ProposedBone>& by_shape = {});
+  // checked. side_doubt: tunnel_verdict.h; the checks are as it leaves them.
+  explicit CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, ProposedBone>& by_shape = {},
+                      std::string side_doubt = {});
 
   [[nodiscard]] bool has_bone(bones::BoneKind kind) const { return bones_.contains(kind); }
   // Precondition: has_bone(kind).
@@ -83,6 +90,7 @@ class CaseReview {
   std::map<bones::BoneKind, tunnels::PlanCheck> landmark_checks_;
   MeasuredPlan planned_;
   tunnels::KneeSurroundings knee_;
+  std::string side_doubt_;
 };
 
 }  // namespace arthronaut::plan_review

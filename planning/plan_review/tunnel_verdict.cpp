@@ -17,6 +17,21 @@ KnownLandmarks known_of(const cases::Case& knee, bones::BoneKind kind) {
           states == knee.landmark_states.end() ? landmarks::LandmarkStates{} : states->second};
 }
 
+bool contradicts_side(const cases::BoneDoubt& doubt) {
+  const auto* side = std::get_if<cases::SideDoubt>(&doubt);
+  return side != nullptr && side->is_open();
+}
+
+TunnelVerdict verdict_but_side(bones::BoneKind bone, const std::vector<tunnels::PlanCheck>& checks,
+                               const cases::BoneDoubts& doubts, const std::string& grid_doubt) {
+  TunnelVerdict verdict{.wrong = tunnels::wrong_in_words(checks)};
+  for (const std::string& doubt : doubts_but_side(doubts, bone)) verdict.look.push_back("Bone: " + doubt);
+  if (!grid_doubt.empty()) verdict.look.push_back("Grid: " + grid_doubt);
+  for (const tunnels::PlanCheck& check : checks)
+    if (check.verdict == Verdict::Look) verdict.look.push_back(check.name + ": " + check.text);
+  return verdict;
+}
+
 }  // namespace
 
 Verdict TunnelVerdict::worst() const {
@@ -32,14 +47,37 @@ std::string TunnelVerdict::in_short() const {
   return (is_wrong() ? wrong : look).front() + (others.empty() ? "" : " (and " + others + ")");
 }
 
-TunnelVerdict verdict_of(const std::vector<tunnels::PlanCheck>& checks,
-                         const std::vector<cases::BoneDoubt>& bone_doubts, const std::string& grid_doubt) {
-  TunnelVerdict verdict{.wrong = tunnels::wrong_in_words(checks)};
-  for (const cases::BoneDoubt& doubt : bone_doubts) verdict.look.push_back("Bone: " + words_of(doubt));
-  if (!grid_doubt.empty()) verdict.look.push_back("Grid: " + grid_doubt);
-  for (const tunnels::PlanCheck& check : checks)
-    if (check.verdict == Verdict::Look) verdict.look.push_back(check.name + ": " + check.text);
+TunnelVerdict verdict_of(bones::BoneKind bone, const std::vector<tunnels::PlanCheck>& checks,
+                         const cases::BoneDoubts& doubts, const std::string& grid_doubt) {
+  TunnelVerdict verdict = verdict_but_side(bone, checks, doubts, grid_doubt);
+  if (const std::string side = side_doubt(doubts); !side.empty())
+    verdict.wrong.insert(verdict.wrong.begin(), "Side: " + side);
   return verdict;
+}
+
+CheckedPlan checks_of_plan(const CaseReview& review) {
+  CheckedPlan checks;
+  for (const auto& [key, measured] : review.tunnels()) checks[key] = review.checks(key);
+  return checks;
+}
+
+TunnelVerdict verdict_of_plan(const cases::Case& knee, const CheckedPlan& checks,
+                              const cases::BoneDoubts& doubts) {
+  TunnelVerdict plan;
+  if (knee.plan.tunnels.empty()) return plan;
+  if (const std::string side = side_doubt(doubts); !side.empty()) plan.wrong.push_back("Side: " + side);
+  for (const auto& [key, planned] : knee.plan.tunnels) {
+    const std::string name = tunnels::name_of(key) + ": ";
+    if (const cases::PlanFit fit = cases::plan_fit(knee, key); !fit.is_valid())
+      plan.wrong.push_back(name + "Bone: " + fit.reason);
+    const auto checked = checks.find(key);
+    if (checked == checks.end()) continue;
+    const TunnelVerdict tunnel =
+        verdict_but_side(key.bone, checked->second, doubts, grid_doubt(knee, key.bone));
+    for (const std::string& wrong : tunnel.wrong) plan.wrong.push_back(name + wrong);
+    for (const std::string& look : tunnel.look) plan.look.push_back(name + look);
+  }
+  return plan;
 }
 
 landmarks::GridState grid_state(const cases::Case& knee, bones::BoneKind kind) {
@@ -55,9 +93,16 @@ std::string grid_doubt(const cases::Case& knee, bones::BoneKind kind) {
 std::string side_doubt(const cases::BoneDoubts& doubts) {
   for (const auto& [bone, of_bone] : doubts)
     for (const cases::BoneDoubt& doubt : of_bone)
-      if (const auto* side = std::get_if<cases::SideDoubt>(&doubt); side != nullptr && side->is_open())
-        return side->words();
+      if (contradicts_side(doubt)) return words_of(doubt);
   return "";
+}
+
+std::vector<std::string> doubts_but_side(const cases::BoneDoubts& doubts, bones::BoneKind bone) {
+  std::vector<std::string> others;
+  if (const auto of_bone = doubts.find(bone); of_bone != doubts.end())
+    for (const cases::BoneDoubt& doubt : of_bone->second)
+      if (!contradicts_side(doubt)) others.push_back(words_of(doubt));
+  return others;
 }
 
 }  // namespace arthronaut::plan_review

@@ -8,6 +8,7 @@
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/landmarks/grid_landmarks.h"
+#include "planning/plan_review/plan_review.h"
 #include "planning/tunnels/plan_checks.h"
 
 namespace arthronaut::plan_review {
@@ -26,10 +27,19 @@ struct TunnelVerdict {
   [[nodiscard]] std::string in_short() const;
 };
 
-// bone_doubts: of its bone. grid_doubt: see below.
-[[nodiscard]] TunnelVerdict verdict_of(const std::vector<tunnels::PlanCheck>& checks,
-                                       const std::vector<cases::BoneDoubt>& bone_doubts,
-                                       const std::string& grid_doubt);
+// Of a tunnel of that bone: a side in doubt, whichever bone witnesses it, is wrong for both; what else is
+// doubted of the bone is to be looked at. grid_doubt: see below.
+[[nodiscard]] TunnelVerdict verdict_of(bones::BoneKind bone, const std::vector<tunnels::PlanCheck>& checks,
+                                       const cases::BoneDoubts& doubts, const std::string& grid_doubt);
+
+// Of every planned tunnel on a bone that is there, the checks.
+using CheckedPlan = std::map<tunnels::TunnelKey, std::vector<tunnels::PlanCheck>>;
+[[nodiscard]] CheckedPlan checks_of_plan(const CaseReview& review);
+// Of a whole plan, also as to the surface and the side that it was planned on: "femur: Wall: ...", and the
+// side, which is the knee's, once and first. A missing grid is to be looked at here. Fine without a plan,
+// which says nothing.
+[[nodiscard]] TunnelVerdict verdict_of_plan(const cases::Case& knee, const CheckedPlan& checks,
+                                            const cases::BoneDoubts& doubts);
 
 // Of the grid of a case's bone: how well it is looked after, and what speaks against it, in words that follow
 // "Grid: "; empty where all that it follows from is confirmed.
@@ -37,5 +47,7 @@ struct TunnelVerdict {
 [[nodiscard]] std::string grid_doubt(const cases::Case& knee, bones::BoneKind kind);
 // The first of the doubts by which the bones are of the other knee than their case; empty where none is.
 [[nodiscard]] std::string side_doubt(const cases::BoneDoubts& doubts);
+// What else is doubted of that bone, a sentence each.
+[[nodiscard]] std::vector<std::string> doubts_but_side(const cases::BoneDoubts& doubts, bones::BoneKind bone);
 
 }  // namespace arthronaut::plan_review

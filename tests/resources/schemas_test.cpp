@@ -279,7 +279,8 @@ TEST_F(Schemas, DescribeTheListOfCases) {
   records[2].problem = "case.json: broken";
   const library::Identities named{{records[0].folder, {"Muster^Anna", "4711", "19900131"}}};
   for (const library::Identities* identities : {static_cast<const library::Identities*>(nullptr), &named}) {
-    library::write_cases_json(file, records, identities);
+    library::write_cases_json(file, records, identities,
+                              {{records[0].folder, {.wrong = {"femur: Wall: 0.4 mm"}, .look = {}}}});
     EXPECT_EQ(test::undescribed(read(file), "cases"), "");
   }
   json broken = read(file);

@@ -36,6 +36,30 @@ TEST_F(PlanHistoryTest, AMovementIsOneStep) {
   EXPECT_NEAR(model_.tunnel(BoneKind::Femur)->diameter_mm, start_mm_ + 1.5, 1e-12);
 }
 
+// A hand that pauses in a drag, and a machine that is too slow to follow it, end no step: letting go does.
+TEST_F(PlanHistoryTest, ADragIsOneStepHoweverLongItPauses) {
+  history_.apply(wider(0.5, false), 1.0);
+  history_.settle(10.0, true);
+  EXPECT_TRUE(history_.is_moving());
+  history_.apply(wider(0.5, true), 10.1);
+  history_.settle(20.0);
+  EXPECT_FALSE(history_.is_moving());
+  EXPECT_EQ(history_.step_count(), 1U);
+}
+
+// What a step is of: an undo that shows nothing on the bone that is looked at says where it was.
+TEST_F(PlanHistoryTest, AStepKnowsItsBone) {
+  history_.apply(wider(0.5, false), 1.0);
+  history_.settle_now();
+  landmarks::LandmarkStates states = model_.landmark_states(BoneKind::Tibia);
+  for (const auto& [name, at] : model_.landmarks(BoneKind::Tibia))
+    states[name] = landmarks::LandmarkState::Proposed;
+  history_.apply_landmarks(BoneKind::Tibia, model_.landmarks(BoneKind::Tibia), states, "Confirm", false, 2.0);
+  history_.settle_now();
+  EXPECT_EQ(history_.bones_of(0), std::set{BoneKind::Femur});
+  EXPECT_EQ(history_.bones_of(1), std::set{BoneKind::Tibia});
+}
+
 // A surgeon looks at another knee and comes back: what he did here can still be taken back. Not where the
 // case was changed elsewhere meanwhile: a step back from another state would be an invention.
 TEST_F(PlanHistoryTest, TheStepsAreThereAgainAfterAnotherCase) {

@@ -5,9 +5,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case_lock.h"
 #include "planning/cases/identity.h"
 #include "planning/files/atomic_file.h"
+#include "planning/phantom/phantom_case.h"
 #include "tests/app/command_line/program.h"
 #include "tests/planning/library/made_case.h"
 #include "tests/temporary_folder.h"
@@ -39,6 +41,21 @@ class CasesCommand : public ::testing::Test {
   const test::TemporaryFolder folder_;
   const fs::path a_ = folder_ / "knees" / "A.arthro", b_ = folder_ / "knees" / "deep" / "B.arthro";
 };
+
+// Whoever lists cases reads of their plans what the window's list shows.
+TEST_F(CasesCommand, SaysWhatSpeaksAgainstAPlan) {
+  const fs::path knee = folder_ / "Knee.arthro";
+  cases::save_case(knee, phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Gamma"));
+  cases::save_bone_doubts(knee, {{bones::BoneKind::Tibia,
+                                  {"the fibula lies on the left of the tibia, as in a left knee, but the "
+                                   "side is right: check the side"}}});
+  EXPECT_THAT(cases({"--add", knee}).output, HasSubstr("femur and tibia planned; not checked yet"));
+  EXPECT_THAT(cases({"--add", knee, "--check"}).output,
+              HasSubstr("femur and tibia planned; wrong: Side: the fibula lies on the left"));
+  const auto listed = nlohmann::json::parse(cases({"--json"}).output).at("cases").at(0);
+  EXPECT_EQ(listed.at("plan_verdict").at("worst"), "wrong") << "and is not made again";
+  EXPECT_THAT(listed.at("plan_verdict").at("wrong").dump(), HasSubstr("check the side"));
+}
 
 TEST_F(CasesCommand, FindsListsAndFilters) {
   EXPECT_THAT(cases({}).output, HasSubstr("No case"));

@@ -331,6 +331,18 @@ TEST_F(PlanCommand, AWrongPlanIsToldHoweverItWasMade) {
   EXPECT_THAT(exported.output, HasSubstr("Wrong, and exported all the same: tibia: "));
 }
 
+// A plan of the other knee leaves the case as one: it can be mended by nobody who gets it.
+TEST_F(PlanCommand, APlanOfTheOtherKneeIsExportedAsUnreliable) {
+  cases::save_bone_doubts(folder_ / "knee.arthro",
+                          {{bones::BoneKind::Tibia,
+                            {"the fibula lies on the left of the tibia, as in a left knee, but the side is "
+                             "right: check the side"}}});
+  const auto exported = run({"plan", "--export", folder_ / "out"});
+  EXPECT_EQ(exported.exit_code, 4);
+  EXPECT_THAT(exported.output, HasSubstr("Wrong, and exported all the same: Side: the fibula lies on the"));
+  EXPECT_THAT(exported.errors, HasSubstr("check the side"));
+}
+
 // An entry that lies off the bone is moved onto it, and whoever typed it is told how far that took the axis.
 TEST_F(PlanCommand, AnEntryThatIsMovedOntoTheBoneIsTold) {
   const Eigen::Vector3d on_bone = knee_.plan.tunnels.at(bones::BoneKind::Tibia).entry_mm;

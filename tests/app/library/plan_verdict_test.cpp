@@ -17,7 +17,7 @@ TEST(PlanVerdict, SaysWhatIsWrongInThePlan) {
   cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3}), "Knee");
   cases::save_case(folder.path(), knee);
   EXPECT_FALSE(plan_verdict(folder.path()));  // nobody has looked
-  const PlanVerdict good = judge_plan(knee);
+  const plan_review::TunnelVerdict good = judge_plan(knee, {});
   EXPECT_THAT(good.wrong, testing::IsEmpty());
   keep_plan_verdict(folder.path(), good);
   ASSERT_TRUE(plan_verdict(folder.path()));
@@ -26,11 +26,12 @@ TEST(PlanVerdict, SaysWhatIsWrongInThePlan) {
   // Out of the bone's side: along the wall instead of into it.
   tunnels::Tunnel& femoral = knee.plan.tunnels.at({bones::BoneKind::Femur});
   femoral.direction = femoral.direction.cross(Eigen::Vector3d::UnitZ()).normalized();
-  const PlanVerdict bad = judge_plan(knee);
+  const plan_review::TunnelVerdict bad = judge_plan(knee, {});
   ASSERT_THAT(bad.wrong, testing::Not(testing::IsEmpty()));
   EXPECT_THAT(bad.wrong.front(), testing::StartsWith("femur: "));
   keep_plan_verdict(folder.path(), bad);
   EXPECT_EQ(plan_verdict(folder.path())->wrong, bad.wrong);
+  EXPECT_EQ(plan_verdict(folder.path())->look, bad.look);
 
   // Another plan since: what was found is of the one before.
   cases::save_case(folder.path(), knee);
@@ -59,7 +60,7 @@ cases::Case turned_without_landmarks() {
 // The list of cases and Plan go by the same landmarks: by those that are proposed where the case has none.
 TEST(PlanVerdict, IsThatOfPlanWhereTheCaseHasNoLandmarks) {
   const cases::Case good = turned_without_landmarks();
-  EXPECT_THAT(judge_plan(good).wrong, testing::IsEmpty());
+  EXPECT_THAT(judge_plan(good, {}).wrong, testing::IsEmpty());
   cases::Case flipped = good;  // out of the medial side and the tibia's back
   for (auto& [key, tunnel] : flipped.plan.tunnels) {
     tunnel.direction.x() = -tunnel.direction.x();
@@ -71,16 +72,34 @@ TEST(PlanVerdict, IsThatOfPlanWhereTheCaseHasNoLandmarks) {
     for (const auto& [key, tunnel] : knee.plan.tunnels)
       for (const std::string& words : tunnels::wrong_in_words(plan.checks(key)))
         wrong.push_back(tunnels::name_of(key) + ": " + words);
-    EXPECT_EQ(judge_plan(knee).wrong, wrong);
+    EXPECT_EQ(judge_plan(knee, {}).wrong, wrong);
   }
-  EXPECT_THAT(judge_plan(flipped).wrong, testing::Not(testing::IsEmpty()));
+  EXPECT_THAT(judge_plan(flipped, {}).wrong, testing::Not(testing::IsEmpty()));
 }
 
 // What was planned on another surface of the bone is wrong in Plan, whatever else the checks say.
 TEST(PlanVerdict, SaysThatAPlanIsOfAnotherSurface) {
   cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3}), "Knee");
   knee.plan.mesh_sha256[{bones::BoneKind::Tibia}] = std::string(64, 'a');
-  EXPECT_THAT(judge_plan(knee).wrong, testing::ElementsAre(testing::StartsWith("tibia: Bone: ")));
+  EXPECT_THAT(judge_plan(knee, {}).wrong, testing::ElementsAre(testing::StartsWith("tibia: Bone: ")));
+}
+
+// Nothing that is to be looked at goes by as a plan that is fine: landmarks that nobody confirmed, the side.
+TEST(PlanVerdict, IsNotFineWhileAnythingIsToBeLookedAt) {
+  library::CaseRecord record;
+  record.bones = record.planned = {bones::BoneKind::Femur, bones::BoneKind::Tibia};
+  EXPECT_EQ(plan_in_words(record, nullptr), "femur and tibia planned; not checked yet");
+  const auto unconfirmed = judge_plan(turned_without_landmarks(), {});
+  EXPECT_FALSE(unconfirmed.is_fine());
+  EXPECT_THAT(plan_in_words(record, &unconfirmed), testing::HasSubstr("femur and tibia planned; look: "));
+  const cases::BoneDoubts doubts{{bones::BoneKind::Tibia,
+                                  {"the fibula lies on the left of the tibia, as in a left knee, but the "
+                                   "side is right: check the side"}}};
+  const auto other_side = judge_plan(turned_without_landmarks(), doubts);
+  EXPECT_THAT(plan_in_words(record, &other_side),
+              testing::HasSubstr("femur and tibia planned; wrong: Side: the fibula lies on the left"));
+  const plan_review::TunnelVerdict fine;
+  EXPECT_EQ(plan_in_words(record, &fine), "femur and tibia planned");
 }
 
 }  // namespace

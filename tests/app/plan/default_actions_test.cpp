@@ -10,6 +10,7 @@
 
 #include "app/plan/plan_view.h"
 #include "app/scene/offscreen_context.h"
+#include "planning/cases/bone_doubts.h"
 #include "planning/files/atomic_file.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/phantom/phantom_knee.h"
@@ -63,6 +64,38 @@ TEST_F(DefaultActions, ThePlanIsAsItWasUntilItIsMade) {
   EXPECT_EQ(model_.tunnel(BoneKind::Femur)->entry_mm, model_.default_tunnel(BoneKind::Femur).tunnel.entry_mm);
   action("plan.undo").run();
   EXPECT_EQ(model_.tunnel(BoneKind::Femur)->entry_mm, before) << "one step";
+}
+
+// What is of the other knee is no proposal: which knee it is is asked first, and the answer makes way.
+TEST_F(DefaultActions, WhileTheSideIsInDoubtItIsAskedFirst) {
+  const Eigen::Vector3d before = model_.tunnel(BoneKind::Femur)->entry_mm;
+  cases::save_bone_doubts(folder_.path(),
+                          {{BoneKind::Tibia,
+                            {"the fibula lies on the left of the tibia, as in a left knee, but the side is "
+                             "right: check the side"}}});
+  view_->case_opened({&model_, folder_.path(), ""});
+  action("plan.default").run();
+  EXPECT_FALSE(view_->is_busy());
+  EXPECT_EQ(model_.tunnel(BoneKind::Femur)->entry_mm, before);
+  ASSERT_TRUE(action("plan.left_knee").can_run()) << "the question stands";
+  cases::save_bone_doubts(folder_.path(), {});
+  action("plan.right_knee").run();
+  action("plan.default").run();
+  EXPECT_TRUE(view_->is_busy());
+  settle();
+}
+
+// An undo of what was done on the other bone turns to that bone.
+TEST_F(DefaultActions, UndoTurnsToTheBoneOfItsStep) {
+  const auto tibial_mm = [&] { return model_.tunnel(BoneKind::Tibia)->diameter_mm; };
+  const double femur_before = femoral_mm(), tibia_before = tibial_mm();
+  action("plan.wider").run();
+  action("plan.bone").run();
+  action("plan.undo").run();
+  EXPECT_EQ(femoral_mm(), femur_before);
+  action("plan.wider").run();
+  EXPECT_GT(femoral_mm(), femur_before) << "the femur is the one that is worked on again";
+  EXPECT_EQ(tibial_mm(), tibia_before);
 }
 
 // Esc, another mode, and a hand that was quicker: nothing of it comes into the plan.

@@ -40,13 +40,14 @@ TEST(WhoseKnee, OnlyWhatIsKnownHasALine) {
   EXPECT_EQ(alone[0].may_be_cut + "|" + alone[0].rest, "Knee 2026-11-24| 2");
   EXPECT_EQ(alone[1].may_be_cut + "|" + alone[1].rest, "|right knee");
   const auto lines = whose_knee(cases::Identity{"", "", "19900131"}, "Knee", bones::Side::Right);
-  ASSERT_EQ(lines.size(), 2U);
+  ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[0].may_be_cut, "");
   EXPECT_EQ(lines[0].rest, "1990-01-31");
   const auto pseudonym = whose_knee(cases::Identity{"STS_028", "STS_028", ""}, "Knee", bones::Side::Left);
-  ASSERT_EQ(pseudonym.size(), 2U);
+  ASSERT_EQ(pseudonym.size(), 3U) << "name and side each have a line's room";
   EXPECT_EQ(pseudonym[0].may_be_cut, "STS_028");
   EXPECT_EQ(pseudonym[1].may_be_cut, "Knee");
+  EXPECT_EQ(pseudonym[2].rest, "left knee");
 }
 
 }  // namespace

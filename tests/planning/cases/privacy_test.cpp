@@ -121,6 +121,7 @@ TEST_F(Privacy, NobodyWasBornInTheYearOne) {
   EXPECT_EQ((Identity{"", "4711", "00010101"}.in_words()), "4711");
   EXPECT_EQ(date_in_words("20260131"), "2026-01-31");
   EXPECT_EQ(date_in_words("2026-013"), "2026-013");
+  EXPECT_EQ(date_in_words("00010101"), "") << "nobody was imaged then";
 }
 
 TEST_F(Privacy, Hazard19IdentityIsPrivateEvenInAnOpenFolder) {
