@@ -12,10 +12,12 @@ namespace {
 void say_registration(const Context& context, const theatre::NavigationSummary& summary) {
   if (!summary.registration || !summary.registration->has_pose) return context.say("registration: none");
   const registration::RegistrationSummary& r = *summary.registration;
-  context.say(
-      format("registration (%s): rms %.2f mm over %d points, predicted error %.2f mm at the target, %s",
-             summary.registration_was_found ? "found" : "given", r.rms_mm, r.point_count, r.predicted_tre_mm,
-             r.reliable ? "reliable" : "not reliable"));
+  // Given ones may not say of how many points they are.
+  const std::string points =
+      r.point_count > 0 ? format("rms %.2f mm over %d points, ", r.rms_mm, r.point_count) : "";
+  context.say(format("registration (%s): %spredicted error %.2f mm at the target, %s",
+                     summary.registration_was_found ? "found" : "given", points.c_str(), r.predicted_tre_mm,
+                     r.reliable ? "reliable" : "not reliable"));
   for (const std::string& assumption : r.assumptions) context.say("  " + assumption);
 }
 

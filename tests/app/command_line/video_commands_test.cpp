@@ -315,7 +315,9 @@ TEST_F(VideoCommands, Hazard25LiveNoEarlierRegistrationGuidesUnnamed) {
   registration::RegistrationSummary found;
   found.has_pose = found.reliable = true;
   found.reasons.clear();
-  found.covariance.setIdentity();
+  found.covariance.diagonal().head<3>().setConstant(0.01);
+  found.marker_from_bone.translation_mm =
+      -cases::load_case(knee).bones.at(bones::BoneKind::Femur).mesh.vertices_mm.front();
   registration::Provenance of;
   of.source = sources::SourceKind::Live;
   of.world_marker_id = 0;
@@ -337,6 +339,17 @@ TEST_F(VideoCommands, Hazard25LiveNoEarlierRegistrationGuidesUnnamed) {
   const auto [shown, recording] = navigate(folder_ / "clip.mkv");
   EXPECT_THAT(shown, HasSubstr("registration: of session " + by_name.filename().string()));
   EXPECT_TRUE(stands_in(recording));
+
+  // Reliable by its own word alone: neither named nor out of the case does it guide.
+  found.marker_from_bone.translation_mm.x() += 650;
+  registration::write_registration_file(file, found);
+  const std::string far_named = navigate(folder_ / "clip.mkv", {"--registration", file}).first;
+  EXPECT_THAT(far_named, HasSubstr("not said of which camera and marker it is"));
+  EXPECT_THAT(far_named, HasSubstr("mm away from the marker that sits on it"));
+  EXPECT_THAT(far_named, Not(HasSubstr(", reliable")));
+  for (const std::filesystem::path& folder : cases::session_folders(knee))
+    registration::write_registration_file(folder / "registration.json", found, &of);
+  EXPECT_THAT(navigate(folder_ / "clip.mkv").first, HasSubstr("is not used: it puts the femur"));
 }
 
 }  // namespace
