@@ -76,9 +76,17 @@ struct VerdictEvidence {
   double lead = 0;
   // Over the strokes' best pose on the mirror image of the bone, likewise; empty where that was not tried.
   std::optional<double> side_lead = std::nullopt;
+  // At the target, one sigma, as the strokes hold it: less what an error of their scale may add.
+  double error_by_strokes_mm = 0;
   // That the pose is the right one, by all of these and the predicted error; and how much it takes to rely on
   // it.
   double log_odds = 0, needed_log_odds = 0;
+};
+
+// How large the strokes are beside the bone, whatever even layer lies on that: 1.03 is 3 % too large. One
+// sigma.
+struct StrokeScale {
+  double ratio = 1, sigma = 0;
 };
 
 struct RegistrationSummary {
@@ -94,7 +102,7 @@ struct RegistrationSummary {
   double rms_mm = 0;               // of the inliers
   double inlier_fraction = 0;
   int point_count = 0;
-  double predicted_tre_mm = 0;  // one sigma, at the target
+  double predicted_tre_mm = 0;  // one sigma, at the target; with what an error of the strokes' scale may add
   // Signed distance of each curve point to what was touched, in the order given: to the bone's mesh, and on
   // cartilage whose thickness was solved, to a surface that far off the mesh. On cartilage that was left out,
   // to the mesh.
@@ -109,6 +117,7 @@ struct RegistrationSummary {
   // What the residuals of different stretches of stroke share where they cross: the shape's own miss, since
   // errors of the tip differ from stretch to stretch.
   double shared_misfit_mm = 0;
+  StrokeScale stroke_scale;
   VerdictEvidence evidence;
 };
 

@@ -63,6 +63,10 @@ RegistrationSummary summary_from(const files::JsonObject& document) {
   if (document.has("runner_up_ratio")) summary.runner_up_ratio = document.number("runner_up_ratio");
   if (document.has("misfit_mm")) summary.misfit_mm = document.number("misfit_mm");
   if (document.has("shared_misfit_mm")) summary.shared_misfit_mm = document.number("shared_misfit_mm");
+  if (document.has("stroke_scale")) {
+    const files::JsonObject scale = document.object("stroke_scale");
+    summary.stroke_scale = {scale.number("ratio"), scale.number("sigma")};
+  }
   if (document.has("assumptions")) summary.assumptions = document.texts("assumptions");
   read_cartilage(document, summary);
   if (document.has("covariance")) {
@@ -171,6 +175,9 @@ nlohmann::ordered_json to_json(const RegistrationSummary& registration, const Pr
   document["runner_up_ratio"] = registration.runner_up_ratio;
   document["misfit_mm"] = registration.misfit_mm;
   document["shared_misfit_mm"] = registration.shared_misfit_mm;
+  if (registration.has_pose)
+    document["stroke_scale"] = {{"ratio", registration.stroke_scale.ratio},
+                                {"sigma", registration.stroke_scale.sigma}};
   document["assumptions"] = registration.assumptions;
   document["cartilage_use"] = to_text(registration.cartilage_use);
   if (registration.cartilage_use == CartilageUse::Solved)

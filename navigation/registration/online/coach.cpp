@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "navigation/registration/verdict/confidence.h"
+#include "navigation/registration/verdict/held_by_strokes.h"
 #include "planning/files/format.h"
 
 namespace arthronaut::registration {

@@ -179,8 +179,9 @@ void OnlineRegistration::State::solve() {
       result.registration.reasons = {"no pose was found yet that puts the strokes on the bone"};
     return;
   }
-  result.bone_is_in_doubt =
-      touched.length_mm >= kMinLength_mm && share_of_bearable_misfit(result.registration, white_noise_mm) > 1;
+  result.bone_is_in_doubt = touched.length_mm >= kMinLength_mm &&
+                            (share_of_bearable_misfit(result.registration, white_noise_mm) > 1 ||
+                             differ_in_size(result.registration.stroke_scale));
   const Eigen::Matrix3d turn = result.registration.covariance.bottomRightCorner<3, 3>();
   Eigen::Matrix3d across = Eigen::Matrix3d::Identity();
   if (options.direction_in_bone) across = geometry::cross_matrix(options.direction_in_bone->normalized());

@@ -1,11 +1,11 @@
 #include "navigation/registration/verdict/confidence.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "navigation/registration/search/shaft_collision.h"
+#include "navigation/registration/verdict/held_by_strokes.h"
 #include "planning/files/format.h"
 #include "planning/geometry/quantile.h"
 
@@ -13,18 +13,8 @@ namespace arthronaut::registration {
 
 using geometry::cross_matrix;
 using geometry::Matrix6d;
-using geometry::Vector6d;
 
 namespace {
-
-constexpr double kMeasuredShare = 0.7;
-constexpr double kBoneSize_mm = 30, kBoneTurn_rad = 3;
-
-Vector6d row_of(const Eigen::Vector3d& gradient, const Eigen::Vector3d& arm_mm) {
-  Vector6d row;
-  row << gradient, arm_mm.cross(gradient);
-  return row;
-}
 
 // The covariance of marker_from_bone's body twist from that of the bone frame's twist about the pivot.
 Matrix6d about_origin(const Matrix6d& about_pivot, const Eigen::Vector3d& pivot_mm) {
@@ -129,6 +119,13 @@ VerdictEvidence evidence_for(const RegistrationSummary& summary, const TouchedCu
   return evidence;
 }
 
+std::string reason_against_size(const StrokeScale& scale) {
+  return files::format(
+      "the strokes are %.1f %% %s than the bone: the size of the markers, the probe's tip or the camera's "
+      "calibration is wrong, or it is another bone",
+      100 * std::abs(scale.ratio - 1), scale.ratio > 1 ? "larger" : "smaller");
+}
+
 std::string reason_against_odds(const RegistrationSummary& summary) {
   return files::format(
       "strokes that miss the surface by %.2f mm fit another bone too: draw more of them, "
@@ -150,6 +147,7 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, const Touche
     reasons.push_back(files::format("too little was touched: draw %.0f mm more of stroke",
                                     std::ceil(kMinLength_mm - touched.length_mm)));
   }
+  if (differ_in_size(summary.stroke_scale)) reasons.push_back(reason_against_size(summary.stroke_scale));
   if (evidence.excess_misfit_mm > evidence.bearable_excess_mm) {
     reasons.push_back(files::format(
         "the points miss the surface by %.2f mm, more than the tip's noise of %.2f mm explains: "
@@ -178,52 +176,15 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, const Touche
 
 }  // namespace
 
-Matrix6d covariance_about(const RefinedPose& pose, const WeightedPoints& points,
-                          const SurfaceIndex::Data& bone, const MarkerPrior& prior,
-                          const Eigen::Vector3d& pivot_mm) {
-  Matrix6d held = Matrix6d::Zero(), pull = Matrix6d::Zero();
-  double curvature = 0, information = 1e-9;
-  Vector6d stretch_pull = Vector6d::Zero();
-  int stretch_count = 0;
-  for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
-    const Eigen::Vector3d p = pose.bone_from_marker * points.positions_mm[i];
-    const Vector6d row = row_of(bone.field.sample(p).gradient, p - pivot_mm);
-    const ResidualEvidence evidence = evidence_of(pose.residuals_mm[i], pose.model);
-    held += points.weights[i] * evidence.information * row * row.transpose();
-    curvature += points.weights[i] * evidence.curvature;
-    information += points.weights[i] * evidence.information;
-    stretch_pull += points.weights[i] * evidence.slope * row;
-    if (i + 1 == points.positions_mm.size() || points.stretches[i + 1] != points.stretches[i]) {
-      pull += stretch_pull * stretch_pull.transpose();
-      stretch_pull.setZero();
-      ++stretch_count;
-    }
-  }
-  // Six parameters were fitted to the stretches.
-  pull *= stretch_count / std::max(stretch_count - 6.0, 1.0);
-  // Few stretches measure the scatter poorly: a part of it is what the noise model expects.
-  pull = kMeasuredShare * pull + (1 - kMeasuredShare) * kCorrelationLength_mm * held;
-  // Where it is not known which explanation holds, a residual says less than if it were.
-  held *= std::clamp(curvature / information, 0.2, 1.0);
-
-  const auto add_knowledge = [&](const Vector6d& row, double sigma) {
-    const Matrix6d known = row * row.transpose() * (kCorrelationLength_mm / (sigma * sigma));
-    held += known;
-    pull += kCorrelationLength_mm * known;
-  };
-  if (prior.use) {
-    const Eigen::Vector3d& marker = pose.bone_from_marker.translation_mm;
-    add_knowledge(row_of(bone.field.sample(marker).gradient, marker - pivot_mm), prior.sigma_mm);
-  }
-  for (int k = 0; k < 6; ++k) add_knowledge(Vector6d::Unit(k), k < 3 ? kBoneSize_mm : kBoneTurn_rad);
-  const Matrix6d inverse = held.ldlt().solve(Matrix6d::Identity());
-  return inverse * pull * inverse;
-}
-
 double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented) {
   std::vector<double> noise_mm;
   for (const strokes::OrientedPoint& point : oriented) noise_mm.push_back(point.fit_rms_mm);
   return geometry::median(std::move(noise_mm), 0);
+}
+
+bool differ_in_size(const StrokeScale& scale) {
+  constexpr double kMostScaleError = 0.01, kScaleSigmas = 3;
+  return std::abs(scale.ratio - 1) > std::max(kMostScaleError, kScaleSigmas * scale.sigma);
 }
 
 double share_of_bearable_misfit(const RegistrationSummary& summary, double white_noise_mm) {
@@ -246,6 +207,12 @@ RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& po
       about_origin(covariance_about(best, touched.points, bone, pool.prior(), pivot), pivot) +
       touched.drift * touched.drift.transpose();
   const Eigen::Vector3d target = options.target_in_bone_mm.value_or(pivot);
+  // Which pose it is, the strokes alone say, right or wrong in size.
+  const double held_at_target_mm = predicted_error_mm(summary, target),
+               held_at_strokes_mm = predicted_error_mm(summary, pivot);
+  const SizeEstimate size = estimate_size(best, touched.points, bone, pool.prior(), pivot);
+  summary.stroke_scale = size.scale;
+  summary.covariance += about_origin(size.covariance(), pivot);
   summary.predicted_tre_mm = predicted_error_mm(summary, target);
   summary.runner_up_ratio = pool.runner_up()
                                 ? std::min(kNoRivalRatio, std::exp(pool.runner_up()->cost - best.cost))
@@ -264,11 +231,11 @@ RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& po
   const double lead =
       pool.runner_up() ? lead_of(best.cost, pool.runner_up()->cost, touched.points) : kLeadAlone;
   summary.evidence = evidence_for(summary, touched, lead);
-  summary.evidence.log_odds = log_odds_of(summary, summary.predicted_tre_mm);
-  const double error_at_strokes_mm = predicted_error_mm(summary, pivot);
-  summary.reasons =
-      doubts(summary, touched,
-             {error_at_strokes_mm, log_odds_of(summary, error_at_strokes_mm), (target - pivot).norm()});
+  summary.evidence.error_by_strokes_mm = held_at_target_mm;
+  summary.evidence.log_odds = log_odds_of(summary, held_at_target_mm);
+  summary.reasons = doubts(summary, touched,
+                           {predicted_error_mm(summary, pivot), log_odds_of(summary, held_at_strokes_mm),
+                            (target - pivot).norm()});
   if (!ShaftCollision(bone, touched.points)
            .is_possible(best.bone_from_marker.matrix().cast<float>(),
                         best.bone_from_marker.translation_mm.cast<float>())) {
@@ -285,7 +252,7 @@ void judge_odds(RegistrationSummary& summary, const std::optional<double>& side_
   const bool was_likely = evidence.log_odds >= evidence.needed_log_odds;
   evidence.side_lead = side_lead;
   evidence.needed_log_odds = needed_log_odds;
-  evidence.log_odds = log_odds_of(summary, summary.predicted_tre_mm);
+  evidence.log_odds = log_odds_of(summary, evidence.error_by_strokes_mm);
   if (!was_likely || evidence.log_odds >= needed_log_odds) return;
   summary.reliable = false;
   summary.reasons.push_back(reason_against_odds(summary));

@@ -44,12 +44,8 @@ void judge_odds(RegistrationSummary& summary, const std::optional<double>& side_
 // most. Above 1 it is another bone's surface.
 [[nodiscard]] double share_of_bearable_misfit(const RegistrationSummary& summary, double white_noise_mm);
 
-// Covariance of a twist of the bone frame about `pivot_mm` (bone frame). Robust ("sandwich"): the curvature
-// of the cost on both sides, and between them how much the pull of whole stretches of path scatters, which
-// holds correlated errors and whatever else the noise model leaves out. What nothing holds is off by
-// no more than the bone's own size.
-[[nodiscard]] geometry::Matrix6d covariance_about(const RefinedPose& pose, const WeightedPoints& points,
-                                                  const SurfaceIndex::Data& bone, const MarkerPrior& prior,
-                                                  const Eigen::Vector3d& pivot_mm);
+// The strokes are larger or smaller than the bone, by more than their errors explain and by more than does
+// not matter: what a marker of another size than stated does, or another bone. True is a reason of summarise.
+[[nodiscard]] bool differ_in_size(const StrokeScale& scale);
 
 }  // namespace arthronaut::registration

@@ -21,6 +21,7 @@ RegistrationSummary some_registration() {
       Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d(3, 2, 1).normalized())), {1.0 / 3, -2, 30}};
   summary.covariance = geometry::Matrix6d::Identity() / 7;
   summary.predicted_tre_mm = 1.0 / 3;
+  summary.stroke_scale = {1.0 / 3, 1.0 / 7};
   return summary;
 }
 
@@ -42,6 +43,8 @@ TEST(RegistrationFile, WhatItIsOfComesBack) {
   EXPECT_EQ(record.registration.marker_from_bone.translation_mm,
             some_registration().marker_from_bone.translation_mm);
   EXPECT_EQ(record.registration.covariance, some_registration().covariance);
+  EXPECT_EQ(record.registration.stroke_scale.ratio, some_registration().stroke_scale.ratio);
+  EXPECT_EQ(record.registration.stroke_scale.sigma, some_registration().stroke_scale.sigma);
   write_registration_file(folder / "plain.json", some_registration());
   EXPECT_FALSE(read_registration_record(folder / "plain.json").of) << "it does not say";
 }
