@@ -116,6 +116,11 @@ inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";   
 inline constexpr std::string_view kVideoStoppedEvent = "video stopped";          // text: why
 inline constexpr std::string_view kRecordingStoppedEvent = "recording stopped";  // text: why
 
+// A registration took effect: found here, or from elsewhere.
+[[nodiscard]] inline bool is_registration(const SessionEvent& event) {
+  return event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent;
+}
+
 // How much must stay free on the disk. A video fills disks, the rest of a session takes a megabyte a minute:
 // so the video stops first, and the record of poses and events goes on nearly to the end.
 struct DiskLimits {
