@@ -275,9 +275,7 @@ std::int64_t OperationRun::since_ns(std::int64_t captured_ns) const {
 
 std::string OperationRun::wrong_with_picture() const {
   const SourceTrouble trouble = live_.watch.trouble();
-  const bool shows_nothing = trouble == SourceTrouble::NoPicture || trouble == SourceTrouble::Plain ||
-                             trouble == SourceTrouble::Frozen;
-  return shows_nothing ? std::string(to_text(trouble)) : "";
+  return shows_nothing(trouble) ? std::string(to_text(trouble)) : "";
 }
 
 void OperationRun::apply(const operation::Command& given) {

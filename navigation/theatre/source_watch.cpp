@@ -8,9 +8,8 @@ namespace arthronaut::theatre {
 
 namespace {
 
-// Three pictures of a slow source (10 a second); half a second is what may pass until it is told. Of one that
-// is slower, and said to be, three of its own.
-constexpr std::int64_t kSilence_ns = 300'000'000, kLongestSilence_ns = 1'000'000'000;
+// Of a source that is slower, and said to be, three of its own pictures, up to so long.
+constexpr std::int64_t kLongestSilence_ns = 1'000'000'000;
 // What is over in a moment is on the screen long enough to be read.
 constexpr std::int64_t kReadable_ns = 2'000'000'000, kSaidAnew_ns = 1'000'000'000;
 // Between pictures; faster ones, and those that were older when they came than the next one let them get, are
@@ -32,6 +31,11 @@ std::string_view to_text(SourceTrouble trouble) {
                                          "slow pictures",
                                          "lost pictures"};
   return kNames[static_cast<std::size_t>(trouble)];
+}
+
+bool shows_nothing(SourceTrouble trouble) {
+  return trouble == SourceTrouble::NoPicture || trouble == SourceTrouble::Plain ||
+         trouble == SourceTrouble::Frozen || trouble == SourceTrouble::Torn;
 }
 
 SourceTrouble trouble_of(std::string_view words) {

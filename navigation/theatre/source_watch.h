@@ -18,6 +18,9 @@ namespace arthronaut::theatre {
 enum class SourceTrouble { None, NoPicture, Plain, Frozen, Torn, Repeated, Late, Slow, Lost };
 // "no picture", "plain picture", ...; empty for None.
 [[nodiscard]] std::string_view to_text(SourceTrouble trouble);
+// Nothing, or nothing of the knee, is seen in the pictures, or parts of two moments: what is said beside them
+// is said by no picture.
+[[nodiscard]] bool shows_nothing(SourceTrouble trouble);
 // What SourceWatch::words() tell of, as a record keeps them. A source's own words are of Lost.
 [[nodiscard]] SourceTrouble trouble_of(std::string_view words);
 
@@ -25,6 +28,9 @@ enum class SourceTrouble { None, NoPicture, Plain, Frozen, Torn, Repeated, Late,
 // picture guides, and what is young enough for a touch (see OperationRun::apply) is shown all the same.
 inline constexpr double kLateAfter_s = 0.1;
 [[nodiscard]] bool is_of_now(double age_s, SourceTrouble trouble, double late_after_s = kLateAfter_s);
+
+// Three pictures of a slow source (10 a second) without one are told of; half a second may pass until it is.
+inline constexpr std::int64_t kSilence_ns = 300'000'000;
 
 class SourceWatch {
  public:
