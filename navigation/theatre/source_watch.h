@@ -11,6 +11,7 @@
 #include <string>
 
 #include "navigation/pipeline/view_tracker.h"
+#include "navigation/tracker/pose_book.h"
 
 namespace arthronaut::theatre {
 
@@ -26,7 +27,8 @@ enum class SourceTrouble { None, NoPicture, Plain, Frozen, Torn, Repeated, Late,
 
 // Whether a live picture of this age may be shown, and told to others, as one of now. Of a slow source no
 // picture guides, and what is young enough for a touch (see OperationRun::apply) is shown all the same.
-inline constexpr double kLateAfter_s = 0.1;
+// The limit that an outside tracker's poses have, too.
+inline constexpr double kLateAfter_s = tracker::PoseBook::kMaxAge_s;
 [[nodiscard]] bool is_of_now(double age_s, SourceTrouble trouble, double late_after_s = kLateAfter_s);
 
 // Three pictures of a slow source (10 a second) without one are told of; half a second may pass until it is.
