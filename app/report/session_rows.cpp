@@ -116,7 +116,8 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
   for (const recording::SessionEvent& event : session.events()) {
     for (const PlanInForce& next : plans)
       if (next.event == &event) plan = &next.plan;
-    const bool ends = recording::is_registration(event) || event.kind == recording::kVoidEvent || event.kind == recording::kVerificationLostEvent;
+    const bool ends = recording::is_registration(event) || event.kind == recording::kVoidEvent ||
+                      event.kind == recording::kVerificationLostEvent;
     is_lost = event.kind == recording::kVerificationLostEvent || (is_lost && !ends);
     is_verified = event.kind == recording::kVerifiedEvent || (is_verified && !ends);
     was_verified = was_verified || is_verified;

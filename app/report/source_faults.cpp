@@ -22,7 +22,7 @@ std::vector<SourceFault> source_faults(const recording::RecordedSession& session
     const double now_s = time_s(session, event.timestamp_ns);
     if (event.kind == recording::kSourceEndedEvent) end_at(now_s);
     if (event.kind != recording::kSourceTroubleEvent) continue;
-    const SourceTrouble trouble = theatre::trouble_of(event.text);
+    const SourceTrouble trouble = theatre::trouble_in(event.text);
     if (goes_on && faults.back().trouble == trouble) continue;
     end_at(now_s);
     if (trouble == SourceTrouble::None) continue;

@@ -107,9 +107,10 @@ inline constexpr std::string_view kSaidTooEarlyEvent =
     "said too early";  // of a tunnel without a file of this record; text: "femur AM"
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier
 inline constexpr std::string_view kSourceEndedEvent = "source ended";
-inline constexpr std::string_view kSourceTroubleEvent = "source trouble";    // text: what; empty: it is over
-inline constexpr std::string_view kCommandRefusedEvent = "command refused";  // text: which, and why
-inline constexpr std::string_view kTrackerTroubleEvent = "tracker trouble";  // of an outside one; likewise
+inline constexpr std::string_view kSourceTroubleEvent =
+    "source trouble";  // text: theatre::to_record(); empty: it is over
+inline constexpr std::string_view kCommandRefusedEvent = "command refused";     // text: which, and why
+inline constexpr std::string_view kTrackerTroubleEvent = "tracker trouble";     // of an outside one; likewise
 inline constexpr std::string_view kPicturesKeptEvent = "pictures recorded as";  // text: how, file, why so
 inline constexpr std::string_view kLatencyEvent = "latency";  // text: capture to guidance, of all frames
 inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";    // text: how many

@@ -245,7 +245,8 @@ void OperationRun::note_trouble(std::int64_t since_picture_ns) {
   else
     log::warning("source: " + live_.watch.words());
   write([&](recording::OperationRecord& record) {
-    record.add_event(recording::kSourceTroubleEvent, live_.watch.words(), at_ns);
+    record.add_event(recording::kSourceTroubleEvent, to_record(live_.watch.trouble(), live_.watch.words()),
+                     at_ns);
   });
 }
 

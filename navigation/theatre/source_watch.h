@@ -22,8 +22,10 @@ enum class SourceTrouble { None, NoPicture, Plain, Frozen, Torn, Repeated, Late,
 // Nothing, or nothing of the knee, is seen in the pictures, or parts of two moments: what is said beside them
 // is said by no picture.
 [[nodiscard]] bool shows_nothing(SourceTrouble trouble);
-// What SourceWatch::words() tell of, as a record keeps them. A source's own words are of Lost.
-[[nodiscard]] SourceTrouble trouble_of(std::string_view words);
+// What a record keeps of it, "no picture; No picture comes: tower: broke off", and what that was of; empty
+// for None. What names no trouble is Lost: something was wrong.
+[[nodiscard]] std::string to_record(SourceTrouble trouble, const std::string& words);
+[[nodiscard]] SourceTrouble trouble_in(std::string_view record);
 
 // Whether a live picture of this age may be shown, and told to others, as one of now. Of a slow source no
 // picture guides, and what is young enough for a touch (see OperationRun::apply) is shown all the same.

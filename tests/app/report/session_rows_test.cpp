@@ -165,14 +165,15 @@ TEST(SessionRows, TellOfEveryLossOfTheSource) {
   {
     recording::SessionRecorder recorder(folder.path(), live_header(), options());
     for (int i = 0; i <= 10; ++i) recorder.append(frame_at(i, 0.1 * i));
-    recorder.add_event(event_at(1.4, recording::kSourceTroubleEvent, "No picture comes"));
-    recorder.add_event(event_at(2.4, recording::kSourceTroubleEvent, "No picture comes: broke off"));
-    recorder.append(frame_at(11, 11));
+    recorder.add_event(event_at(1.4, recording::kSourceTroubleEvent, "no picture; No picture comes"));
     recorder.add_event(
-        event_at(11, recording::kSourceTroubleEvent, "Pictures are late: 151 ms from capture"));
+        event_at(2.4, recording::kSourceTroubleEvent, "no picture; No picture comes: broke off"));
+    recorder.append(frame_at(11, 11));
+    recorder.add_event(event_at(11, recording::kSourceTroubleEvent,
+                                "late pictures; Pictures are late: 151 ms from capture"));
     recorder.append(frame_at(12, 11.2));
     recorder.add_event(event_at(11.2, recording::kSourceTroubleEvent, ""));
-    recorder.add_event(event_at(11.6, recording::kSourceTroubleEvent, "No picture comes"));
+    recorder.add_event(event_at(11.6, recording::kSourceTroubleEvent, "no picture; No picture comes"));
     recorder.add_event(event_at(13.2, recording::kSourceEndedEvent));
     recorder.finish();
   }
