@@ -7,6 +7,7 @@
 
 #include "app/report/plans_in_force.h"
 #include "app/report/source_faults.h"
+#include "navigation/operation/command.h"
 #include "navigation/recording/counting_registration.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/files/format.h"
@@ -103,6 +104,13 @@ std::string alarms_in_words(const recording::RecordedSession& session) {
   return words.empty() ? "none" : words;
 }
 
+// What was wrong with the picture when the time-out was confirmed by this command; empty: nothing.
+std::string beside_time_out(const recording::SessionEvent& command) {
+  const operation::Command given = operation::command_from_text(command.text, "the record");
+  const auto* const time_out = std::get_if<operation::ConfirmTimeOut>(&given);
+  return time_out != nullptr ? time_out->beside : "";
+}
+
 }  // namespace
 
 std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session,
@@ -110,6 +118,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
   bool is_verified = false, is_lost = false, was_verified = false, was_skipped = false, is_confirmed = false;
   recording::CountingRegistration registration;
   std::string guide, beside;
+  const recording::SessionEvent* command = nullptr;  // the newest
   const std::vector<PlanInForce> plans = plans_in_force(session);
   const operation::PlannedTunnel* plan = nullptr;       // in force
   const operation::PlannedTunnel* confirmed = nullptr;  // that the time-out was confirmed of last
@@ -123,10 +132,11 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
     was_verified = was_verified || is_verified;
     registration.follow(event);
     was_skipped = was_skipped || event.kind == recording::kVerificationSkippedEvent;
+    if (event.kind == recording::kCommandEvent) command = &event;
     if (event.kind == recording::kTimeOutConfirmedEvent) {
       confirmed = plan;
-      is_confirmed = true;  // what was wrong with its picture is said before what was on the screen
-      beside = event.text.starts_with("BESIDE ") ? event.text.substr(0, event.text.find(';')) : "";
+      is_confirmed = true;
+      beside = command != nullptr ? beside_time_out(*command) : "";
     }
     if (event.kind == recording::kGuideCheckedEvent) guide = event.text;
   }
@@ -142,7 +152,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
   std::string time_out = "confirmed";
   if (confirmed != nullptr) time_out += " of the plan " + in_words(*confirmed);
   if (confirmed != nullptr && *confirmed != *plan) time_out += "; NOT CONFIRMED of the plan after it";
-  if (!beside.empty()) time_out += "; " + beside;
+  if (!beside.empty()) time_out += "; BESIDE " + beside;
   return {
       {kRecordRow, cut_short.empty() ? "from beginning to end" : kCutShort + cut_short},
       {kVerificationRow, verified + (was_skipped ? "; guidance began without it" : "")},

@@ -6,6 +6,7 @@
 
 #include "app/report/plans_in_force.h"
 #include "app/report/source_faults.h"
+#include "navigation/operation/command.h"
 #include "navigation/tools/tool_set.h"
 #include "tests/temporary_folder.h"
 
@@ -156,6 +157,23 @@ TEST(SessionRows, Hazard5NameEachPlanThatGuidedAndWhichWasConfirmed) {
   ASSERT_EQ(steps.size(), 2U);
   EXPECT_EQ(steps.back().words, "ANOTHER PLAN TAKEN OVER: femur, 8.0 mm wide, 25.5 mm long");
   EXPECT_DOUBLE_EQ(steps.back().time_s, 33.4);
+}
+
+// A time-out that nobody saw a picture beside says so, however its event is worded.
+TEST(SessionRows, SayWhatWasWrongBesideTheTimeOut) {
+  const auto time_out_after = [](const operation::ConfirmTimeOut& word) {
+    const test::TemporaryFolder folder;
+    {
+      recording::SessionRecorder recorder(folder.path(), live_header(), options());
+      recorder.append(frame_at(0, 0));
+      recorder.add_event(event_at(0, recording::kCommandEvent, operation::to_text(operation::Command(word))));
+      recorder.add_event(event_at(0, recording::kTimeOutConfirmedEvent, "right femur"));
+      recorder.finish();
+    }
+    return row_of(safety_rows(recording::RecordedSession(folder.path()), ""), "Time-out");
+  };
+  EXPECT_EQ(time_out_after({true, "torn picture"}), "confirmed; BESIDE torn picture");
+  EXPECT_EQ(time_out_after({true, ""}), "confirmed");
 }
 
 // Pictures that did not come, and those that were late, are two things: each loss is a step with how long it
