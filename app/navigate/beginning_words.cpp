@@ -1,7 +1,5 @@
 #include "app/navigate/beginning_words.h"
 
-#include <regex>
-
 #include "navigation/camera/medium.h"
 #include "planning/files/format.h"
 #include "planning/files/typed_number.h"
@@ -45,14 +43,6 @@ std::string ago(std::chrono::system_clock::duration time) {
   if (minutes < 120) return count_of(static_cast<std::size_t>(minutes), "minute") + " ago";
   if (minutes < 48 * 60) return std::to_string(minutes / 60) + " hours ago";
   return std::to_string(minutes / (24 * 60)) + " days ago";
-}
-
-// How old something is says what its date does, in fewer letters: "camera measured, 4 days old". A date
-// without an age is today's.
-std::string without_dates(const std::string& words) {
-  static const std::regex kDated(" [0-9]{4}-[0-9]{2}-[0-9]{2}(, [0-9]+ days? old)"),
-      kToday(" [0-9]{4}-[0-9]{2}-[0-9]{2}(;|$)");
-  return std::regex_replace(std::regex_replace(words, kDated, "$1"), kToday, " today$1");
 }
 
 CardLine medium_line(const operation::OperationState& state) {
@@ -106,7 +96,7 @@ Card time_out_card(const operation::OperationState& state, const std::string& pa
   for (CardLine& line : card.lines) {
     if (line.topic != CardLine::Topic::CameraAndTools) continue;
     line.name.clear();  // its text names them
-    line.text = without_dates(line.text);
+    line.text = state.source->calibration_in_short;
   }
   return card;
 }
