@@ -80,9 +80,10 @@ CaseProvenance provenance_of(bool is_simulated, const fs::path& case_folder) {
   return all;
 }
 
-std::string in_words(const provenance::Provenance& provenance, const std::string& now_utc) {
+std::string in_words(const provenance::Provenance& provenance, const std::string& now_utc, Dates dates) {
   using provenance::Origin;
-  std::string words(provenance::to_text(provenance.origin));
+  const std::string origin(provenance::to_text(provenance.origin));
+  std::string words = origin;
   if (provenance.origin == Origin::Nominal) return words;
   if (provenance.calibrated_utc.empty()) return words + ", date not known";
   if (provenance.origin == Origin::Measured) words += " " + files::local_day(provenance.calibrated_utc);
@@ -90,19 +91,23 @@ std::string in_words(const provenance::Provenance& provenance, const std::string
   const auto days =
       provenance::days_between(files::local_day(provenance.calibrated_utc), files::local_day(now_utc));
   if (!days) return words;
+  const bool tells_date = provenance.origin == Origin::Measured && dates == Dates::Told;
+  if (!tells_date) words = origin;
   if (*days < 0) return words + ", date lies ahead: is the clock right?";
-  if (*days == 0) return provenance.origin == Origin::Measured ? words : words + " today";
+  if (*days == 0) return tells_date ? words : words + " today";
   return words + ", " + std::to_string(std::lround(*days)) + (*days == 1 ? " day old" : " days old");
 }
 
-std::string calibration_in_words(bool is_simulated, const fs::path& case_folder, const std::string& now_utc) {
+std::string calibration_in_words(bool is_simulated, const fs::path& case_folder, const std::string& now_utc,
+                                 Dates dates) {
   const CaseProvenance all = provenance_of(is_simulated, case_folder);
   const bool is_built_in =
       all.camera.origin == provenance::Origin::Simulated && all.camera.calibrated_utc.empty();
   const bool is_any_calibrated = std::ranges::any_of(all.tools, [](const NamedProvenance& tool) {
     return tool.provenance.origin != provenance::Origin::Nominal;
   });
-  std::string words = is_built_in ? "camera built in" : "camera " + in_words(all.camera, now_utc), nominal;
+  std::string words = is_built_in ? "camera built in" : "camera " + in_words(all.camera, now_utc, dates),
+              nominal;
   if (!is_built_in)
     for (const std::string& doubt : camera::read_camera_doubts(cases::camera_file(case_folder)))
       words += ", NOT RELIABLE: " + doubt;
@@ -117,7 +122,7 @@ std::string calibration_in_words(bool is_simulated, const fs::path& case_folder,
       add(nominal, tool.name);
       continue;
     }
-    const std::string how = in_words(tool.provenance, now_utc);
+    const std::string how = in_words(tool.provenance, now_utc, dates);
     auto same = std::ranges::find(calibrated, how, &std::pair<std::string, std::string>::first);
     if (same == calibrated.end()) same = calibrated.insert(calibrated.end(), {how, ""});
     add(same->second, tool.name + but_not(tool.nominal));

@@ -34,13 +34,17 @@ struct CaseProvenance {
   std::vector<NamedProvenance> tools;
 };
 [[nodiscard]] CaseProvenance provenance_of(bool is_simulated, const std::filesystem::path& case_folder);
+// How old something is says what its date does, in fewer letters.
+enum class Dates { Told, AsAge };
 // For the screen, at this time (ISO 8601): "measured 2026-11-21", from the next day on "measured 2026-11-21,
-// 3 days old"; "nominal"; "simulated, 3 days old". A measurement without a date says that it has none.
-[[nodiscard]] std::string in_words(const provenance::Provenance& provenance, const std::string& now_utc);
+// 3 days old"; "nominal"; "simulated, 3 days old"; AsAge: "measured today", "measured, 3 days old". A
+// measurement without a date says that it has none.
+[[nodiscard]] std::string in_words(const provenance::Provenance& provenance, const std::string& now_utc,
+                                   Dates dates = Dates::Told);
 // All of it for the screen: "camera measured 2026-11-21; probe measured 2026-11-21; nominal: femoral guide";
 // "camera built in; tools nominal". Throws as those.
 [[nodiscard]] std::string calibration_in_words(bool is_simulated, const std::filesystem::path& case_folder,
-                                               const std::string& now_utc);
+                                               const std::string& now_utc, Dates dates = Dates::Told);
 
 // The case has the calibration of a real scope: its camera.json is not of the simulator. One that can't be
 // read counts as real; it is not replaced by something simulated.

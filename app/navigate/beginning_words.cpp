@@ -1,7 +1,5 @@
 #include "app/navigate/beginning_words.h"
 
-#include <regex>
-
 #include "navigation/camera/medium.h"
 #include "planning/files/format.h"
 #include "planning/files/typed_number.h"
@@ -58,14 +56,6 @@ std::string ago(std::chrono::system_clock::duration time) {
   return std::to_string(minutes / (24 * 60)) + " days ago";
 }
 
-// How old something is says what its date does, in fewer letters: "camera measured, 4 days old". A date
-// without an age is today's.
-std::string without_dates(const std::string& words) {
-  static const std::regex kDated(" [0-9]{4}-[0-9]{2}-[0-9]{2}(, [0-9]+ days? old)"),
-      kToday(" [0-9]{4}-[0-9]{2}-[0-9]{2}(;|$)");
-  return std::regex_replace(std::regex_replace(words, kDated, "$1"), kToday, " today$1");
-}
-
 CardLine medium_line(const operation::OperationState& state) {
   const std::string medium = camera::medium_to_text(state.source->pipeline.refractive_index);
   const bool is_wrong = state.medium.fit == pipeline::MediumFit::Contradicts;
@@ -118,7 +108,7 @@ Card time_out_card(const operation::OperationState& state, const std::string& pa
     if (line.topic == CardLine::Topic::Plan) line.text = plan_in_words(state.plan) + in_full(verdict);
     if (line.topic != CardLine::Topic::CameraAndTools) continue;
     line.name.clear();  // its text names them
-    line.text = without_dates(line.text);
+    line.text = state.source->calibration_in_short;
   }
   return card;
 }

@@ -105,6 +105,8 @@ std::string words_beside_no_picture(theatre::SourceTrouble trouble, NextAction a
       return "the picture is plain; ";
     case theatre::SourceTrouble::Frozen:
       return "the picture is frozen; ";
+    case theatre::SourceTrouble::Torn:
+      return "the picture is torn; ";
     default:
       return "";
   }

@@ -33,6 +33,14 @@ theatre::TheatreSource source_of(const open_case::PlanModel& model, bones::BoneK
   return source;
 }
 
+void name_calibration(operation::SourceSetup& setup, bool is_simulated,
+                      const std::filesystem::path& case_folder) {
+  const std::string now_utc = files::utc_now();
+  setup.calibration = open_case::calibration_in_words(is_simulated, case_folder, now_utc);
+  setup.calibration_in_short =
+      open_case::calibration_in_words(is_simulated, case_folder, now_utc, open_case::Dates::AsAge);
+}
+
 }  // namespace
 
 std::string missing_for_simulation(const open_case::PlanModel& model, const tunnels::TunnelKey& key) {
@@ -55,7 +63,7 @@ theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, const 
       std::make_shared<const camera::CalibrationRecord>(open_case::camera_record_of(true, case_folder));
   setup.pipeline.calibration = setup.pipeline.calibrated->calibration;
   setup.pipeline.tools = open_case::tools_of(true, case_folder);
-  setup.calibration = open_case::calibration_in_words(true, case_folder, files::utc_now());
+  name_calibration(setup, true, case_folder);
   setup.pipeline.refractive_index = camera::kSalineIndex;
   setup.draws = part == SimulatedPart::Scratch;
   simulator::SimulationOptions simulation;
@@ -98,7 +106,7 @@ theatre::TheatreSource real_setup(const open_case::PlanModel& model, bones::Bone
   setup.pipeline.calibrated = std::make_shared<const camera::CalibrationRecord>(camera);
   setup.camera_is_simulated = camera.provenance.origin == provenance::Origin::Simulated;
   setup.pipeline.tools = tools::read_tools_file(cases::tools_file(case_folder));
-  setup.calibration = open_case::calibration_in_words(false, case_folder, files::utc_now());
+  name_calibration(setup, false, case_folder);
   setup.pipeline.refractive_index = refractive_index;
   if (setup.pipeline.tools.find_world_marker(bone) == nullptr)
     throw InvalidInput("tools.json declares no world marker for the " + std::string(bones::to_text(bone)));
@@ -146,7 +154,8 @@ theatre::TheatreSource camera_setup(const open_case::PlanModel& model, bones::Bo
       throw InvalidInput(
           "tools.json names an outside tracker, and not where it is (\"tracker\": \"address\")");
     (void)openigtlink::tracker_address(tracker->address);
-    source.setup.calibration += "; tools seen by " + tracker->address;
+    for (std::string* const words : {&source.setup.calibration, &source.setup.calibration_in_short})
+      *words += "; tools seen by " + tracker->address;
     source.tracker = [setup = source.setup.pipeline] { return openigtlink::listen_to_tracker(setup); };
   }
   return source;

@@ -20,11 +20,9 @@
 namespace arthronaut::navigate {
 
 namespace {
-
 using Phase = theatre::LiveState::Phase;
 
 constexpr double kRefusal_s = 6;  // long enough to be read
-
 }  // namespace
 
 NavigateView::NavigateView(std::function<void()> make_current, std::function<void()> wake,

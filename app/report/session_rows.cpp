@@ -7,6 +7,7 @@
 
 #include "app/report/plans_in_force.h"
 #include "app/report/source_faults.h"
+#include "navigation/operation/command.h"
 #include "navigation/recording/counting_registration.h"
 #include "navigation/recording/cut_short.h"
 #include "navigation/sources/frame_source.h"
@@ -113,7 +114,14 @@ std::string time_out_in_words(const Safety& safety) {
   return std::string("confirmed") +
          (safety.confirmed ? " of the plan " + in_words(*safety.confirmed) : std::string()) +
          (safety.another_plan_followed ? "; NOT CONFIRMED of the plan after it" : "") +
-         (safety.beside.empty() ? "" : "; " + safety.beside);
+         (safety.beside.empty() ? "" : "; BESIDE " + safety.beside);
+}
+
+// What was wrong with the picture when the time-out was confirmed by this command; empty: nothing.
+std::string beside_time_out(const recording::SessionEvent& command) {
+  const operation::Command given = operation::command_from_text(command.text, "the record");
+  const auto* const time_out = std::get_if<operation::ConfirmTimeOut>(&given);
+  return time_out != nullptr ? time_out->beside : "";
 }
 
 }  // namespace
@@ -123,24 +131,25 @@ Safety safety_of(const recording::RecordedSession& session, bool is_being_record
   recording::CountingRegistration registration;
   Safety safety{.cut_short = recording::cut_short_in_words(session.was_finished(), session.events(),
                                                            is_being_recorded)};
+  const recording::SessionEvent* command = nullptr;  // the newest
   const std::vector<PlanInForce> plans = plans_in_force(session);
   const operation::PlannedTunnel* plan = nullptr;       // in force
   const operation::PlannedTunnel* confirmed = nullptr;  // that the time-out was confirmed of last
   for (const recording::SessionEvent& event : session.events()) {
     for (const PlanInForce& next : plans)
       if (next.event == &event) plan = &next.plan;
-    const bool ends = event.kind == recording::kRegistrationEvent ||
-                      event.kind == recording::kGivenRegistrationEvent ||
-                      event.kind == recording::kVoidEvent || event.kind == recording::kVerificationLostEvent;
+    const bool ends = recording::is_registration(event) || event.kind == recording::kVoidEvent ||
+                      event.kind == recording::kVerificationLostEvent;
     is_lost = event.kind == recording::kVerificationLostEvent || (is_lost && !ends);
     is_verified = event.kind == recording::kVerifiedEvent || (is_verified && !ends);
     was_verified = was_verified || is_verified;
     registration.follow(event);
     if (event.kind == recording::kVerificationSkippedEvent) safety.guidance_began_without = true;
+    if (event.kind == recording::kCommandEvent) command = &event;
     if (event.kind == recording::kTimeOutConfirmedEvent) {
       confirmed = plan;
-      is_confirmed = true;  // what was wrong with its picture is said before what was on the screen
-      safety.beside = event.text.starts_with("BESIDE ") ? event.text.substr(0, event.text.find(';')) : "";
+      is_confirmed = true;
+      safety.beside = command != nullptr ? beside_time_out(*command) : "";
     }
     if (event.kind == recording::kGuideCheckedEvent) safety.guide = event.text;
   }

@@ -10,10 +10,7 @@ namespace arthronaut::report {
 
 using theatre::SourceTrouble;
 
-bool SourceFault::is_loss() const {
-  return trouble == SourceTrouble::NoPicture || trouble == SourceTrouble::Plain ||
-         trouble == SourceTrouble::Frozen || trouble == SourceTrouble::Torn;
-}
+bool SourceFault::is_loss() const { return theatre::shows_nothing(trouble); }
 
 std::vector<SourceFault> source_faults(const recording::RecordedSession& session) {
   std::vector<SourceFault> faults;
@@ -25,7 +22,7 @@ std::vector<SourceFault> source_faults(const recording::RecordedSession& session
     const double now_s = time_s(session, event.timestamp_ns);
     if (event.kind == recording::kSourceEndedEvent) end_at(now_s);
     if (event.kind != recording::kSourceTroubleEvent) continue;
-    const SourceTrouble trouble = theatre::trouble_of(event.text);
+    const SourceTrouble trouble = theatre::trouble_in(event.text);
     if (goes_on && faults.back().trouble == trouble) continue;
     end_at(now_s);
     if (trouble == SourceTrouble::None) continue;
@@ -59,7 +56,7 @@ std::string in_words(const std::vector<SourceFault>& faults) {
 }
 
 double without_picture_s(const recording::RecordedSession& session) {
-  constexpr double kPause_s = 0.3;  // as SourceWatch has it
+  constexpr double kPause_s = 1e-9 * static_cast<double>(theatre::kSilence_ns);
   if (session.header().source_kind != sources::SourceKind::Live) return 0;
   std::vector<double> times_s;
   for (const recording::RecordedFrame& frame : session.frames())

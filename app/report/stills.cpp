@@ -41,7 +41,7 @@ InForce in_force(const recording::RecordedSession& session, std::int64_t frame_i
   for (const recording::SessionEvent& event : session.events()) {
     if (event.after_frame >= frame_index) break;
     if (event.kind == recording::kPlanEvent) at.plan = session.plan_of(event);
-    if (event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent)
+    if (recording::is_registration(event))
       at.registration = registrations_of(session)(event);  // one that cannot be read is drawn by nowhere
     if (event.kind == recording::kVoidEvent) at.registration.reset();
   }

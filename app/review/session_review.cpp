@@ -61,7 +61,7 @@ std::map<std::string, std::shared_ptr<const registration::RegistrationSummary>> 
     next.from_frame = event.after_frame < 0 ? -1 : event.after_frame + 1;
     if (event.kind == recording::kPlanEvent)
       next.plan = review.session->plan_of(event);
-    else if (event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent)
+    else if (recording::is_registration(event))
       next.registration = registrations[event.text] = registration_of(event, review.folder, review.problems);
     else if (event.kind == recording::kVoidEvent)
       next.registration = nullptr;

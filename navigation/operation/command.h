@@ -87,7 +87,8 @@ struct GiveRegistration {
 // guidance with a live source.
 struct ConfirmTimeOut {
   bool patient_was_shown = false;  // who it is stays out of the record; that it was on the screen does not
-  // What was wrong with the picture beside it: "no picture", "plain picture", "frozen picture"; empty: it was
+  // What was wrong with the picture beside it: "no picture", "plain picture", "frozen picture", "torn
+  // picture"; empty: it was
   // of then.
   std::string beside = {};
 };

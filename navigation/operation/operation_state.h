@@ -1,5 +1,6 @@
 // Everything that is known of an operation at one moment: what screen, record and report read. A snapshot is
-// immutable and whole; verdicts are enums and numbers, and whoever shows them makes the words.
+// immutable and whole; verdicts are enums and numbers, and whoever shows them makes the words (of
+// camera and tools whoever starts the source, who has read their files).
 #pragma once
 
 #include <cstdint>
@@ -26,8 +27,10 @@ namespace arthronaut::operation {
 // Where the pictures come from. A value: to start a source is to hand this over.
 struct SourceSetup {
   sources::SourceKind kind = sources::SourceKind::Simulation;
-  std::string title;        // "Simulated operation: probe"
-  std::string calibration;  // camera and tools in words: "camera of 2026-11-21, 1 of 4 tools calibrated"
+  std::string title;  // "Simulated operation: probe"
+  // Camera and tools in words, for the screen: "camera measured 2026-11-21, 4 days old; tools nominal", and
+  // with ages in place of dates, as they stand on the time-out's card.
+  std::string calibration, calibration_in_short;
   pipeline::PipelineOptions pipeline;
   bool camera_is_simulated = false;  // its calibration is of the simulated arthroscope
   bool draws = true;  // the probe draws from the first frame, unless something reliable guides already

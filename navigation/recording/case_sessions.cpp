@@ -23,7 +23,7 @@ std::string alarm_after_registration(const std::filesystem::path& folder) {
   std::string alarm;
   const RecordedSession session(folder);
   for (const SessionEvent& event : session.events()) {
-    if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent) alarm.clear();
+    if (is_registration(event)) alarm.clear();
     if (event.kind == kAlarmEvent) alarm = event.text;  // empty: the alarm is over
   }
   return alarm;

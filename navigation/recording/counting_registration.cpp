@@ -12,7 +12,7 @@ void CountingRegistration::follow(const SessionEvent& event) {
   static const std::string kMarkerOut = operation::to_text(operation::MarkerOut{});
   const bool says_out = event.kind == kCommandEvent && event.text == kMarkerOut;
   const bool was_taken_away = std::exchange(marker_goes_out_, says_out) && !newest_.file.empty();
-  if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent) {
+  if (is_registration(event)) {
     last_file_ = event.text;
     if (!was_taken_away) newest_ = {event.text};
   }

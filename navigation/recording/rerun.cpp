@@ -73,10 +73,6 @@ operation::OperationSetup hearing_of_drifts(operation::OperationSetup setup) {
   return setup;
 }
 
-bool is_registration(const SessionEvent& event) {
-  return event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent;
-}
-
 }  // namespace
 
 Rerun::Rerun(const operation::OperationSetup& setup, Registrations registrations,

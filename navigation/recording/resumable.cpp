@@ -39,8 +39,7 @@ class LastRegistration {
 
  private:
   void follow(const RecordedSession& session, const SessionEvent& event) {
-    if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent)
-      take(registration::read_registration_record(session.folder() / event.text));
+    if (is_registration(event)) take(registration::read_registration_record(session.folder() / event.text));
     // What is void is of something else: what it is of decides again, and one touch, when it is brought back.
     if (event.kind == kVoidEvent) doubt_.clear();
     if (event.kind == kAlarmEvent && !event.text.empty()) alarm_ = event.text;

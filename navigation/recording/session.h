@@ -109,14 +109,20 @@ inline constexpr std::string_view kSaidTooEarlyEvent =
     "said too early";  // of a tunnel without a file of this record; text: "femur AM"
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier
 inline constexpr std::string_view kSourceEndedEvent = "source ended";
-inline constexpr std::string_view kSourceTroubleEvent = "source trouble";    // text: what; empty: it is over
-inline constexpr std::string_view kCommandRefusedEvent = "command refused";  // text: which, and why
-inline constexpr std::string_view kTrackerTroubleEvent = "tracker trouble";  // of an outside one; likewise
+inline constexpr std::string_view kSourceTroubleEvent =
+    "source trouble";  // text: theatre::to_record(); empty: it is over
+inline constexpr std::string_view kCommandRefusedEvent = "command refused";     // text: which, and why
+inline constexpr std::string_view kTrackerTroubleEvent = "tracker trouble";     // of an outside one; likewise
 inline constexpr std::string_view kPicturesKeptEvent = "pictures recorded as";  // text: how, file, why so
 inline constexpr std::string_view kLatencyEvent = "latency";  // text: capture to guidance, of all frames
 inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";    // text: how many
 inline constexpr std::string_view kVideoStoppedEvent = "video stopped";          // text: why
 inline constexpr std::string_view kRecordingStoppedEvent = "recording stopped";  // text: why
+
+// A registration took effect: found here, or from elsewhere.
+[[nodiscard]] inline bool is_registration(const SessionEvent& event) {
+  return event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent;
+}
 
 // How much must stay free on the disk. A video fills disks, the rest of a session takes a megabyte a minute:
 // so the video stops first, and the record of poses and events goes on nearly to the end.

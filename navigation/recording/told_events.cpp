@@ -33,10 +33,6 @@ constexpr std::array kNames{
     Name{kVideoStoppedEvent, "video stopped", Gravity::Alarm, false, false},
     Name{kRecordingStoppedEvent, "recording stopped", Gravity::Alarm, false, false}};
 
-bool is_registration(const SessionEvent& event) {
-  return event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent;
-}
-
 // By the numbers of its file, which come back as they were written.
 bool is_same(const geometry::RigidTransform& a, const geometry::RigidTransform& b) {
   constexpr double kSame = 1e-9;

@@ -18,6 +18,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// Recordings and simulations come as the machine can make them.
+constexpr double kOtherStaleAfter_s = 2.0;
+
 double seconds_of(Clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
@@ -196,7 +199,7 @@ class Loop {
         is_dated ? static_cast<double>(step.picture->captured_ns) * 1e-9 : seconds_of(Clock::now());
     // What is shown is as old as the oldest thing in it.
     live_.captured_s = std::min(live_.captured_s, run_.oldest_pose_s(live_.captured_s));
-    live_.stale_after_s = is_live ? options_.live_stale_after_s : options_.other_stale_after_s;
+    live_.stale_after_s = is_live ? options_.live_stale_after_s : kOtherStaleAfter_s;
     live_.frames_per_second = rate_.count();
     live_.published_s = seconds_of(Clock::now());
     if (is_live) refresh_latency();

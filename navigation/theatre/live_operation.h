@@ -59,8 +59,7 @@ struct LiveOptions {
   Decorate decorate;                                    // called on the operation's thread; may be empty
   // Likewise, with everything that is published, right after it; must not wait.
   std::function<void(const LiveState&)> tell;
-  double live_stale_after_s = 0.1;   // guidance from older pictures of a live source is hidden
-  double other_stale_after_s = 2.0;  // recordings and simulations come as the machine can make them
+  double live_stale_after_s = kLateAfter_s;  // guidance from older pictures of a live source is hidden
 };
 
 class LiveOperation {

@@ -245,7 +245,8 @@ void OperationRun::note_trouble(std::int64_t since_picture_ns) {
   else
     log::warning("source: " + live_.watch.words());
   write([&](recording::OperationRecord& record) {
-    record.add_event(recording::kSourceTroubleEvent, live_.watch.words(), at_ns);
+    record.add_event(recording::kSourceTroubleEvent, to_record(live_.watch.trouble(), live_.watch.words()),
+                     at_ns);
   });
 }
 
@@ -275,9 +276,7 @@ std::int64_t OperationRun::since_ns(std::int64_t captured_ns) const {
 
 std::string OperationRun::wrong_with_picture() const {
   const SourceTrouble trouble = live_.watch.trouble();
-  const bool shows_nothing = trouble == SourceTrouble::NoPicture || trouble == SourceTrouble::Plain ||
-                             trouble == SourceTrouble::Frozen;
-  return shows_nothing ? std::string(to_text(trouble)) : "";
+  return shows_nothing(trouble) ? std::string(to_text(trouble)) : "";
 }
 
 void OperationRun::apply(const operation::Command& given) {

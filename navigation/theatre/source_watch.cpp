@@ -1,6 +1,7 @@
 #include "navigation/theatre/source_watch.h"
 
 #include <algorithm>
+#include <array>
 
 #include "planning/files/format.h"
 
@@ -8,9 +9,8 @@ namespace arthronaut::theatre {
 
 namespace {
 
-// Three pictures of a slow source (10 a second); half a second is what may pass until it is told. Of one that
-// is slower, and said to be, three of its own.
-constexpr std::int64_t kSilence_ns = 300'000'000, kLongestSilence_ns = 1'000'000'000;
+// Of a source that is slower, and said to be, three of its own pictures, up to so long.
+constexpr std::int64_t kLongestSilence_ns = 1'000'000'000;
 // What is over in a moment is on the screen long enough to be read.
 constexpr std::int64_t kReadable_ns = 2'000'000'000, kSaidAnew_ns = 1'000'000'000;
 // Between pictures; faster ones, and those that were older when they came than the next one let them get, are
@@ -19,32 +19,33 @@ constexpr double kFew_ms = 50;
 // Sources of 30 pictures a second that are sent 60 times repeat half of them, and are none the worse for it.
 constexpr double kTooManyRepeats = 0.6;
 
+constexpr std::array<std::string_view, 9> kTroubleNames{"",
+                                                        "no picture",
+                                                        "plain picture",
+                                                        "frozen picture",
+                                                        "torn picture",
+                                                        "repeated pictures",
+                                                        "late pictures",
+                                                        "slow pictures",
+                                                        "lost pictures"};
+
 }  // namespace
 
-std::string_view to_text(SourceTrouble trouble) {
-  constexpr std::string_view kNames[] = {"",
-                                         "no picture",
-                                         "plain picture",
-                                         "frozen picture",
-                                         "torn picture",
-                                         "repeated pictures",
-                                         "late pictures",
-                                         "slow pictures",
-                                         "lost pictures"};
-  return kNames[static_cast<std::size_t>(trouble)];
+std::string_view to_text(SourceTrouble trouble) { return kTroubleNames[static_cast<std::size_t>(trouble)]; }
+
+bool shows_nothing(SourceTrouble trouble) {
+  return trouble == SourceTrouble::NoPicture || trouble == SourceTrouble::Plain ||
+         trouble == SourceTrouble::Frozen || trouble == SourceTrouble::Torn;
 }
 
-SourceTrouble trouble_of(std::string_view words) {
-  if (words.empty()) return SourceTrouble::None;
-  if (words.starts_with("No picture comes")) return SourceTrouble::NoPicture;
-  if (words.starts_with("The picture is plain")) return SourceTrouble::Plain;
-  if (words.starts_with("The source sends the same picture")) return SourceTrouble::Frozen;
-  if (words.starts_with("Torn pictures")) return SourceTrouble::Torn;
-  if (words.starts_with("The source repeats")) return SourceTrouble::Repeated;
-  if (words.starts_with("Pictures are late")) return SourceTrouble::Late;
-  const bool is_slow = words.starts_with("Each is over ") ||
-                       words.find(" a second are too few: each is too old") != std::string_view::npos;
-  return is_slow ? SourceTrouble::Slow : SourceTrouble::Lost;
+std::string to_record(SourceTrouble trouble, const std::string& words) {
+  return trouble == SourceTrouble::None ? "" : std::string(to_text(trouble)) + "; " + words;
+}
+
+SourceTrouble trouble_in(std::string_view record) {
+  const auto name = std::ranges::find(kTroubleNames, record.substr(0, record.find(';')));
+  return name == kTroubleNames.end() ? SourceTrouble::Lost
+                                     : static_cast<SourceTrouble>(name - kTroubleNames.begin());
 }
 
 bool is_of_now(double age_s, SourceTrouble trouble, double late_after_s) {

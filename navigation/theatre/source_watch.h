@@ -11,6 +11,7 @@
 #include <string>
 
 #include "navigation/pipeline/view_tracker.h"
+#include "navigation/tracker/pose_book.h"
 
 namespace arthronaut::theatre {
 
@@ -18,13 +19,22 @@ namespace arthronaut::theatre {
 enum class SourceTrouble { None, NoPicture, Plain, Frozen, Torn, Repeated, Late, Slow, Lost };
 // "no picture", "plain picture", ...; empty for None.
 [[nodiscard]] std::string_view to_text(SourceTrouble trouble);
-// What SourceWatch::words() tell of, as a record keeps them. A source's own words are of Lost.
-[[nodiscard]] SourceTrouble trouble_of(std::string_view words);
+// Nothing, or nothing of the knee, is seen in the pictures, or parts of two moments: what is said beside them
+// is said by no picture.
+[[nodiscard]] bool shows_nothing(SourceTrouble trouble);
+// What a record keeps of it, "no picture; No picture comes: tower: broke off", and what that was of; empty
+// for None. What names no trouble is Lost: something was wrong.
+[[nodiscard]] std::string to_record(SourceTrouble trouble, const std::string& words);
+[[nodiscard]] SourceTrouble trouble_in(std::string_view record);
 
 // Whether a live picture of this age may be shown, and told to others, as one of now. Of a slow source no
 // picture guides, and what is young enough for a touch (see OperationRun::apply) is shown all the same.
-inline constexpr double kLateAfter_s = 0.1;
+// The limit that an outside tracker's poses have, too.
+inline constexpr double kLateAfter_s = tracker::PoseBook::kMaxAge_s;
 [[nodiscard]] bool is_of_now(double age_s, SourceTrouble trouble, double late_after_s = kLateAfter_s);
+
+// Three pictures of a slow source (10 a second) without one are told of; half a second may pass until it is.
+inline constexpr std::int64_t kSilence_ns = 300'000'000;
 
 class SourceWatch {
  public:

@@ -50,7 +50,7 @@ struct ReceivedPose {
 
 class PoseBook {
  public:
-  // The limit that pictures have, too (LiveOptions::live_stale_after_s).
+  // The limit that pictures have, too (theatre::kLateAfter_s).
   static constexpr double kMaxAge_s = 0.1;
 
   explicit PoseBook(const TrackedBodies& bodies);

@@ -98,7 +98,7 @@ theatre::TheatreSource exercise_source(const ExerciseSetup& setup, const simulat
   operation::SourceSetup& of = source.setup;
   of.kind = sources::SourceKind::Simulation;
   of.title = "Training: " + std::string(setup.exercise.title) + ", " + std::string(to_text(setup.level));
-  of.calibration = "simulated scope and tools";
+  of.calibration = of.calibration_in_short = "simulated scope and tools";
   of.pipeline.bone = setup.exercise.bone;
   of.pipeline.side = setup.knee.side;
   of.pipeline.guide_name = tools::standard_guide_name(setup.exercise.bone);

@@ -83,6 +83,27 @@ TEST_F(CaseCalibration, ADoubtedCameraIsSaidToBeNotReliable) {
             std::string::npos);
 }
 
+// On the time-out's card ages stand for dates, and nothing else is left out: not the date in a doubt.
+TEST_F(CaseCalibration, AgesTakeThePlaceOfTheDatesOfWhatWasMeasured) {
+  camera::CalibrationRecord record;
+  record.calibration = simulator::standard_camera();
+  record.scope_name = "Scope 30";
+  record.provenance = {provenance::Origin::Measured, "2026-11-18T10:00:00Z"};
+  camera::write_doubted_camera_file(cases::camera_file(folder_), record, {"no board since 2026-11-18"});
+  adopt_tools(77);
+  const std::string words = calibration_in_words(kReal, folder_, "2026-11-22T10:00:00Z", Dates::AsAge);
+  EXPECT_TRUE(
+      words.starts_with("camera measured, 4 days old, NOT RELIABLE: no board since 2026-11-18; "
+                        "probe measured today; nominal: "))
+      << words;
+  EXPECT_EQ(
+      in_words({provenance::Origin::Measured, "2026-11-21T10:00:00Z"}, "2026-11-22T10:00:00Z", Dates::AsAge),
+      "measured, 1 day old");
+  EXPECT_EQ(
+      in_words({provenance::Origin::Measured, "2026-11-23T10:00:00Z"}, "2026-11-22T10:00:00Z", Dates::AsAge),
+      "measured, date lies ahead: is the clock right?");
+}
+
 // A real scope's files are of no use to the simulation, which does not replace them either.
 TEST_F(CaseCalibration, KeepsRealFilesFromTheSimulation) {
   adopt_camera("Scope 30", 601);

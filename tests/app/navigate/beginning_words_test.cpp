@@ -26,8 +26,8 @@ operation::PlannedTunnel plan() {
 // All that is read out stands on one card; whom nobody knows is told, not left out.
 TEST(TimeOutCard, Hazard20NamesPatientKneePlanCameraToolsAndMedium) {
   auto source = std::make_shared<operation::SourceSetup>();
-  source->calibration =
-      "camera measured 2026-11-21, 4 days old; probe, guide measured 2026-11-25; nominal: drill";
+  source->calibration_in_short =
+      "camera measured, 4 days old, NOT RELIABLE: no board of 2026-11-21; probe measured today";
   source->pipeline.side = bones::Side::Left;
   source->pipeline.refractive_index = 1.3345;
   operation::OperationState state;
@@ -40,7 +40,7 @@ TEST(TimeOutCard, Hazard20NamesPatientKneePlanCameraToolsAndMedium) {
   EXPECT_EQ(line_of(card, "Plan").text, "8.5 mm wide, 31.2 mm long");
   const CardLine& camera = line_of(card, "");
   EXPECT_EQ(camera.topic, CardLine::Topic::CameraAndTools);
-  EXPECT_EQ(camera.text, "camera measured, 4 days old; probe, guide measured today; nominal: drill");
+  EXPECT_EQ(camera.text, source->calibration_in_short) << "what is doubted keeps its dates";
   EXPECT_EQ(line_of(card, "Medium").text, "saline");
   EXPECT_EQ(line_of(card, "Medium").topic, CardLine::Topic::Medium);
   state.medium = {.fit = pipeline::MediumFit::Contradicts, .stated_index = 1.3345, .other_index = 1};

@@ -42,6 +42,12 @@ TEST(WordsWithoutPictures, StandBesideWhatIsTakenOnSomebodysWord) {
                 .find("the picture is frozen; "),
             0U);
   EXPECT_EQ(words_beside_no_picture(SourceTrouble::None, NextAction::RecordDrilled), "");
+  EXPECT_EQ(words_beside_no_picture(SourceTrouble::Late, NextAction::RecordDrilled), "");
+  for (const SourceTrouble trouble :
+       {SourceTrouble::NoPicture, SourceTrouble::Plain, SourceTrouble::Frozen, SourceTrouble::Torn}) {
+    EXPECT_TRUE(theatre::shows_nothing(trouble)) << "what is recorded beside it";
+    EXPECT_NE(words_beside_no_picture(trouble, NextAction::ConfirmTimeOut), "") << to_text(trouble);
+  }
   EXPECT_EQ(words_beside_no_picture(SourceTrouble::NoPicture, NextAction::Draw), "");
 }
 

@@ -6,6 +6,7 @@
 
 #include "app/report/plans_in_force.h"
 #include "app/report/source_faults.h"
+#include "navigation/operation/command.h"
 #include "navigation/tools/tool_set.h"
 #include "tests/temporary_folder.h"
 
@@ -158,6 +159,23 @@ TEST(SessionRows, Hazard5NameEachPlanThatGuidedAndWhichWasConfirmed) {
   EXPECT_DOUBLE_EQ(steps.back().time_s, 33.4);
 }
 
+// A time-out that nobody saw a picture beside says so, however its event is worded.
+TEST(SessionRows, SayWhatWasWrongBesideTheTimeOut) {
+  const auto time_out_after = [](const operation::ConfirmTimeOut& word) {
+    const test::TemporaryFolder folder;
+    {
+      recording::SessionRecorder recorder(folder.path(), live_header(), options());
+      recorder.append(frame_at(0, 0));
+      recorder.add_event(event_at(0, recording::kCommandEvent, operation::to_text(operation::Command(word))));
+      recorder.add_event(event_at(0, recording::kTimeOutConfirmedEvent, "right femur"));
+      recorder.finish();
+    }
+    return row_of(safety_rows(recording::RecordedSession(folder.path()), ""), "Time-out");
+  };
+  EXPECT_EQ(time_out_after({true, "torn picture"}), "confirmed; BESIDE torn picture");
+  EXPECT_EQ(time_out_after({true, ""}), "confirmed");
+}
+
 // Pictures that did not come, and those that were late, are two things: each loss is a step with how long it
 // took, whatever the words for it were meanwhile, and the figures say that the frames are those that came.
 TEST(SessionRows, TellOfEveryLossOfTheSource) {
@@ -165,14 +183,15 @@ TEST(SessionRows, TellOfEveryLossOfTheSource) {
   {
     recording::SessionRecorder recorder(folder.path(), live_header(), options());
     for (int i = 0; i <= 10; ++i) recorder.append(frame_at(i, 0.1 * i));
-    recorder.add_event(event_at(1.4, recording::kSourceTroubleEvent, "No picture comes"));
-    recorder.add_event(event_at(2.4, recording::kSourceTroubleEvent, "No picture comes: broke off"));
-    recorder.append(frame_at(11, 11));
+    recorder.add_event(event_at(1.4, recording::kSourceTroubleEvent, "no picture; No picture comes"));
     recorder.add_event(
-        event_at(11, recording::kSourceTroubleEvent, "Pictures are late: 151 ms from capture"));
+        event_at(2.4, recording::kSourceTroubleEvent, "no picture; No picture comes: broke off"));
+    recorder.append(frame_at(11, 11));
+    recorder.add_event(event_at(11, recording::kSourceTroubleEvent,
+                                "late pictures; Pictures are late: 151 ms from capture"));
     recorder.append(frame_at(12, 11.2));
     recorder.add_event(event_at(11.2, recording::kSourceTroubleEvent, ""));
-    recorder.add_event(event_at(11.6, recording::kSourceTroubleEvent, "No picture comes"));
+    recorder.add_event(event_at(11.6, recording::kSourceTroubleEvent, "no picture; No picture comes"));
     recorder.add_event(event_at(13.2, recording::kSourceEndedEvent));
     recorder.finish();
   }

@@ -294,11 +294,12 @@ TEST_F(SourceWatchTest, Hazard3ASilentSourceIsNotBlamedOnTheMachine) {
   EXPECT_EQ(watch_.trouble(), SourceTrouble::NoPicture);
 }
 
-// A record keeps the words: what they tell of is found again, of every one that is said.
-TEST_F(SourceWatchTest, ItsWordsTellWhatIsWrong) {
+// A record keeps what is wrong beside the words, so that it is known however they are put.
+TEST_F(SourceWatchTest, ItsRecordTellsWhatIsWrong) {
   std::vector<SourceTrouble> told;
   const auto tell = [&] {
-    EXPECT_EQ(trouble_of(watch_.words()), watch_.trouble()) << watch_.words();
+    EXPECT_EQ(trouble_in(to_record(watch_.trouble(), watch_.words())), watch_.trouble());
+    EXPECT_EQ(trouble_in(to_record(watch_.trouble(), "in other words")), watch_.trouble());
     told.push_back(watch_.trouble());
   };
   pictures(well_, 1000);
