@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "planning/files/format.h"
+#include "planning/import/import_side.h"
 #include "planning/segmentation/dark_rim.h"
 #include "planning/segmentation/surface_roughness.h"
 
