@@ -61,21 +61,20 @@ bool overlap(const Rect& a, const Rect& b) {
 
 // Everything that can be asked of the surgeon.
 std::vector<std::string> all_words() {
-  std::vector<std::string> words{"choose the tunnel femur AM (1); V: PL (2)",
-                                 "when the tunnel femur PL is drilled: say so",
-                                 "then the tunnel femur PL (2), or take the world marker out",
-                                 "resume the operation that was left",
-                                 "start the simulated operation",
-                                 "take the guide (simulation)",
-                                 "the pictures have ended: start the simulated operation",
-                                 words_of(operation::NextAction::VerifyByTouch) + ", 3 to go",
-                                 words_of(operation::NextAction::VerifyByTouch) +
-                                     ", 3 to go. Wait: the probe moves",
-                                 words_without_pictures(theatre::SourceTrouble::NoPicture,
-                                                        operation::NextAction::VerifyByTouch,
-                                                        "the source's format changed to 1280 x 720: set"),
-                                 "calibrate camera and tools in Set up",
-                                 "wait: the case's last operation is looked for"};
+  std::vector<std::string> words{
+      "choose the tunnel femur AM (1); V: PL (2)",
+      "when the tunnel femur PL is drilled: say so",
+      "then the tunnel femur PL (2), or take the world marker out",
+      "resume the operation that was left",
+      "start the simulated operation",
+      "take the guide (simulation)",
+      "the pictures have ended: start the simulated operation",
+      words_of(operation::NextAction::VerifyByTouch) + ", 3 to go",
+      words_of(operation::NextAction::VerifyByTouch) + ", 3 to go. Wait: the probe moves",
+      words_without_pictures(theatre::SourceTrouble::NoPicture, operation::NextAction::VerifyByTouch,
+                             "the source's format changed to 1280 x 720: set"),
+      "calibrate camera and tools in Set up",
+      "wait: the case's last operation is looked for"};
   for (const auto way_out : {operation::WayOut::StrokesAnew, operation::WayOut::MarkerPlacedAnew})
     words.push_back(place_anew_words(way_out));
   operation::OperationState state;
