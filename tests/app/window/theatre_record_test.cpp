@@ -152,7 +152,9 @@ TEST_F(Theatre, Hazard12AKilledOperationIsResumedAndGuidesAfterOneTouch) {
     ASSERT_TRUE(app.wait_for_state("picture", "live", 120));
     EXPECT_EQ(app.state("source_kind"), "SIMULATION");
     EXPECT_EQ(app.state("standing"), "void");
-    EXPECT_TRUE(app.wait_for_state("next", "touch the bone once: confirms the registration"));
+    EXPECT_TRUE(becomes(
+        [&] { return app.state("next").starts_with("touch the bone once: confirms the registration"); }, 20))
+        << app.state("next");
     // The simulated surgeon's probe rests on the bone now and then.
     ASSERT_TRUE(becomes(
         [&] {
