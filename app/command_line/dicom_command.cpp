@@ -110,8 +110,7 @@ void export_dicom(Context& context, const DicomArguments& arguments) {
   contents.studies = cases::load_studies(arguments.case_folder);
   if (!arguments.is_deidentified) contents.identity = cases::load_identity(arguments.case_folder);
   contents.report_pdf = report::make_report(
-      arguments.case_folder,
-      {.with_identity = true, .is_deidentified = arguments.is_deidentified, .says_when_made = false});
+      arguments.case_folder, {.with_identity = true, .is_deidentified = arguments.is_deidentified});
   if (!arguments.is_deidentified) add_plan_pictures(contents.knee, contents.pictures);
   add_pictures_of_operation(arguments.case_folder, contents.pictures);
   const auto summary = dicom_out::export_dicom(contents, arguments.output);

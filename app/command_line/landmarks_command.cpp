@@ -213,10 +213,14 @@ void add_landmarks_command(CLI::App& app, Context& context) {
   sub->add_option("case", arguments->case_folder, "Case folder")->required();
   auto* propose =
       sub->add_flag("--propose", arguments->propose, "Propose from the shape what nobody has confirmed");
-  sub->add_option("--set", arguments->set, "BONE.NAME=x,y,z in mm, LPS: placed by hand, and so confirmed")
+  sub->add_option("--set", arguments->set,
+                  "In mm, LPS: placed by hand, and so confirmed. One each time it is given")
+      ->option_text("BONE.NAME=X,Y,Z")
       ->allow_extra_args(false)  // one each: the case may follow
       ->check(read_by([](const std::string& text) { (void)placed_from(text); }));
-  sub->add_option("--confirm", arguments->confirm, "BONE.NAME, or BONE for all of it: looked at and right")
+  sub->add_option("--confirm", arguments->confirm,
+                  "Of a bone one landmark, or all of them: looked at and right. One each time it is given")
+      ->option_text("BONE[.NAME]")
       ->allow_extra_args(false)
       ->check(read_by([](const std::string& text) { (void)place_from(text); }));
   sub->add_option("--roof", arguments->roof,

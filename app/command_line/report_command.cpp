@@ -1,7 +1,15 @@
+#include <charconv>
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
 #include "app/own_process/own_process.h"
 #include "app/report/report.h"
+#include "planning/files/utc_clock.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
 
@@ -14,6 +22,20 @@ void refuse_another_ending(const std::filesystem::path& output) {
   if (ending == ".pdf" || ending == ".json" || ending == ".csv" || std::filesystem::is_other(output, ignored))
     return;
   throw CLI::ValidationError("--output", output.string() + " ends in none of .pdf, .json and .csv");
+}
+
+// SOURCE_DATE_EPOCH, as reproducible-builds.org has it, in UTC; empty where nobody sets it. Throws
+// InvalidInput.
+std::string made_utc_of_environment() {
+  const char* const text = std::getenv("SOURCE_DATE_EPOCH");
+  if (text == nullptr || *text == '\0') return "";
+  constexpr std::int64_t kYear10000_s = 253402300800;
+  std::int64_t seconds = -1;
+  const char* const end = text + std::strlen(text);
+  const auto [rest, error] = std::from_chars(text, end, seconds);
+  if (error != std::errc() || rest != end || seconds < 0 || seconds >= kYear10000_s)
+    throw InvalidInput("SOURCE_DATE_EPOCH: \"" + std::string(text) + "\" are no whole seconds since 1970");
+  return files::utc_of(std::chrono::system_clock::time_point(std::chrono::seconds(seconds)));
 }
 
 }  // namespace
@@ -47,6 +69,7 @@ void add_report_command(CLI::App& app, Context& context) {
   sub->callback([arguments, &context] {
     refuse_another_ending(arguments->output);
     refuse_before_the_work({.read = {}, .written = {arguments->output}});
+    arguments->options.made_utc = made_utc_of_environment();
     arguments->options.paper = report::paper_from_text(arguments->paper);
     std::vector<std::string> missing;
     {

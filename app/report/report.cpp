@@ -160,7 +160,8 @@ void Report::plan_page() {
     about.push_back({"Plan", "SHA-256 " + cases::plan_sha256(cases::with_named_meshes(content_.knee))});
   if (!content_.knee.created_utc.empty())
     about.push_back({"Created", files::utc_in_words(content_.knee.created_utc)});
-  if (options_.says_when_made) about.push_back({"Report made", files::utc_now_as("%Y-%m-%d %H:%M:%S UTC")});
+  if (!options_.made_utc.empty() && !options_.is_deidentified)
+    about.push_back({"Report made", files::utc_in_words(options_.made_utc)});
   pages_.table({45, 125}, about);
   draw_plan_verdicts(pages_, content_);
   pages_.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});

@@ -17,8 +17,8 @@ struct ReportOptions {
   // For strangers: no date, no session's name and no picture of the video, into which a name may be drawn.
   // Identity is left out whatever is said above. In JSON and CSV they are null.
   bool is_deidentified = false;
-  // Says when it was made; without it the same case gives the same bytes at any time.
-  bool says_when_made = true;
+  // When it was made, to be said; empty: the same case gives the same bytes at any time.
+  std::string made_utc = {};
   Paper paper = Paper::A4;  // of a PDF
   // Of a PDF's pictures of bones, at least 0.5: drawing them is most of what a report takes.
   double picture_px_per_mm = 12;

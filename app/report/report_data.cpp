@@ -12,7 +12,6 @@
 #include "planning/cases/plan_file.h"
 #include "planning/files/csv_cell.h"
 #include "planning/files/json_document.h"
-#include "planning/files/utc_clock.h"
 #include "planning/plan_review/tunnel_verdict.h"
 #include "planning/postop/achieved_file.h"
 #include "planning/tunnels/check_numbers.h"
@@ -230,7 +229,7 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
   ordered_json json;
   json["format"] = "arthronaut.report";
   json["version"] = 1;
-  if (options.says_when_made && !options.is_deidentified) json["made_utc"] = files::utc_now();
+  if (!options.made_utc.empty() && !options.is_deidentified) json["made_utc"] = options.made_utc;
   json["case"] = {{"name", content.knee.name},
                   {"side", bones::to_text(content.knee.side)},
                   {"created_utc", if_told(content.knee.created_utc)}};

@@ -1,6 +1,7 @@
 #include "navigation/pipeline/medium_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "navigation/camera/medium.h"
@@ -16,10 +17,17 @@ using markers::MarkerState;
 
 std::int64_t ns_from_s(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 
-// Of air and fluid the one that is farther from the stated medium: what lies between is told from it best.
-double farther_from(double stated) {
-  return stated - camera::kAirIndex > camera::kSalineIndex - stated ? camera::kAirIndex
-                                                                    : camera::kSalineIndex;
+// An index so near looks alike: it moves a pose by less than is said of its error.
+constexpr double kAlike = 0.03;
+
+// What may be before the lens in place of the stated medium, the likelier first: air and fluid are what there
+// is, and a number between or beyond them may be a mistake for either.
+std::span<const double> others_than(double stated) {
+  static constexpr std::array kFluidThenAir{camera::kSalineIndex, camera::kAirIndex};
+  const std::span<const double> all(kFluidThenAir);
+  if (std::abs(stated - camera::kSalineIndex) <= kAlike) return all.last(1);
+  if (std::abs(stated - camera::kAirIndex) <= kAlike) return all.first(1);
+  return all;
 }
 
 // How far corners lie from those of a square, at best; infinite when no pose gives anything like them.
@@ -54,7 +62,7 @@ MediumCheck::MediumCheck(std::span<const markers::DeclaredMarker> declared, doub
   for (const double index : {refractive_index, calibration_index})
     if (!(index >= 0.9 && index <= 2)) throw InvalidInput("a refractive index must lie in [0.9, 2]");
   verdict_.stated_index = refractive_index;
-  verdict_.other_index = farther_from(refractive_index);
+  verdict_.other_index = others_than(refractive_index).front();
 }
 
 void MediumCheck::look(const PictureObservation& view) {
@@ -95,9 +103,14 @@ void MediumCheck::look_again(const PictureObservation& view,
 
 void MediumCheck::vote(const camera::CameraModel& stated, const markers::MarkerObservation& seen,
                        double size_mm, bool may_be_for) {
-  const camera::CameraModel other = stated.in_medium(verdict_.other_index / calibration_index_);
   const double stated_px = misfit_px(stated, seen.corners_px, size_mm);
-  const double other_px = misfit_px(other, seen.corners_px, size_mm);
+  double other_px = HUGE_VAL, other_index = verdict_.other_index;
+  for (const double index : others_than(verdict_.stated_index)) {
+    const double px = misfit_px(stated.in_medium(index / calibration_index_), seen.corners_px, size_mm);
+    if (px >= other_px) continue;
+    other_px = px;
+    other_index = index;
+  }
   const auto speaks_for = [&](double right_px, double wrong_px) {
     return right_px <= options_.clean_px && wrong_px > options_.wrong_px &&
            wrong_px > options_.least_ratio * right_px;
@@ -109,6 +122,7 @@ void MediumCheck::vote(const camera::CameraModel& stated, const markers::MarkerO
     if (score_ >= score_before_doubt_) is_in_doubt_ = false;
   } else if (speaks_for(other_px, stated_px)) {
     ++verdict_.votes_against;
+    verdict_.other_index = other_index;
     if (!is_in_doubt_) {
       is_in_doubt_ = true;
       score_before_doubt_ = score_;

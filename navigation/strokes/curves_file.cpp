@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -20,6 +21,19 @@ std::optional<Eigen::Vector3d> read_shaft(const files::CsvTable& table, std::siz
   return shaft.normalized();
 }
 
+// No hand draws further off its world marker.
+Eigen::Vector3d read_position(const files::CsvTable& table, std::size_t row) {
+  constexpr double kFarthest_mm = 1000;
+  Eigen::Vector3d position_mm;
+  constexpr std::array kColumns{"x_mm", "y_mm", "z_mm"};
+  for (int i = 0; i < 3; ++i) {
+    position_mm[i] = table.number(row, kColumns[i]);
+    if (std::abs(position_mm[i]) > kFarthest_mm)
+      table.fail(row, kColumns[i], "lies more than a metre from the world marker");
+  }
+  return position_mm;
+}
+
 }  // namespace
 
 Curves read_curves_file(const std::filesystem::path& file) {
@@ -30,8 +44,7 @@ Curves read_curves_file(const std::filesystem::path& file) {
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     curves[row].curve = table.int32(row, "curve");
     curves[row].time_s = table.optional_number(row, "time_s");
-    curves[row].position_mm = {table.number(row, "x_mm"), table.number(row, "y_mm"),
-                               table.number(row, "z_mm")};
+    curves[row].position_mm = read_position(table, row);
     if (has_shaft) curves[row].shaft_direction = read_shaft(table, row);
   }
   return curves;

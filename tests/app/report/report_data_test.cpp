@@ -58,8 +58,8 @@ TEST_F(Report, GivesTheSameNumbersAsJsonAndAsATable) {
       session / "achieved.json",
       {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = {}});
   const auto json_file = pdf().parent_path() / "report.json", csv_file = pdf().parent_path() / "report.csv";
-  write(json_file, {.says_when_made = false});
-  write(csv_file, {.says_when_made = false});
+  write(json_file);
+  write(csv_file);
   const auto json = nlohmann::json::parse(files::read_text(json_file));
   EXPECT_EQ(json.at("format"), "arthronaut.report");
   EXPECT_EQ(json.at("case").at("name"), "Knee of Ærø");
@@ -92,16 +92,19 @@ TEST_F(Report, GivesTheSameNumbersAsJsonAndAsATable) {
   expect_contains(files::read_text(json_file), "Muster^Anna");
 }
 
-// In memory it is the same document as in a file; without its date it is the same at any time.
+// In memory it is the same document as in a file; it is the same at any time unless told when it is made.
 TEST_F(Report, CanBeTheSameBytesEachTime) {
-  const std::string report = made({.says_when_made = false});
+  const std::string report = made({});
   EXPECT_EQ(report.substr(0, 5), "%PDF-");
-  EXPECT_EQ(report, made({.says_when_made = false}));
-  write(pdf(), {.says_when_made = false});
+  EXPECT_EQ(report, made({}));
+  write(pdf());
   EXPECT_EQ(report, files::read_text(pdf()));
   EXPECT_EQ(pdf_text().find("Report made"), std::string::npos);
-  write(pdf());
+  write(pdf(), {.made_utc = "2026-01-31T12:00:00Z"});
   expect_contains(pdf_text(), "Report made");
+  expect_contains(pdf_text(), "2026-01-31 12:00:00 UTC");
+  write(pdf(), {.is_deidentified = true, .made_utc = "2026-01-31T12:00:00Z"});
+  EXPECT_EQ(pdf_text().find("Report made"), std::string::npos) << "strangers are told no date";
 }
 
 // What a CT after the operation showed, of both bones: a reliable one, and one in doubt with every reason; in

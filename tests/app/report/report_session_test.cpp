@@ -361,7 +361,7 @@ TEST_F(Report, Hazard40AnExerciseIsNotReported) {
   header["source"] = sources::kExerciseSource;
   files::write_atomically(exercise / "session.json", header.dump());
   const auto json_file = pdf().parent_path() / "report.json";
-  write(json_file, {.says_when_made = false});
+  write(json_file);
   const auto json = nlohmann::json::parse(files::read_text(json_file));
   EXPECT_TRUE(!json.contains("achieved") || json.at("achieved").empty());
   EXPECT_NE(json.dump().find(operation.filename().string()), std::string::npos);
@@ -417,8 +417,8 @@ TEST_F(Report, ShowsWhatTheSurgeonSaw) {
   expect_contains(text, "5 in 0:00.4");  // frames
   expect_contains(text, "Blue: as planned.");
   EXPECT_EQ(text.find("-0.0"), std::string::npos) << text;
-  const std::string bytes = made({.says_when_made = false});
-  EXPECT_EQ(bytes, made({.says_when_made = false}));
+  const std::string bytes = made({});
+  EXPECT_EQ(bytes, made({}));
   expect_contains(text, "as recorded: ");
   const auto json_file = pdf().parent_path() / "report.json";
   const auto record_in_json = [&] {
@@ -442,10 +442,10 @@ TEST_F(Report, ShowsWhatTheSurgeonSaw) {
 TEST_F(Report, Hazard19ADeidentifiedOneShowsNoPictureAndNoDay) {
   const std::string session = record_pictures(knee_folder()).filename().string();
   const std::string day = cases::load_case(knee_folder()).created_utc.substr(0, 10);
-  write(pdf(), {.is_deidentified = false, .says_when_made = false});
+  write(pdf(), {.is_deidentified = false});
   for (const std::string& told : {std::string("Pictures of the session"), session, day})
     expect_contains(pdf_text(), told);
-  write(pdf(), {.with_identity = true, .is_deidentified = true, .says_when_made = false});
+  write(pdf(), {.with_identity = true, .is_deidentified = true});
   for (const std::string& told : {std::string("Pictures of the session"), session, day})
     EXPECT_EQ(pdf_text().find(told), std::string::npos) << told;
 }

@@ -96,6 +96,21 @@ TEST(MediumCheck, Hazard27TheRightMediumFitsAndIsNeverDoubted) {
     }
 }
 
+// A number may be right, too, however near to saline.
+TEST(MediumCheck, Hazard27ANumberThatIsRightIsNeverDoubted) {
+  for (const double index : {1.15, 1.25, 1.29, 1.38, 1.45})
+    for (unsigned seed = 0; seed < 50; ++seed) {
+      Knee knee(index, index, seed);
+      MediumCheck check = check_of(index);
+      for (int frame = 0; frame < 120; ++frame) {
+        const PictureObservation view = knee.view(frame);
+        check.look(view);
+        if (check.wants_second_look()) check.look_again(view, view.markers);
+        ASSERT_NE(check.verdict().fit, MediumFit::Contradicts) << index << " seed " << seed;
+      }
+    }
+}
+
 // What was measured in the right medium before it changed stays; nothing is sure where it never fitted, and a
 // second change has a last sure moment of its own.
 TEST(MediumCheck, Hazard27SaysUntilWhenTheMediumWasSure) {
@@ -134,9 +149,13 @@ TEST(MediumCheck, Hazard27SaysUntilWhenTheMediumWasSure) {
   EXPECT_EQ(check.verdict().last_sure_ns, -1);
 }
 
-// Air stated in saline and saline in air: told within half a second, and the reason names both.
+// Air stated in saline and saline in air, or a number in either: told within half a second, and the reason
+// names both.
 TEST(MediumCheck, Hazard27AWrongMediumIsNamedAsTheReason) {
-  for (const auto& [truth, stated] : {std::pair(kSalineIndex, kAirIndex), std::pair(kAirIndex, kSalineIndex)})
+  for (const auto& [truth, stated] :
+       {std::pair(kSalineIndex, kAirIndex), std::pair(kAirIndex, kSalineIndex), std::pair(kSalineIndex, 1.1),
+        std::pair(kSalineIndex, 1.2), std::pair(kSalineIndex, 1.25), std::pair(kSalineIndex, 1.45),
+        std::pair(kAirIndex, 1.2), std::pair(kAirIndex, 1.5)})
     for (unsigned seed = 0; seed < 50; ++seed) {
       Knee knee(truth, stated, seed);
       // Its corners lean to no medium; a second look sees the same ones.

@@ -50,6 +50,16 @@ TEST(CurvesFile, RefusesShaftsThatAreNoDirections) {
   }
 }
 
+// Nor one that no hand can reach, which would spread the points over an infinite distance.
+TEST(CurvesFile, RefusesPointsMoreThanAMetreAway) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "curves.csv";
+  for (const char* far : {"1e308", "-1000.5"}) {
+    std::ofstream(file) << "curve,time_s,x_mm,y_mm,z_mm\n0,0,1," << far << ",3\n";
+    EXPECT_THROW((void)read_curves_file(file), InvalidInput) << far;
+  }
+}
+
 // A number that is not finite is refused.
 TEST(CurvesFile, RefusesNumbersThatAreNotFinite) {
   const test::TemporaryFolder folder;

@@ -54,6 +54,26 @@ TEST(AtomicFile, AReadThatFailsIsAnIoError) {
               HasSubstr("/proc/self/mem: cannot be read to its end"));
 }
 
+// One into which nobody writes would be waited for without end.
+TEST(AtomicFile, APipeInAFilesPlaceIsAnIoError) {
+  const TemporaryFolder folder;
+  const std::filesystem::path pipe = folder / "curves.csv", link = folder / "link.csv";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::filesystem::create_symlink(pipe, link);
+  EXPECT_THROW((void)read_text(pipe), IoError);
+  EXPECT_THROW((void)read_text(link), IoError);
+}
+
+// What a shell puts in a file's place is read: somebody writes into it.
+TEST(AtomicFile, AnOpenPipeUnderDevIsRead) {
+  int ends[2] = {};
+  ASSERT_EQ(::pipe(ends), 0);
+  ASSERT_EQ(::write(ends[1], "text", 4), 4);
+  ::close(ends[1]);
+  EXPECT_EQ(read_text("/dev/fd/" + std::to_string(ends[0])), "text");
+  ::close(ends[0]);
+}
+
 // /proc refuses new files even to root, as a folder without write permission does to everybody else.
 // A path that leads nowhere is an error of that file too, not of the library that walks it.
 TEST(AtomicFile, ALoopOfLinksIsAnIoError) {
