@@ -38,10 +38,11 @@ struct Held {
   [[nodiscard]] Matrix inverse() const { return held.ldlt().solve(Matrix::Identity()); }
 };
 
+// step: by which the parameters are further on than the pose.
 template <int kParameters>
 Held<kParameters> held_by(const RefinedPose& pose, const WeightedPoints& points,
                           const SurfaceIndex::Data& bone, const MarkerPrior& prior,
-                          const Eigen::Vector3d& pivot_mm) {
+                          const Eigen::Vector3d& pivot_mm, const typename Held<kParameters>::Vector& step) {
   using Vector = typename Held<kParameters>::Vector;
   Held<kParameters> sum;
   double curvature = 0, information = 1e-9;
@@ -54,7 +55,7 @@ Held<kParameters> held_by(const RefinedPose& pose, const WeightedPoints& points,
     row.template head<6>() = row_of(gradient, arm_mm);
     // Errors are the tip's, so strokes that shrink are to shrink away no residual: it is taken in their size.
     if constexpr (kParameters == 8) row.template tail<2>() << gradient.dot(arm_mm) - pose.residuals_mm[i], -1;
-    const ResidualEvidence evidence = evidence_of(pose.residuals_mm[i], pose.model);
+    const ResidualEvidence evidence = evidence_of(pose.residuals_mm[i] + row.dot(step), pose.model);
     sum.held += points.weights[i] * evidence.information * row * row.transpose();
     curvature += points.weights[i] * evidence.curvature;
     information += points.weights[i] * evidence.information;
@@ -88,7 +89,7 @@ Held<kParameters> held_by(const RefinedPose& pose, const WeightedPoints& points,
 Matrix6d covariance_about(const RefinedPose& pose, const WeightedPoints& points,
                           const SurfaceIndex::Data& bone, const MarkerPrior& prior,
                           const Eigen::Vector3d& pivot_mm) {
-  const Held<6> sum = held_by<6>(pose, points, bone, prior, pivot_mm);
+  const Held<6> sum = held_by<6>(pose, points, bone, prior, pivot_mm, Vector6d::Zero());
   const Matrix6d inverse = sum.inverse();
   return inverse * sum.pull * inverse;
 }
@@ -97,13 +98,20 @@ SizeEstimate estimate_size(const RefinedPose& pose, const WeightedPoints& points
                            const SurfaceIndex::Data& bone, const MarkerPrior& prior,
                            const Eigen::Vector3d& pivot_mm) {
   constexpr int kGrowth = 6, kLayer = 7;
-  Held<8> sum = held_by<8>(pose, points, bone, prior, pivot_mm);
-  sum.add_knowledge(Held<8>::Vector::Unit(kLayer), kLayer_mm);
-  sum.slope.head<6>().setZero();  // the pose is the best one, the marker and all
-  const Held<8>::Matrix inverse = sum.inverse();
+  const auto sum_at = [&](const Held<8>::Vector& step) {
+    Held<8> sum = held_by<8>(pose, points, bone, prior, pivot_mm, step);
+    sum.add_knowledge(Held<8>::Vector::Unit(kLayer), kLayer_mm);
+    sum.slope.head<6>().setZero();  // the pose is the best one, the marker and all
+    return sum;
+  };
+  const Held<8> sum = sum_at(Held<8>::Vector::Zero());
+  const Held<8>::Vector step = -sum.inverse() * sum.slope;
+  // How the stretches scatter shows where their common error of scale is taken out.
+  const Held<8> there = sum_at(step);
+  const Held<8>::Matrix inverse = there.inverse();
   SizeEstimate size;
-  size.scale.ratio = 1 + inverse.row(kGrowth).dot(sum.slope);
-  size.scale.sigma = std::sqrt((inverse * sum.pull * inverse)(kGrowth, kGrowth));
+  size.scale.ratio = 1 - step[kGrowth];
+  size.scale.sigma = std::sqrt((inverse * there.pull * inverse)(kGrowth, kGrowth));
   const Matrix6d held = sum.held.topLeftCorner<6, 6>();
   const Vector6d by_growth = sum.held.col(kGrowth).head<6>();
   size.drift = -held.ldlt().solve(by_growth);

@@ -54,6 +54,19 @@ TEST(OnlineRegistration, ConfirmsWhileScratching) {
   EXPECT_GT(result.predicted_angle_deg, 0);
 }
 
+// Markers of another size than stated: the strokes bring the bone in doubt, which revokes what a few of them
+// confirmed, and what is missing says why.
+TEST(OnlineRegistration, DoubtsStrokesOfAnotherSizeThanTheBone) {
+  const PhantomBone& bone = phantom_bone();
+  auto curves = bone.trial(TrialNoise::Dry, 1).curves;
+  for (strokes::CurvePoint& point : curves) point.position_mm *= 1.05;
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  draw(online, curves);
+  EXPECT_TRUE(online.result().bone_is_in_doubt);
+  EXPECT_NE(online.result().state, OnlineState::Confirmed);
+  EXPECT_THAT(online.result().coach.missing, testing::Contains(testing::HasSubstr("larger than the bone")));
+}
+
 // With little drawn it says what is missing, and where to go on: a place on the bone that was not touched
 // yet.
 TEST(OnlineRegistration, CoachSaysWhatIsMissing) {
