@@ -75,8 +75,8 @@ TEST(StrokeSize, SaysHowThePoseErrsByIt) {
 
 // Strokes of another size are never relied on as if nothing were: their registration says in which way and by
 // how much they are out, and its predicted error is no less than a third of what there is (a twelfth, by the
-// residuals alone; first order, and the fit slides). Right ones are relied on. The built-in notch is so smooth
-// that six strokes hold their scale to 1 % alone, so twice as many are drawn.
+// residuals alone; first order, and the fit slides). Right ones are relied on. The built-in notch is so
+// smooth that six strokes hold their scale to 1 % alone, so twice as many are drawn.
 TEST(StrokeSize, StrokesOfAnotherSizeAreNotReliedOn) {
   const PhantomBone& bone = phantom_bone();
   experiments::TrialSetting setting = experiments::setting_of(TrialNoise::Dry);
