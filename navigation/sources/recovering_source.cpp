@@ -57,8 +57,8 @@ class RecoveringSource final : public FrameSource {
 
  private:
   void tell_size(const Eigen::Vector2i& now_px) {
-    tell(std::string(kFormatChanged) + size_text(now_px) + ": set the processor back to " +
-         size_text(info_.image_size_px) + ", or choose the camera again");
+    tell(info_.name + ": " + std::string(kFormatChanged) + size_text(now_px) +
+         ": set the processor back to " + size_text(info_.image_size_px) + ", or choose the camera again");
   }
 
   camera::FramePtr take() {

@@ -46,9 +46,7 @@ class CasesCommand : public ::testing::Test {
 TEST_F(CasesCommand, SaysWhatSpeaksAgainstAPlan) {
   const fs::path knee = folder_ / "Knee.arthro";
   cases::save_case(knee, phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Gamma"));
-  cases::save_bone_doubts(knee, {{bones::BoneKind::Tibia,
-                                  {"the fibula lies on the left of the tibia, as in a left knee, but the "
-                                   "side is right: check the side"}}});
+  cases::save_bone_doubts(knee, {{bones::BoneKind::Tibia, {cases::SideDoubt{.told = bones::Side::Left}}}});
   EXPECT_THAT(cases({"--add", knee}).output, HasSubstr("femur and tibia planned; not checked yet"));
   EXPECT_THAT(cases({"--add", knee, "--check"}).output,
               HasSubstr("femur and tibia planned; wrong: Side: the fibula lies on the left"));

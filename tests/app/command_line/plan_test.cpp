@@ -334,9 +334,7 @@ TEST_F(PlanCommand, AWrongPlanIsToldHoweverItWasMade) {
 // A plan of the other knee leaves the case as one: it can be mended by nobody who gets it.
 TEST_F(PlanCommand, APlanOfTheOtherKneeIsExportedAsUnreliable) {
   cases::save_bone_doubts(folder_ / "knee.arthro",
-                          {{bones::BoneKind::Tibia,
-                            {"the fibula lies on the left of the tibia, as in a left knee, but the side is "
-                             "right: check the side"}}});
+                          {{bones::BoneKind::Tibia, {cases::SideDoubt{.told = bones::Side::Left}}}});
   const auto exported = run({"plan", "--export", folder_ / "out"});
   EXPECT_EQ(exported.exit_code, 4);
   EXPECT_THAT(exported.output, HasSubstr("Wrong, and exported all the same: Side: the fibula lies on the"));

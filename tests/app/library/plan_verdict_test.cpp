@@ -92,9 +92,7 @@ TEST(PlanVerdict, IsNotFineWhileAnythingIsToBeLookedAt) {
   const auto unconfirmed = judge_plan(turned_without_landmarks(), {});
   EXPECT_FALSE(unconfirmed.is_fine());
   EXPECT_THAT(plan_in_words(record, &unconfirmed), testing::HasSubstr("femur and tibia planned; look: "));
-  const cases::BoneDoubts doubts{{bones::BoneKind::Tibia,
-                                  {"the fibula lies on the left of the tibia, as in a left knee, but the "
-                                   "side is right: check the side"}}};
+  const cases::BoneDoubts doubts{{bones::BoneKind::Tibia, {cases::SideDoubt{.told = bones::Side::Left}}}};
   const auto other_side = judge_plan(turned_without_landmarks(), doubts);
   EXPECT_THAT(plan_in_words(record, &other_side),
               testing::HasSubstr("femur and tibia planned; wrong: Side: the fibula lies on the left"));

@@ -69,10 +69,7 @@ TEST_F(DefaultActions, ThePlanIsAsItWasUntilItIsMade) {
 // What is of the other knee is no proposal: which knee it is is asked first.
 TEST_F(DefaultActions, WhileTheSideIsInDoubtItIsAskedFirst) {
   const Eigen::Vector3d before = model_.tunnel(BoneKind::Femur)->entry_mm;
-  cases::save_bone_doubts(folder_.path(),
-                          {{BoneKind::Tibia,
-                            {"the fibula lies on the left of the tibia, as in a left knee, but the side is "
-                             "right: check the side"}}});
+  cases::save_bone_doubts(folder_.path(), {{BoneKind::Tibia, {cases::SideDoubt{.told = bones::Side::Left}}}});
   view_->case_opened({&model_, folder_.path(), ""});
   action("plan.default").run();
   EXPECT_TRUE(action("plan.default").can_run()) << "none is being made";

@@ -126,9 +126,8 @@ TEST_F(Report, Hazard46SaysWhatSpokeAgainstABone) {
 
 // The report is written, and is not one to rely on.
 TEST_F(Report, OfAPlanOfTheOtherKneeSaysSo) {
-  cases::save_bone_doubts(knee_folder(), {{bones::BoneKind::Tibia,
-                                           {"the fibula lies on the left of the tibia, as in a left knee, "
-                                            "but the side is right: check the side"}}});
+  cases::save_bone_doubts(knee_folder(),
+                          {{bones::BoneKind::Tibia, {cases::SideDoubt{.told = bones::Side::Left}}}});
   const auto said = write_report(knee_folder(), knee_folder().parent_path() / "report.csv", {});
   ASSERT_EQ(said.size(), 1U);
   expect_contains(said[0], "the plan is wrong, and reported all the same: the fibula lies on the left");

@@ -170,7 +170,7 @@ TEST(SessionRows, SayWhatWasWrongBesideTheTimeOut) {
       recorder.add_event(event_at(0, recording::kTimeOutConfirmedEvent, "right femur"));
       recorder.finish();
     }
-    return row_of(safety_rows(recording::RecordedSession(folder.path()), ""), "Time-out");
+    return row_of(safety_of(recording::RecordedSession(folder.path()), false), "Time-out");
   };
   EXPECT_EQ(time_out_after({true, "torn picture"}), "confirmed; BESIDE torn picture");
   EXPECT_EQ(time_out_after({true, ""}), "confirmed");

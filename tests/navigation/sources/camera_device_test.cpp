@@ -333,7 +333,7 @@ TEST(CameraDevice, IsTakenUpAgainInTheRightFormat) {
         for (int i = 0; i < 5000 && !is_so(); ++i) std::this_thread::sleep_for(milliseconds(1));
         return is_so();
       };
-      EXPECT_TRUE(waits_for([&] { return line->trouble().find("64 x 48 now") != std::string::npos; }))
+      EXPECT_TRUE(waits_for([&] { return line->trouble().find("changed to 64 x 48") != std::string::npos; }))
           << line->trouble();
       room.camera().first_mode = 0;
       if (is_told) ++room.camera().source_changes;

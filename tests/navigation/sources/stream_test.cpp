@@ -161,7 +161,7 @@ TEST(Stream, AnotherSizeIsToldAndPassedOver) {
   });
   sender.reset();
   sender = std::make_unique<Sender>(address, "640x480");
-  EXPECT_TRUE(waits_for([&] { return line->trouble().find("640 x 480 now") != std::string::npos; }))
+  EXPECT_TRUE(waits_for([&] { return line->trouble().find("changed to 640 x 480") != std::string::npos; }))
       << line->trouble();
   sender.reset();
   sender = std::make_unique<Sender>(address, "320x240");

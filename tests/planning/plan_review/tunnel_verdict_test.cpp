@@ -31,14 +31,13 @@ TEST(TunnelVerdict, IsThatOfTheWorstCheck) {
   EXPECT_EQ(verdict_of(kFemur, {}, {}, "landmarks missing: a").in_short(), "Grid: landmarks missing: a");
 }
 
-constexpr const char* kOtherSide =
-    "the fibula lies on the left of the tibia, as in a left knee, but the side is right: check the side";
+const cases::SideDoubt kOtherSide{.told = bones::Side::Left};
 
 // A plan of the other knee is as wrong in the bone that nothing is known of as in the one that witnesses it.
 TEST(TunnelVerdict, ASideInDoubtIsWrongForBothBones) {
   const cases::BoneDoubts doubts{{kTibia, {"the images end within it", kOtherSide}}};
   const TunnelVerdict femur = verdict_of(kFemur, {}, doubts, ""), tibia = verdict_of(kTibia, {}, doubts, "");
-  EXPECT_EQ(femur.wrong, std::vector<std::string>{std::string("Side: ") + kOtherSide});
+  EXPECT_EQ(femur.wrong, std::vector<std::string>{"Side: " + kOtherSide.words()});
   EXPECT_TRUE(femur.look.empty());
   EXPECT_EQ(tibia.wrong, femur.wrong);
   EXPECT_EQ(tibia.look, std::vector<std::string>{"Bone: the images end within it"}) << "and not twice";
@@ -50,7 +49,7 @@ TEST(TunnelVerdict, WhileTheSideIsInDoubtNothingThatRestsOnItIsFine) {
       {.verdict = Verdict::Fine, .name = "Entry", .text = "on the lateral wall of the notch"},
       {.verdict = Verdict::Wrong, .name = "Exit", .text = "into the notch"},
       {.verdict = Verdict::Fine, .name = "Wall", .text = "4.0 mm"}};
-  const auto doubted = as_side_is_doubted(checks, kOtherSide);
+  const auto doubted = as_side_is_doubted(checks, kOtherSide.words());
   EXPECT_EQ(doubted[0].verdict, Verdict::NotChecked);
   EXPECT_EQ(doubted[0].text, "not checked: the side is in doubt");
   EXPECT_EQ(doubted[1].verdict, Verdict::Wrong);
