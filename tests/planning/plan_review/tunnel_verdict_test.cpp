@@ -72,7 +72,7 @@ TEST(TunnelVerdict, OfAPlanSaysEverythingOnce) {
   const cases::BoneDoubts doubts{{kFemur, {kOtherSide}}, {kTibia, {kOtherSide}}};
   const TunnelVerdict plan = verdict_of_plan(knee, checks, doubts);
   ASSERT_EQ(plan.wrong.size(), 2U);
-  EXPECT_EQ(plan.wrong[0], std::string("Side: ") + kOtherSide);
+  EXPECT_EQ(plan.wrong[0], "Side: " + kOtherSide.words());
   EXPECT_TRUE(plan.wrong[1].starts_with("tibia: Bone: ")) << plan.wrong[1];
   EXPECT_EQ(plan.look, std::vector<std::string>{
                            "femur: Grid: landmarks proposed from the bone's shape, confirmed by nobody"});
