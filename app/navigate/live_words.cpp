@@ -1,6 +1,7 @@
 #include "app/navigate/live_words.h"
 
 #include "app/widgets/controls.h"
+#include "navigation/registration/verdict/confidence.h"
 #include "navigation/sources/recovering_source.h"
 
 namespace arthronaut::navigate {
@@ -248,7 +249,12 @@ Trouble trouble_of(const operation::RegistrationState& registration) {
     case Standing::Alarm:
       return {"World marker may have moved", why + ". " + words_of(registration.way_out())};
     case Standing::InDoubt:
-      return {"Registration in doubt", why + ". Draw more, or exclude the strokes that are wrong"};
+      // By drawing more the strokes get no other size.
+      return {"Registration in doubt",
+              why + (in_force.registration != nullptr &&
+                             registration::differ_in_size(in_force.registration->stroke_scale)
+                         ? ". Measure the printed markers; calibrate camera and probe anew"
+                         : ". Draw more, or exclude the strokes that are wrong")};
   }
   return {};
 }

@@ -278,6 +278,18 @@ TEST(NavigateDisplay, Hazard8DoubtHidesGuidance) {
   EXPECT_EQ(display.headline, "Registration in doubt");
 }
 
+// What is to be done about strokes of another size than the bone is nothing that drawing could do.
+TEST(NavigateDisplay, StrokesOfAnotherSizeAskForNoMoreOfThem) {
+  registration::RegistrationSummary found;
+  operation::RegistrationState state;
+  state.in_force.standing = Standing::InDoubt;
+  state.in_force.registration = std::make_shared<const registration::RegistrationSummary>(found);
+  EXPECT_NE(trouble_of(state).advice.find("Draw more"), std::string::npos);
+  found.stroke_scale = {1.03, 0.004};
+  state.in_force.registration = std::make_shared<const registration::RegistrationSummary>(found);
+  EXPECT_NE(trouble_of(state).advice.find("Measure the printed markers"), std::string::npos);
+}
+
 // What was not confirmed guides nothing, whatever else stands: no number and no line of the plan.
 TEST(NavigateDisplay, Hazard20NothingIsShownBeforeTheTimeOut) {
   Shown shown;

@@ -147,7 +147,7 @@ TEST_F(Theatre, AStreamIsNamedInTheWindowAndIsLive) {
     app.type("gst:videotestsrc is-live=true ! video/x-raw,width=1920,height=1080,framerate=20/1 ! appsink");
     app.press("Return");
     ASSERT_TRUE(app.wait_for_state("time_out", "due", 60));
-    EXPECT_EQ(app.state("source_kind"), "LIVE");
+    EXPECT_TRUE(app.wait_for_state("source_kind", "LIVE", 60)) << "with its first picture";
     ASSERT_TRUE(app.wait_for_state("next", "time-out: confirm patient, side, plan and tools", 60));
     // A press that was meant for what stood there before confirms nothing: the sheet is to be read first.
     EXPECT_EQ(app.state("pedal"), "waits");
