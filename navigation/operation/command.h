@@ -88,8 +88,7 @@ struct GiveRegistration {
 struct ConfirmTimeOut {
   bool patient_was_shown = false;  // who it is stays out of the record; that it was on the screen does not
   // What was wrong with the picture beside it: "no picture", "plain picture", "frozen picture", "torn
-  // picture"; empty: it was
-  // of then.
+  // picture"; empty: it was of then.
   std::string beside = {};
 };
 // The guide's tip rests on the control point: a nominal guide guides live only when it is found there.

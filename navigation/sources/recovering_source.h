@@ -22,8 +22,8 @@
 
 namespace arthronaut::sources {
 
-// Begins what SourceInfo::line says of pictures in another size than the first ones; what is to be done about
-// that follows.
+// What SourceInfo::line says of pictures in another size than the first ones, between the source's name and
+// that size; what is to be done about it follows.
 inline constexpr std::string_view kFormatChanged = "the source's format changed to ";
 
 // Numbers and times of a live source's frames, over all its connections: they go on where they were, and by

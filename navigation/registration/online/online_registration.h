@@ -71,8 +71,7 @@ struct OnlineResult {
   double length_mm = 0;  // of the strokes in use
   std::vector<StrokeInfo> strokes;
   // The strokes miss this bone's surface by more than their noise explains, are larger or smaller than it, or
-  // fit its mirror image as well:
-  // what was confirmed with fewer of them is not to be trusted any more.
+  // fit its mirror image as well: what was confirmed with fewer of them is not to be trusted any more.
   bool bone_is_in_doubt = false;
 };
 
