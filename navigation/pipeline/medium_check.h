@@ -4,10 +4,10 @@
 //
 // What tells: a tilted square near the lens has a perspective that belongs to one focal length alone. Its
 // four corners fit a pose in the right medium to some hundredths of a pixel and in the other one (air for a
-// fluid, saline for air) only to 0.4 px and more. Each such marker is a vote; votes are added up until they
-// are many more on one side (a sequential test with bounds), so that chance does not decide and a medium that
-// changes during the operation is noticed. Water and saline look alike; a marker that faces the lens from far
-// away looks alike in every medium and has no vote.
+// fluid, saline for air, for a number that is neither the better of both) only to 0.4 px and more. Each such
+// marker is a vote; votes are added up until they are many more on one side (a sequential test with bounds),
+// so that chance does not decide and a medium that changes during the operation is noticed. Water and saline
+// look alike; a marker that faces the lens from far away looks alike in every medium and has no vote.
 //
 // The wrong medium bends what is measured: edges are looked for where the pose has them, so the corners of a
 // pose that stands lean towards the stated medium, and what does not stand has no corners at all. Therefore
