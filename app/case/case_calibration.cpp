@@ -82,20 +82,20 @@ CaseProvenance provenance_of(bool is_simulated, const fs::path& case_folder) {
 
 std::string in_words(const provenance::Provenance& provenance, const std::string& now_utc, Dates dates) {
   using provenance::Origin;
-  const std::string origin(provenance::to_text(provenance.origin));
-  std::string words = origin;
+  const std::string words(provenance::to_text(provenance.origin));
   if (provenance.origin == Origin::Nominal) return words;
   if (provenance.calibrated_utc.empty()) return words + ", date not known";
-  if (provenance.origin == Origin::Measured) words += " " + files::local_day(provenance.calibrated_utc);
+  const bool is_dated = provenance.origin == Origin::Measured;
+  const std::string dated = is_dated ? words + " " + files::local_day(provenance.calibrated_utc) : words;
   // By the calendar: what was measured yesterday evening is a day old this morning.
   const auto days =
       provenance::days_between(files::local_day(provenance.calibrated_utc), files::local_day(now_utc));
-  if (!days) return words;
-  const bool tells_date = provenance.origin == Origin::Measured && dates == Dates::Told;
-  if (!tells_date) words = origin;
-  if (*days < 0) return words + ", date lies ahead: is the clock right?";
-  if (*days == 0) return tells_date ? words : words + " today";
-  return words + ", " + std::to_string(std::lround(*days)) + (*days == 1 ? " day old" : " days old");
+  if (!days) return dated;
+  const bool tells_date = is_dated && dates == Dates::Told;
+  const std::string& how = tells_date ? dated : words;
+  if (*days < 0) return how + ", date lies ahead: is the clock right?";
+  if (*days == 0) return tells_date ? how : how + " today";
+  return how + ", " + std::to_string(std::lround(*days)) + (*days == 1 ? " day old" : " days old");
 }
 
 std::string calibration_in_words(bool is_simulated, const fs::path& case_folder, const std::string& now_utc,

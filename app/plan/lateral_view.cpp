@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cctype>
 
 #include "app/plan/edge_words.h"
 #include "app/plan/roof_line.h"
@@ -41,7 +42,7 @@ std::string caption_of(const open_case::PlanModel& model, BoneKind bone) {
     return "Tibia, lateral view by " + std::string(to_text(model.axes(bone).origin));
   std::string words = scene::lateral_plane_in_words(model.axes(bone), model.surroundings(bone).quadrant,
                                                     model.landmarks(bone));
-  words[0] = 't' == words[0] || 'T' == words[0] ? 't' : 'l';  // "true ...", "lateral ..."
+  words[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(words[0])));
   return "Femur, " + words;
 }
 
