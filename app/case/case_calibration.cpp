@@ -136,6 +136,13 @@ bool has_real_camera(const fs::path& case_folder) {
   return fs::exists(cases::camera_file(case_folder), ignored) && !has_simulated_camera(case_folder);
 }
 
+provenance::Origin origin_by_camera(bool is_simulated, const fs::path& case_folder) {
+  const auto origin = [](bool is_real) {
+    return is_real ? provenance::Origin::Measured : provenance::Origin::Simulated;
+  };
+  return provenance::found_with(origin(!is_simulated), origin(has_real_camera(case_folder)));
+}
+
 std::string camera_is_kept(bool is_simulated, const fs::path& case_folder) {
   return is_simulated && has_real_camera(case_folder)
              ? "this case has the calibration of a real scope; a simulated one does not replace it"

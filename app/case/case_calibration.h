@@ -49,6 +49,9 @@ enum class Dates { Told, AsAge };
 // The case has the calibration of a real scope: its camera.json is not of the simulator. One that can't be
 // read counts as real; it is not replaced by something simulated.
 [[nodiscard]] bool has_real_camera(const std::filesystem::path& case_folder);
+// Of what is found in pictures by means of the case's camera: simulated as soon as one of both is.
+[[nodiscard]] provenance::Origin origin_by_camera(bool is_simulated,
+                                                  const std::filesystem::path& case_folder);
 
 // Why what was found with simulated pictures, or by means of a simulated camera, may not replace the files of
 // this case: those are of a real scope or tool. Empty when it may.

@@ -71,12 +71,11 @@ std::string camera_fingerprint(const fs::path& case_folder) {
 
 std::string keep_fluid_verdict(const fs::path& case_folder, calibration::FluidRecord record,
                                bool is_simulated, const std::string& source, const std::string& now_utc) {
-  const bool has_real = has_real_camera(case_folder);
-  if (is_simulated && has_real) return "this case has a real scope; what is simulated says nothing about it";
+  if (is_simulated && has_real_camera(case_folder))
+    return "this case has a real scope; what is simulated says nothing about it";
   if (record.camera_sha256 != camera_fingerprint(case_folder)) return "camera.json has changed since";
-  using provenance::Origin;
   // A real picture that was measured with the simulator's camera says nothing of a real scope either.
-  record.provenance = {is_simulated || !has_real ? Origin::Simulated : Origin::Measured, now_utc};
+  record.provenance = {origin_by_camera(is_simulated, case_folder), now_utc};
   record.source = source;
   calibration::write_fluid_file(fluid_file(case_folder), record);
   return "";

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -6,11 +7,13 @@
 
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
+#include "app/command_line/tracking_report.h"
+#include "navigation/camera/camera_file.h"
 #include "navigation/strokes/body_rows.h"
 #include "navigation/strokes/poses_file.h"
-#include "navigation/tools/pivot_calibration.h"
-#include "navigation/tools/spin_calibration.h"
+#include "navigation/tools/measured_part.h"
 #include "planning/files/json_document.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
@@ -19,7 +22,7 @@ namespace {
 
 struct PivotArguments {
   int marker_id = -1;
-  std::string poses, tools, output;
+  std::string poses, tools, output, camera, tools_output;
   std::optional<int> world_id;
   bool camera_fixed = false, spin = false;
 };
@@ -95,8 +98,44 @@ std::vector<geometry::RigidTransform> fixed_from_tool(const Context& context,
   return poses;
 }
 
+// Of a camera that is doubted nothing is to be relied on, however well the poses agree.
+std::vector<std::string> doubts_of(const PivotArguments& arguments, std::vector<std::string> reasons) {
+  if (arguments.camera.empty()) return reasons;
+  const std::vector<std::string> of_camera = camera_doubts(arguments.camera);
+  reasons.insert(reasons.end(), of_camera.begin(), of_camera.end());
+  return reasons;
+}
+
+// Throws InvalidInput where what is found belongs to none of the tools.
+tools::Tool& tool_in(tools::ToolSet& set, const PivotArguments& arguments) {
+  if (set.tracker)
+    throw InvalidInput(arguments.tools, "tracker",
+                       "the tools are seen by an outside tracker: measure them there");
+  for (tools::Tool& tool : set.tools)
+    if (tool.marker_id == arguments.marker_id) return tool;
+  throw InvalidInput(arguments.tools, "tools",
+                     "no tool carries marker " + std::to_string(arguments.marker_id));
+}
+
+// What is not reliable does not become a tool, and tools that stood there stay. What the poses of a simulated
+// camera tell is simulated.
+void conclude(Context& context, const PivotArguments& arguments, const std::string& what,
+              const std::vector<std::string>& doubts,
+              const std::function<void(tools::Tool&, const provenance::Provenance&)>& take) {
+  if (!doubts.empty()) return context.say_unreliable(what, doubts);
+  if (arguments.tools_output.empty()) return;
+  using provenance::Origin;
+  const Origin camera = camera::read_camera_file(arguments.camera).provenance.origin;
+  tools::ToolSet set = tools::read_tools_file(arguments.tools);
+  tools::Tool& tool = tool_in(set, arguments);
+  take(tool, {provenance::found_with(Origin::Measured, camera), files::utc_now()});
+  tools::write_tools_file(arguments.tools_output, set);
+  if (arguments.output != "-") context.say(what + " of the " + tool.name + ": in " + arguments.tools_output);
+}
+
 void calibrate_tip(Context& context, const PivotArguments& arguments) {
   const auto summary = tools::calibrate_pivot(fixed_from_tool(context, arguments));
+  const std::vector<std::string> doubts = doubts_of(arguments, summary.reasons);
   nlohmann::ordered_json document;
   document["format"] = "arthronaut.tip";
   document["version"] = 1;
@@ -104,8 +143,8 @@ void calibrate_tip(Context& context, const PivotArguments& arguments) {
   document["tip_mm"] = summary.has_tip() ? files::to_json(summary.tip_in_tool_mm) : nlohmann::ordered_json();
   document["rms_mm"] = summary.has_tip() ? nlohmann::ordered_json(summary.rms_mm) : nlohmann::ordered_json();
   document["cone_deg"] = summary.cone_deg;
-  document["reliable"] = summary.is_usable();
-  document["reasons"] = summary.reasons;
+  document["reliable"] = doubts.empty();
+  document["reasons"] = doubts;
   document["pose_count"] = summary.pose_count;
   document["inlier_count"] = summary.inlier_count;
   if (summary.has_tip()) {
@@ -126,7 +165,8 @@ void calibrate_tip(Context& context, const PivotArguments& arguments) {
                   summary.rms_mm, summary.inlier_count, summary.pose_count, summary.cone_deg);
     if (arguments.output != "-") context.say(line);
   }
-  if (!summary.is_usable()) context.say_unreliable("the tip", summary.reasons);
+  conclude(context, arguments, "the tip", doubts,
+           [&](tools::Tool& tool, const auto& provenance) { tools::take_tip(tool, summary, provenance); });
 }
 
 void calibrate_axis(Context& context, const PivotArguments& arguments) {
@@ -136,6 +176,7 @@ void calibrate_axis(Context& context, const PivotArguments& arguments) {
       if (tool.marker_id == arguments.marker_id && tool.axis)
         options.declared_direction = tool.axis->direction;
   const auto summary = tools::calibrate_spin(fixed_from_tool(context, arguments), options);
+  const std::vector<std::string> doubts = doubts_of(arguments, summary.reasons);
   nlohmann::ordered_json document;
   document["format"] = "arthronaut.axis";
   document["version"] = 1;
@@ -150,12 +191,13 @@ void calibrate_axis(Context& context, const PivotArguments& arguments) {
     document["axis_direction_sigma_deg"] = summary.direction_sigma_deg;
   }
   document["turn_deg"] = summary.turn_deg;
-  document["reliable"] = summary.is_usable();
-  document["reasons"] = summary.reasons;
+  document["reliable"] = doubts.empty();
+  document["reasons"] = doubts;
   document["pose_count"] = summary.pose_count;
   document["inlier_count"] = summary.inlier_count;
   files::write_json(arguments.output, document);
-  if (!summary.is_usable()) context.say_unreliable("the axis", summary.reasons);
+  conclude(context, arguments, "the axis", doubts,
+           [&](tools::Tool& tool, const auto& provenance) { tools::take_axis(tool, summary, provenance); });
 }
 
 }  // namespace
@@ -164,7 +206,8 @@ void add_pivot_command(CLI::App& app, Context& context) {
   CLI::App* subcommand = add_subcommand(
       app, context, "pivot",
       "Find the tip of a tool that was pivoted about a fixed point (or, with --spin, its axis)",
-      "arthronaut pivot --marker 2 --poses poses.csv -o tip.json");
+      "arthronaut pivot --marker 2 --poses poses.csv --camera camera.json --tools tools.json "
+      "--write-tools tools.json -o tip.json");
   const auto arguments = std::make_shared<PivotArguments>();
   subcommand->add_option("--marker", arguments->marker_id, "Id of the tool's marker")
       ->required()
@@ -182,16 +225,32 @@ void add_pivot_command(CLI::App& app, Context& context) {
   subcommand->add_option("-o,--output", arguments->output, "tip.json, or - for standard output")
       ->required()
       ->check(a_name());
-  subcommand->add_option(
+  CLI::Option* tools = subcommand->add_option(
       "--tools", arguments->tools,
       "tools.json: world markers, which way a guide drills, and bodies of several markers");
+  CLI::Option* camera = subcommand->add_option(
+      "--camera", arguments->camera,
+      "camera.json that the poses were tracked with: what it is doubted for, so is what is found");
+  subcommand
+      ->add_option("--write-tools", arguments->tools_output,
+                   "tools.json to write: --tools with what was found, and where that comes from, in it; "
+                   "nothing that is not reliable")
+      ->needs(tools)
+      ->needs(camera)
+      ->check(a_file());
   subcommand->callback([arguments, &context] {
-    refuse_before_the_work({.read = {arguments->poses, arguments->tools}, .written = {arguments->output}});
+    refuse_before_the_work(
+        {.read = {arguments->poses, arguments->tools, arguments->camera}, .written = {arguments->output}});
+    // The tools are what it adds to: they may be written over.
+    refuse_before_the_work({.read = {arguments->poses, arguments->camera},
+                            .written = {arguments->tools_output, arguments->output},
+                            .makes = "tools.json"});
     // Any marker of a body stands for it.
     if (!arguments->tools.empty()) {
-      const tools::ToolSet tools = tools::read_tools_file(arguments->tools);
+      tools::ToolSet tools = tools::read_tools_file(arguments->tools);
       arguments->marker_id = strokes::body_id_of(arguments->marker_id, tools);
       if (arguments->world_id) arguments->world_id = strokes::body_id_of(*arguments->world_id, tools);
+      if (!arguments->tools_output.empty()) (void)tool_in(tools, *arguments);
     }
     arguments->spin ? calibrate_axis(context, *arguments) : calibrate_tip(context, *arguments);
   });

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <utility>
 
+#include "navigation/tools/measured_part.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::setup {
@@ -35,25 +35,8 @@ tools::ToolSet with_result(tools::ToolSet tools, const std::string& tool_name, c
                            const provenance::Provenance& provenance) {
   for (tools::Tool& tool : tools.tools) {
     if (tool.name != tool_name) continue;
-    // What is found now is measured; the rest stays what it was.
-    tool.nominal = tools::nominal_parts(tool);
-    if (result.task == ToolTask::Tip) {
-      tool.nominal.tip = false;
-      tool.tip_mm = result.tip.tip_in_tool_mm;
-      tool.tip_covariance_mm2 = result.tip.tip_error_mm2();
-    } else {
-      // Turning tells the line, not where on it the guide ends: that stays where it was declared.
-      tool.nominal.axis = false;
-      const Eigen::Vector3d& direction = result.axis.axis_direction_in_tool;
-      const double along_mm =
-          tool.axis ? (tool.axis->point_mm - result.axis.axis_point_in_tool_mm).dot(direction) : 0;
-      tool.axis = tools::ToolAxis{result.axis.axis_point_in_tool_mm + along_mm * direction, direction};
-      tool.axis_direction_sigma_deg = result.axis.direction_sigma_deg;
-      tool.axis_point_sigma_mm = std::hypot(
-          result.axis.point_sigma_mm, along_mm * geometry::rad_from_deg(result.axis.direction_sigma_deg));
-    }
-    tool.residual_mm = result.rms_mm();
-    tool.provenance = provenance;
+    result.task == ToolTask::Tip ? tools::take_tip(tool, result.tip, provenance)
+                                 : tools::take_axis(tool, result.axis, provenance);
   }
   return tools;
 }

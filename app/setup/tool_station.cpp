@@ -105,9 +105,8 @@ void ToolStation::show() {
 void ToolStation::start(const FeedSource& source) {
   stop();
   camera_sha256_ = open_case::camera_fingerprint(case_folder_);
-  // Real pictures that a simulated camera measures give nothing real.
-  finds_simulated_ = source.is_simulated || !open_case::has_real_camera(case_folder_);
-  kept_because_ = open_case::tools_are_kept(finds_simulated_, case_folder_);
+  found_origin_ = open_case::origin_by_camera(source.is_simulated, case_folder_);
+  kept_because_ = open_case::tools_are_kept(found_origin_ == provenance::Origin::Simulated, case_folder_);
   run_ = std::make_unique<Run>(
       source,
       [source, folder = case_folder_, index = refractive_index_, choice = choice()] {
@@ -154,10 +153,8 @@ void ToolStation::adopt() {
     const std::filesystem::path file = cases::tools_file(case_folder_);
     const tools::ToolSet known =
         std::filesystem::exists(file) ? tools::read_tools_file(file) : tools::standard_tools();
-    using provenance::Origin;
-    const provenance::Provenance found{finds_simulated_ ? Origin::Simulated : Origin::Measured,
-                                       files::utc_now()};
-    tools::write_tools_file(file, with_result(known, choice().tool_name, *result, found));
+    tools::write_tools_file(
+        file, with_result(known, choice().tool_name, *result, {found_origin_, files::utc_now()}));
     adopted_result_ = result;
     run_->post([result](ToolJob& job) { job.settle(result); });
     read_adopted();

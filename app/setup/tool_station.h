@@ -54,8 +54,8 @@ class ToolStation : public JobStation<ToolJob> {
   std::shared_ptr<const ToolResult> adopted_result_;
   std::optional<double> usable_since_s_;  // a result that may be adopted stands on the screen
   Row adopted_;
-  bool finds_simulated_ = false;  // what this run finds is of the simulator
-  std::string kept_because_;      // see open_case::tools_are_kept()
+  provenance::Origin found_origin_ = provenance::Origin::Measured;  // of what this run finds
+  std::string kept_because_;                                        // see open_case::tools_are_kept()
   // Of the camera.json that this run measures through: through another one its result is another.
   std::string camera_sha256_;
   widgets::VideoTexture picture_;

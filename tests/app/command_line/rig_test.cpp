@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "navigation/strokes/poses_file.h"
 #include "navigation/tools/tool_set.h"
@@ -11,7 +10,6 @@
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 #include "tests/app/command_line/program.h"
-#include "tests/resources/described.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut {
@@ -154,31 +152,6 @@ TEST_F(RigCommand, TakesTheSizeThatThePosesWereFoundWith) {
     EXPECT_THAT(refused.errors,
                 AllOf(HasSubstr("poses.csv"), HasSubstr("size_mm"), HasSubstr("was taken for 2.89 mm")));
   }
-}
-
-// pivot takes the world from the tools, whatever its id; without any word of it, no other marker for it.
-TEST_F(RigCommand, PivotTakesTheWorldThatTheToolsDeclare) {
-  std::vector<strokes::PoseRow> rows;
-  for (int i = 0; i < 60; ++i) {
-    const RigidTransform facing{Eigen::Quaterniond(0, 1, 0, 0), {0.02 * i, 1, 24}};
-    rows.push_back(
-        {i, i / 30.0, 2, facing * turned({1, 0.3, 0}, 25 * std::sin(0.3 * i), {0, 0, 0}), 0.1, {}, {}});
-    rows.push_back({i, i / 30.0, 10, facing * turned({1, 0, 0}, 20, {5, 5, 0}), 0.1, {}, {}});
-  }
-  strokes::write_poses_file(folder_ / "poses.csv", rows);
-  tools::ToolSet set = tools::standard_tools();
-  set.world_markers = {{bones::BoneKind::Femur, 10, 4.0}};
-  tools::write_tools_file(folder_ / "tools.json", set);
-  std::vector<std::string> arguments{"pivot", "--marker",          "2", "--poses", folder_ / "poses.csv",
-                                     "-o",    folder_ / "tip.json"};
-  EXPECT_THAT(run_program(arguments).output, HasSubstr("no world marker in view"));
-  arguments.insert(arguments.end(), {"--tools", folder_ / "tools.json"});
-  EXPECT_THAT(run_program(arguments).output, HasSubstr("world: marker 10, 60 frames with both"));
-  const auto written = [this] { return nlohmann::json::parse(files::read_text(folder_ / "tip.json")); };
-  EXPECT_EQ(test::undescribed(written(), "tip"), "");
-  arguments.emplace_back("--spin");
-  (void)run_program(arguments);
-  EXPECT_EQ(test::undescribed(written(), "axis"), "");
 }
 
 // Wrong input names what is wrong.
