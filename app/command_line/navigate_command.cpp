@@ -21,6 +21,7 @@
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_lock.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 #include "planning/landmarks/anatomical_axes.h"
 
@@ -169,14 +170,10 @@ std::unique_ptr<sources::FrameSource> open_for(const std::string& video, const E
   return sources::open_camera(address);
 }
 
-double utc_now_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 // A recording is shown as if it were now.
 double captured_utc_s(const camera::Frame& picture) {
   using std::chrono::duration;
-  const double now_s = utc_now_s();
+  const double now_s = files::utc_now_s();
   if (picture.captured_ns == 0) return now_s;
   const double steady_s = duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   return now_s - (steady_s - static_cast<double>(picture.captured_ns) * 1e-9);
@@ -238,12 +235,12 @@ void navigate(Context& context, const NavigateArguments& arguments,
     observer.on_late = [&](const camera::FramePtr&, const std::string& why,
                            const operation::OperationStatePtr&) {
       progress.advance_to(++done);
-      if (igtl) igtl->tell({false, why}, utc_now_s());
+      if (igtl) igtl->tell({false, why}, files::utc_now_s());
       stop_if_interrupted(*interruption);
     };
     observer.on_silence = [&](const theatre::SourceWatch& watch, const operation::OperationStatePtr&) {
       const bool is_told = watch.trouble() != theatre::SourceTrouble::None;
-      if (igtl) igtl->tell({false, is_told ? watch.words() : "no new picture"}, utc_now_s());
+      if (igtl) igtl->tell({false, is_told ? watch.words() : "no new picture"}, files::utc_now_s());
       stop_if_interrupted(*interruption);
     };
     theatre::RecordOptions record;

@@ -8,7 +8,6 @@
 #include "app/command_line/tracking_report.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/pipeline/track_video.h"
-#include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
@@ -49,7 +48,7 @@ void track(Context& context, const TrackArguments& arguments) {
       progress.advance_to(++done);
     });
   }
-  files::write_atomically(arguments.output, strokes::poses_to_text(tracked.rows));
+  strokes::write_poses_file(arguments.output, tracked.rows);
   if (arguments.output != "-") say_statistics(context, tracked.statistics);
   reasons.insert(reasons.end(), tracked.reasons.begin(), tracked.reasons.end());
   if (!reasons.empty())

@@ -21,8 +21,6 @@ std::string_view drill_doubt(const guidance::DrillDepth& drill) {
   return drill.is_beside_plan() ? "beside the plan" : "where it was is not known";
 }
 
-double offset_mm(const guidance::GuidanceNumbers& guidance) { return guidance.offset_mm; }
-
 OffsetParts offset_parts(const guidance::GuidanceNumbers& guidance) {
   return {part(guidance, guidance.across_plan.side_is), part(guidance, guidance.across_plan.up_is)};
 }

@@ -267,7 +267,7 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Naviga
   const float side = ui.theme.px(14), above = ui.theme.px(8);
   widgets::Rect rest{area.x + side, area.y + above, area.width - 2 * side, area.height - 2 * above};
   const guidance::GuidanceNumbers& g = screen.display.guidance;
-  draw_number(ui, rest, "Offset", widgets::fixed(guidance_severity::offset_mm(g), 1),
+  draw_number(ui, rest, "Offset", widgets::fixed(g.offset_mm, 1),
               "mm " + widgets::plus_minus(g.sigma_offset_mm),
               guidance_severity::severity_of(screen.display.grades.offset));
   const guidance_severity::OffsetParts parts = guidance_severity::offset_parts(g);

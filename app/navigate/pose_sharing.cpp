@@ -1,20 +1,12 @@
 #include "app/navigate/pose_sharing.h"
 
-#include <chrono>
 #include <mutex>
 
 #include "app/navigate/navigate_display.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::navigate {
-
-namespace {
-
-double utc_now_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
-}  // namespace
 
 struct PoseSharing::State {
   std::optional<openigtlink::IgtlServer> server;
@@ -45,11 +37,11 @@ void PoseSharing::tell(const theatre::LiveState& live) {
   const NavigateDisplay display = display_of(&live, now_s);
   const bool is_new = live.picture != nullptr && live.picture != state_->last;
   if (display.is_live && is_new) {
-    state_->server->publish(live.operation, utc_now_s() - (now_s - live.captured_s), live.picture);
+    state_->server->publish(live.operation, files::utc_now_s() - (now_s - live.captured_s), live.picture);
   } else if (!display.is_live) {
-    state_->server->tell({false, display.headline}, utc_now_s());
+    state_->server->tell({false, display.headline}, files::utc_now_s());
   } else {  // between its pictures
-    state_->server->tell(openigtlink::status_of(*live.operation), utc_now_s(), live.operation);
+    state_->server->tell(openigtlink::status_of(*live.operation), files::utc_now_s(), live.operation);
   }
   state_->last = live.picture;
 }

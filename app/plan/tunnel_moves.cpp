@@ -11,16 +11,6 @@ namespace arthronaut::plan {
 
 namespace {
 
-struct ScreenAxes {
-  Eigen::Vector3d right, up, ahead;
-};
-
-ScreenAxes axes_of(const scene::SceneCamera& camera) {
-  const Eigen::Vector3d ahead = (camera.focus_mm - camera.position_mm).normalized();
-  const Eigen::Vector3d right = ahead.cross(camera.up).normalized();
-  return {right, right.cross(ahead), ahead};
-}
-
 Eigen::Vector3d turned_towards(const Eigen::Vector3d& direction, const Eigen::Vector3d& side,
                                double angle_deg) {
   const Eigen::Vector3d across = side - side.dot(direction) * direction;
@@ -39,7 +29,7 @@ tunnels::Tunnel with_entry_at(const tunnels::Tunnel& tunnel, const Eigen::Vector
 
 tunnels::Tunnel with_entry_slid(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
                                 const Eigen::Vector2d& right_up_mm, const geometry::Surface& bone) {
-  const ScreenAxes axes = axes_of(camera);
+  const scene::CameraAxes axes = axes_of(camera);
   tunnels::Tunnel result = tunnel;
   result.entry_mm =
       bone.closest_point(tunnel.entry_mm + right_up_mm.x() * axes.right + right_up_mm.y() * axes.up).point_mm;
@@ -48,7 +38,7 @@ tunnels::Tunnel with_entry_slid(const tunnels::Tunnel& tunnel, const scene::Scen
 
 tunnels::Tunnel turned(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
                        const Eigen::Vector2d& right_up_deg) {
-  const ScreenAxes axes = axes_of(camera);
+  const scene::CameraAxes axes = axes_of(camera);
   tunnels::Tunnel result = tunnel;
   result.direction = turned_towards(result.direction, axes.right, right_up_deg.x());
   result.direction = turned_towards(result.direction, axes.up, right_up_deg.y());

@@ -11,16 +11,6 @@ namespace arthronaut::scene {
 
 namespace {
 
-struct Axes {
-  Eigen::Vector3d right, up, ahead;
-};
-
-Axes axes_of(const SceneCamera& camera) {
-  const Eigen::Vector3d ahead = (camera.focus_mm - camera.position_mm).normalized();
-  const Eigen::Vector3d right = ahead.cross(camera.up).normalized();
-  return {right, right.cross(ahead), ahead};
-}
-
 double half_height(const SceneCamera& camera) {
   return std::tan(geometry::rad_from_deg(camera.view_angle_deg) / 2);
 }
@@ -50,6 +40,12 @@ Direction direction_of(ViewDirection view, const landmarks::AnatomicalAxes& axes
 
 }  // namespace
 
+CameraAxes axes_of(const SceneCamera& camera) {
+  const Eigen::Vector3d ahead = (camera.focus_mm - camera.position_mm).normalized();
+  const Eigen::Vector3d right = ahead.cross(camera.up).normalized();
+  return {right, right.cross(ahead), ahead};
+}
+
 std::string_view to_text(ViewDirection view) {
   switch (view) {
     case ViewDirection::Anterior:
@@ -78,7 +74,7 @@ SceneCamera look_from(ViewDirection view, const landmarks::AnatomicalAxes& anato
                       const geometry::Bounds& bounds, double aspect) {
   const Direction direction = direction_of(view, anatomy);
   SceneCamera camera = look_along(direction.ahead, bounds.center_mm(), 1.0, direction.up);
-  const Axes axes = axes_of(camera);
+  const CameraAxes axes = axes_of(camera);
   const Eigen::Vector3d half = 0.5 * bounds.size_mm();
   const double half_width = half.dot(axes.right.cwiseAbs());
   const double half_tall = half.dot(axes.up.cwiseAbs());
@@ -102,7 +98,7 @@ SceneCamera look_along(const Eigen::Vector3d& direction, const Eigen::Vector3d& 
 }
 
 SceneCamera orbited(const SceneCamera& camera, const Eigen::Vector2d& drag_px, double height_px) {
-  const Axes axes = axes_of(camera);
+  const CameraAxes axes = axes_of(camera);
   constexpr double kTurnPerHeight = 1.2 * geometry::kPi;  // a drag over the whole height turns by 216 degrees
   const double scale = kTurnPerHeight / std::max(height_px, 1.0);
   const Eigen::Matrix3d turn =
@@ -115,7 +111,7 @@ SceneCamera orbited(const SceneCamera& camera, const Eigen::Vector2d& drag_px, d
 }
 
 SceneCamera panned(const SceneCamera& camera, const Eigen::Vector2d& drag_px, double height_px) {
-  const Axes axes = axes_of(camera);
+  const CameraAxes axes = axes_of(camera);
   const double mm_per_px =
       2 * half_height(camera) * (camera.focus_mm - camera.position_mm).norm() / std::max(height_px, 1.0);
   const Eigen::Vector3d shift = mm_per_px * (-drag_px.x() * axes.right + drag_px.y() * axes.up);
@@ -136,7 +132,7 @@ SceneCamera zoomed(const SceneCamera& camera, double steps) {
 
 SceneRay ray_through(const SceneCamera& camera, const Eigen::Vector2d& pixel,
                      const Eigen::Vector2d& size_px) {
-  const Axes axes = axes_of(camera);
+  const CameraAxes axes = axes_of(camera);
   const double scale = half_height(camera) / (0.5 * size_px.y());
   const Eigen::Vector2d offset = (pixel - 0.5 * size_px) * scale;
   return {camera.position_mm, (axes.ahead + offset.x() * axes.right - offset.y() * axes.up).normalized()};
@@ -144,7 +140,7 @@ SceneRay ray_through(const SceneCamera& camera, const Eigen::Vector2d& pixel,
 
 std::optional<Eigen::Vector2d> project(const SceneCamera& camera, const Eigen::Vector3d& point_mm,
                                        const Eigen::Vector2d& size_px) {
-  const Axes axes = axes_of(camera);
+  const CameraAxes axes = axes_of(camera);
   const Eigen::Vector3d from_eye = point_mm - camera.position_mm;
   const double depth = from_eye.dot(axes.ahead);
   if (depth <= 1e-6) return std::nullopt;

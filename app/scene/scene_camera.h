@@ -23,6 +23,12 @@ struct SceneRay {
   Eigen::Vector3d origin_mm, direction;  // direction is unit
 };
 
+// Of the picture, in the world: unit, square to each other.
+struct CameraAxes {
+  Eigen::Vector3d right, up, ahead;
+};
+[[nodiscard]] CameraAxes axes_of(const SceneCamera& camera);
+
 // Sees all of `bounds` from a named side of a knee that lies along the scanner's axes.
 [[nodiscard]] SceneCamera look_from(ViewDirection view, bones::Side side, const geometry::Bounds& bounds,
                                     double aspect);

@@ -81,10 +81,6 @@ class ImportWork {
   // Why the last step was refused or cancelled; empty when it was not.
   [[nodiscard]] const std::string& failure() const { return failure_.words; }
   [[nodiscard]] const importing::Failure& refusal() const { return failure_; }  // with what may be answered
-  // The images show both knees, and nobody has said which one is meant.
-  [[nodiscard]] bool found_both_knees() const {
-    return failure_.reason == importing::FailureReason::ShowsBothKnees;
-  }
   // Choosing: the source that was refused; null where none was.
   [[nodiscard]] const ImportSource* refused_source() const;
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }  // Done: the case

@@ -53,7 +53,6 @@ PaneInput ScenePane::draw(const Ui& ui, const char* name, const Rect& rect,
     input.handle_dragged = drags_handle_ && press_travel_px_ >= kDragTravel_px;
   }
   if (ImGui::IsItemDeactivated()) {
-    input.handle_released = drags_handle_;
     input.was_clicked = !drags_handle_ && press_travel_px_ < kClickTravel_px && input.is_hovered &&
                         ImGui::IsMouseReleased(ImGuiMouseButton_Left);
     drags_handle_ = false;

@@ -19,7 +19,6 @@ struct PaneInput {
   bool was_clicked = false;     // pressed and let go in one place, which mouse_px then is
   bool handle_pressed = false;  // pressed on a handle, see below
   bool handle_dragged = false;
-  bool handle_released = false;
 };
 
 class ScenePane {

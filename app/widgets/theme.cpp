@@ -50,13 +50,6 @@ float scale_for(int width_px, int height_px) {
   return std::clamp(std::round(fit * 12) / 12, 0.5F, 4.0F);
 }
 
-double arc_minutes_of(float font_px, const Screen& screen) {
-  const double diagonal_px = std::hypot(screen.width_px, screen.height_px);
-  const double diagonal_mm = screen.diagonal_mm > 0 ? screen.diagonal_mm : kUsualDiagonal_mm;
-  const double capitals_mm = static_cast<double>(font_px * kCapitalsOfSize) * diagonal_mm / diagonal_px;
-  return std::atan2(capitals_mm, kAfarDistance_mm) * kArcminPerRad;
-}
-
 float afar_needed_px(const Screen& screen) {
   const double diagonal_px = std::hypot(screen.width_px, screen.height_px);
   const double diagonal_mm = screen.diagonal_mm > 0 ? screen.diagonal_mm : kUsualDiagonal_mm;

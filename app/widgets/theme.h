@@ -37,8 +37,6 @@ inline constexpr double kUsualDiagonal_mm = 27 * 25.4;
 // The font size that is used at this scale: the one that is needed, as far as a layout of this scale can hold
 // it, from 0.8 to 1.2 times its usual size.
 [[nodiscard]] float afar_px(const Screen& screen, float scale);
-// What such a font falls short of, in minutes of arc at 2 m: 16 or more where the rule is kept.
-[[nodiscard]] double arc_minutes_of(float font_px, const Screen& screen);
 
 inline constexpr ImU32 kBackground = IM_COL32(12, 15, 19, 255);
 inline constexpr ImU32 kPanel = IM_COL32(22, 27, 33, 255);

@@ -256,7 +256,6 @@ GuidanceNumbers compute_guidance(const GuidanceInput& input) {
                       input.axis_error.direction_sigma_rad},
                      placed->budget, *input.plan);
   numbers.offset_error_mm = errors.offset_mm;
-  numbers.angle_error_deg = errors.angle_deg;
   numbers.sigma_offset_mm = errors.offset_mm.total;
   numbers.sigma_angle_deg = errors.angle_deg.total;
   return numbers;

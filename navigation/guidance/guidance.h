@@ -92,7 +92,7 @@ struct GuidanceNumbers {
   // Predicted, one sigma: root mean square of the length of the offset's error, and of the direction's.
   double sigma_offset_mm = 0;
   double sigma_angle_deg = 0;
-  PredictedError offset_error_mm, angle_error_deg;  // the same, with their shares
+  PredictedError offset_error_mm;  // the same, with its shares
   // Of the drill, where it is seen: whether the guide is seen or not. Empty: nobody knows how deep it is.
   std::optional<DrillDepth> drill = std::nullopt;
   [[nodiscard]] bool is_valid() const { return state == GuidanceState::Valid; }

@@ -68,24 +68,4 @@ void add_tool(const tools::Tool& tool, const geometry::RigidTransform& camera_fr
   if (tool.axis) add_guide(*tool.axis, camera_from_marker, solids);
 }
 
-tools::ToolSet with_several_markers(tools::ToolSet tools) {
-  // Up the handle, turned a little to one side: seen when the first one is seen obliquely. The third is
-  // smaller and on the other side.
-  const auto turned = [](double about_y_deg) {
-    return Eigen::Quaterniond(
-        Eigen::AngleAxisd(geometry::rad_from_deg(about_y_deg), Eigen::Vector3d::UnitY()));
-  };
-  for (tools::Tool& tool : tools.tools) {
-    const int id = tool.marker_id;
-    tool.markers = {{id, tool.size_mm, {}},
-                    {id + 10, tool.size_mm, {turned(25), {5.6, 2.0, -1.4}}},
-                    {id + 20, 0.75 * tool.size_mm, {turned(-25), {-5.2, 1.0, -1.2}}}};
-  }
-  for (tools::WorldMarker& world : tools.world_markers)
-    world.markers = {
-        {world.marker_id, world.size_mm, {}},
-        {world.marker_id + 10, 0.75 * world.size_mm, {turned(0), {0, 1.9 * world.size_mm, 0.8}}}};
-  return tools;
-}
-
 }  // namespace arthronaut::simulator

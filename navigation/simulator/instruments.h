@@ -17,8 +17,4 @@ void add_world_marker(const tools::WorldMarker& marker, const geometry::RigidTra
 // A probe when the tool has a tip, a drill guide when it has an axis. The plate is the first solid added.
 void add_tool(const tools::Tool& tool, const geometry::RigidTransform& camera_from_marker, Solids& solids);
 
-// The same instruments with three markers on each tool and two on each bone's screw, ids 10 and 20 above
-// those they have: bodies of several markers, to be tried. Their first marker stays their frame.
-[[nodiscard]] tools::ToolSet with_several_markers(tools::ToolSet tools);
-
 }  // namespace arthronaut::simulator

@@ -100,10 +100,6 @@ class WishReader {
   std::string_view address_;
 };
 
-std::string size_of(const Eigen::Vector2i& size_px) {
-  return std::to_string(size_px.x()) + " x " + std::to_string(size_px.y());
-}
-
 bool is_as_wished(const CameraMode& mode, const CameraWish& wish) {
   if (find_pixel_format(mode.format) == nullptr) return false;
   if (!wish.format.empty() && mode.format != wish.format) return false;
@@ -141,16 +137,20 @@ CameraAddress read_camera_address(std::string_view text) {
   return address;
 }
 
+std::string size_in_words(const Eigen::Vector2i& size_px) {
+  return std::to_string(size_px.x()) + " x " + std::to_string(size_px.y());
+}
+
 std::string text_of(const CameraMode& mode) {
   const std::string rate =
       mode.frames_per_second > 0 ? files::format(", %.4g/s", mode.frames_per_second) : "";
-  return size_of(mode.size_px) + rate + ", " + mode.format;
+  return size_in_words(mode.size_px) + rate + ", " + mode.format;
 }
 
 std::string text_of(const CameraWish& wish) {
   std::string text = wish.format;
   const auto add = [&](const std::string& more) { text += (text.empty() ? "" : ", ") + more; };
-  if (wish.size_px.x() > 0) add(size_of(wish.size_px));
+  if (wish.size_px.x() > 0) add(size_in_words(wish.size_px));
   if (wish.frames_per_second > 0) add(files::format("%.4g/s", wish.frames_per_second));
   return text;
 }

@@ -42,6 +42,7 @@ struct CameraMode {
   double frames_per_second = 0;  // 0: the driver does not say, or what is connected decides
   [[nodiscard]] bool operator==(const CameraMode& other) const = default;
 };
+[[nodiscard]] std::string size_in_words(const Eigen::Vector2i& size_px);  // "1920 x 1080"
 // "1920 x 1080, 60/s, mjpeg".
 [[nodiscard]] std::string text_of(const CameraMode& mode);
 // "mjpeg, 1920 x 1080, 60/s": what was asked for; empty when nothing was.

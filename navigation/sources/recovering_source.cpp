@@ -20,10 +20,6 @@ constexpr auto kBeforeAsking = std::chrono::seconds(1);
 // dates are where they were, and with it all that looks for a picture that is frozen, or a mark that is lost.
 constexpr std::int64_t kStandsAtMost_ns = 1'000'000'000;
 
-std::string size_text(const Eigen::Vector2i& size_px) {
-  return std::to_string(size_px.x()) + " x " + std::to_string(size_px.y());
-}
-
 class RecoveringSource final : public FrameSource {
  public:
   explicit RecoveringSource(LiveOpener opener) : opener_(std::move(opener)) {
@@ -57,8 +53,9 @@ class RecoveringSource final : public FrameSource {
 
  private:
   void tell_size(const Eigen::Vector2i& now_px) {
-    tell(info_.name + ": " + std::string(kFormatChanged) + size_text(now_px) +
-         ": set the processor back to " + size_text(info_.image_size_px) + ", or choose the camera again");
+    tell(info_.name + ": " + std::string(kFormatChanged) + size_in_words(now_px) +
+         ": set the processor back to " + size_in_words(info_.image_size_px) +
+         ", or choose the camera again");
   }
 
   camera::FramePtr take() {

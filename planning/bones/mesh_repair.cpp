@@ -216,7 +216,6 @@ void remove_flat_triangles(SurfaceMesh& mesh, MeshRepairReport& report) {
 MeshRepair mend(const geometry::TriangleMesh& mesh) {
   MeshRepair result;
   MeshRepairReport& report = result.report;
-  report.vertices_found = mesh.vertices_mm.size();
   report.triangles_found = mesh.triangles.size();
 
   Soup soup = soup_of(mesh);
@@ -252,7 +251,6 @@ MeshRepair mend(const geometry::TriangleMesh& mesh) {
   report.was_inside_out = flips == kept;
   report.triangles_flipped = flips;
   result.mesh = plain_mesh(surface);
-  report.vertices_now = result.mesh.vertices_mm.size();
   report.triangles_now = result.mesh.triangles.size();
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& p : result.mesh.vertices_mm)

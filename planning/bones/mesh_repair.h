@@ -10,7 +10,7 @@
 namespace arthronaut::bones {
 
 struct MeshRepairReport {
-  std::size_t vertices_found = 0, triangles_found = 0;
+  std::size_t triangles_found = 0;
   std::size_t vertices_merged = 0;       // of the same place as another
   std::size_t vertices_unused = 0;       // of no triangle
   std::size_t triangles_degenerate = 0;  // without an area
@@ -23,11 +23,10 @@ struct MeshRepairReport {
   double filled_area_fraction = 0;    // of the surface as it is now
   std::size_t triangles_flipped = 0;  // of the kept part, looked the other way; all of them: was inside out
   bool was_inside_out = false;
-  std::size_t vertices_now = 0, triangles_now = 0;
+  std::size_t triangles_now = 0;
   double volume_mm3 = 0;
   bool is_closed = false;  // false: the result must not be used for planning
 
-  [[nodiscard]] bool changed_anything() const;
   // A line for each thing that was found and mended, for a person; empty when the mesh was fine.
   [[nodiscard]] std::vector<std::string> lines() const;
   // Why a person should look at the result before relying on it; empty when there is no reason.

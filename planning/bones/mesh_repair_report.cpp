@@ -16,8 +16,6 @@ std::string counted(std::size_t count, const std::string& singular, const std::s
 
 }  // namespace
 
-bool MeshRepairReport::changed_anything() const { return !lines().empty(); }
-
 std::vector<std::string> MeshRepairReport::lines() const {
   std::vector<std::string> result;
   if (vertices_merged > 0)

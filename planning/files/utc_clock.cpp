@@ -22,6 +22,10 @@ std::string utc_as(const char* format, std::time_t moment) {
 
 std::string utc_now() { return utc_now_as(kIso8601); }
 
+double utc_now_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 std::string utc_of(std::chrono::system_clock::time_point moment) {
   return utc_as(kIso8601, std::chrono::system_clock::to_time_t(moment));
 }

@@ -1,5 +1,5 @@
-// The wall clock as files and pages name it: always UTC, so that two machines mean the same. For dates alone;
-// intervals are measured on a steady clock.
+// The wall clock as files and pages name it: always UTC, so that two machines mean the same. For dates, and
+// for what other machines are told; intervals are measured on a steady clock.
 #pragma once
 
 #include <chrono>
@@ -9,6 +9,7 @@ namespace arthronaut::files {
 
 // ISO 8601, to the second: "2026-01-31T12:00:00Z".
 [[nodiscard]] std::string utc_now();
+[[nodiscard]] double utc_now_s();  // since 1970
 // Another moment in the same form: of two the earlier one is the lesser text.
 [[nodiscard]] std::string utc_of(std::chrono::system_clock::time_point moment);
 // The same moment as strftime writes it: utc_now_as("%Y-%m-%d"). At most 63 characters.

@@ -206,6 +206,7 @@ void cut_and_close(TriangleMesh& mesh, const std::vector<Edge>& edges, const std
   }
 }
 
+// Of all parts together: 0 for one that is like a ball.
 int genus(const TriangleMesh& mesh, const std::vector<Edge>& edges) {
   Union parts(mesh.vertices_mm.size());
   for (const Edge& edge : edges) (void)parts.join(edge.low, edge.high);
@@ -223,11 +224,6 @@ int genus(const TriangleMesh& mesh, const std::vector<Edge>& edges) {
 }
 
 }  // namespace
-
-int genus_of(const TriangleMesh& mesh) {
-  const std::vector<Edge> edges = edges_of(mesh);
-  return edges.empty() ? 0 : genus(mesh, edges);
-}
 
 std::vector<Handle> handles_of(const TriangleMesh& mesh, double least_around_mm) {
   TriangleMesh left = mesh;

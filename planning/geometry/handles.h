@@ -22,7 +22,4 @@ struct Handle {
 // holes. Vertices of the same place share an index. Of two parts each by itself.
 [[nodiscard]] std::vector<Handle> handles_of(const TriangleMesh& mesh, double least_around_mm);
 
-// Of all parts together: 0 for one that is like a ball. 0 where the mesh is not closed.
-[[nodiscard]] int genus_of(const TriangleMesh& mesh);
-
 }  // namespace arthronaut::geometry

@@ -264,12 +264,6 @@ std::vector<PlanCheck> none_checked(bool is_femur, const char* bend, const std::
 
 }  // namespace
 
-KneeSurroundings knee_surroundings_of(const geometry::TriangleMesh& femur, const PlanSurroundings& of_femur) {
-  KneeSurroundings knee;
-  put_femur(knee, femur, of_femur);
-  return knee;
-}
-
 void put_femur(KneeSurroundings& knee, const geometry::TriangleMesh& femur,
                const PlanSurroundings& of_femur) {
   knee.femur_axes = of_femur.axes;

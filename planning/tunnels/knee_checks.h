@@ -25,10 +25,7 @@ struct KneeSurroundings {
   // flexion. A missing one is unknown.
   std::map<TunnelKey, Eigen::Vector3d> insertions_mm = {};
 };
-// What the femur says of it. Without insertions, which come from norms.
-[[nodiscard]] KneeSurroundings knee_surroundings_of(const geometry::TriangleMesh& femur,
-                                                    const PlanSurroundings& of_femur);
-// In place of what was said of the bone before; the insertions are left as they are.
+// What a bone says of it, in place of what was said of the bone before; the insertions are left as they are.
 void put_femur(KneeSurroundings& knee, const geometry::TriangleMesh& femur, const PlanSurroundings& of_femur);
 void put_tibia(KneeSurroundings& knee, const PlanSurroundings& of_tibia);
 

@@ -28,7 +28,7 @@ const KneeAtHand& knee() {
     made.tibia = std::make_shared<geometry::Surface>(made.knee.tibia.mesh);
     made.of_femur = tunnels::surroundings_of(made.knee.femur.mesh, bones::BoneKind::Femur,
                                              made.knee.femur_landmarks, made.knee.side, made.femur);
-    made.of_knee = tunnels::knee_surroundings_of(made.knee.femur.mesh, made.of_femur);
+    tunnels::put_femur(made.of_knee, made.knee.femur.mesh, made.of_femur);
     made.tibial = tunnels::measure(made.knee.tibial_tunnel, *made.tibia);
     return made;
   }();

@@ -121,7 +121,7 @@ TEST_F(ImportWorkTest, BothKneesAreToldByWhatTheImagesShow) {
   work_.start({.sources = {0}});
   ASSERT_TRUE(reach(State::Choosing));
   EXPECT_THAT(work_.failure(), testing::HasSubstr("shows both knees"));
-  EXPECT_FALSE(work_.found_both_knees());
+  EXPECT_NE(work_.refusal().reason, importing::FailureReason::ShowsBothKnees);
 }
 
 // Names that tell the side are believed, and that they were is said; meshes of two sides are no knee.

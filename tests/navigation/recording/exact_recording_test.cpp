@@ -6,7 +6,6 @@
 #include "navigation/pipeline/navigation_pipeline.h"
 #include "navigation/recording/picture_writer.h"
 #include "navigation/recording/session.h"
-#include "navigation/simulator/instruments.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "tests/navigation/recording/recorded_frames.h"
@@ -123,12 +122,34 @@ TEST_F(ExactRecording, IsTrackedAgainToTheSamePosesBitForBit) {
   EXPECT_GE(poses, 8);
 }
 
+// Three markers on each tool and two on each bone's screw, ids 10 and 20 above those they have. Their first
+// marker stays their frame.
+tools::ToolSet with_several_markers(tools::ToolSet tools) {
+  // Up the handle, turned a little to one side: seen when the first one is seen obliquely. The third is
+  // smaller and on the other side.
+  const auto turned = [](double about_y_deg) {
+    return Eigen::Quaterniond(
+        Eigen::AngleAxisd(geometry::rad_from_deg(about_y_deg), Eigen::Vector3d::UnitY()));
+  };
+  for (tools::Tool& tool : tools.tools) {
+    const int id = tool.marker_id;
+    tool.markers = {{id, tool.size_mm, {}},
+                    {id + 10, tool.size_mm, {turned(25), {5.6, 2.0, -1.4}}},
+                    {id + 20, 0.75 * tool.size_mm, {turned(-25), {-5.2, 1.0, -1.2}}}};
+  }
+  for (tools::WorldMarker& world : tools.world_markers)
+    world.markers = {
+        {world.marker_id, world.size_mm, {}},
+        {world.marker_id + 10, 0.75 * world.size_mm, {turned(0), {0, 1.9 * world.size_mm, 0.8}}}};
+  return tools;
+}
+
 // The same with several markers on the probe and on the screw: their bodies lie where they truly are, and
 // both the pictures and the record itself give the bodies' poses back to the last bit.
 TEST_F(ExactRecording, KeepsBodiesOfSeveralMarkersBitForBit) {
   simulator::SimulationOptions simulation = simulator::phantom_options();
   simulation.frame_count = 8;
-  simulation.tools = simulator::with_several_markers(simulation.tools);
+  simulation.tools = with_several_markers(simulation.tools);
   pipeline::PipelineOptions options;
   options.calibration = simulation.camera;
   options.refractive_index = simulation.refractive_index;

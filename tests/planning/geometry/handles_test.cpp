@@ -57,7 +57,6 @@ TriangleMesh block(bool has_wide, bool has_narrow) {
 }
 
 TEST(Handles, ABallHasNone) {
-  EXPECT_EQ(genus_of(test::ellipsoid({40, 30, 25}, 3)), 0);
   EXPECT_TRUE(handles_of(test::ellipsoid({40, 30, 25}, 3), 0).empty());
   EXPECT_TRUE(handles_of(block(false, false), 0).empty());
 }
@@ -65,7 +64,6 @@ TEST(Handles, ABallHasNone) {
 // Round the hole is the shortest way, as the block is thicker than that nowhere.
 TEST(Handles, AHoleIsMeasuredAround) {
   const TriangleMesh mesh = block(true, false);
-  EXPECT_EQ(genus_of(mesh), 1);
   const auto handles = handles_of(mesh, 16);
   ASSERT_EQ(handles.size(), 1U);
   EXPECT_GT(handles[0].around_mm, 20);  // a diagonal cuts off the corners
@@ -78,7 +76,6 @@ TEST(Handles, AHoleIsMeasuredAround) {
 
 // What is too narrow for a tunnel does not hide the one that is there, nor is it taken for one.
 TEST(Handles, ANarrowHoleIsLeftOut) {
-  EXPECT_EQ(genus_of(block(true, true)), 2);
   EXPECT_EQ(handles_of(block(true, true), 16).size(), 1U);
   EXPECT_TRUE(handles_of(block(false, true), 16).empty());
   EXPECT_EQ(handles_of(block(true, true), 0).size(), 2U);
@@ -90,22 +87,19 @@ TEST(Handles, AThinBridgeIsLeftOut) {
     const bool is_bridge = z >= 14 && z < 16 && y >= 5 && y < 7;
     return z < 4 || (z < 16 && (x < 4 || x >= 26)) || is_bridge;
   });
-  EXPECT_EQ(genus_of(mesh), 1);
   EXPECT_TRUE(handles_of(mesh, 16).empty());
   EXPECT_EQ(handles_of(mesh, 0).size(), 1U);
 }
 
 // A blind hole, an inner cavity and a surface that is not closed.
 TEST(Handles, WhatDoesNotGoThroughIsNone) {
-  EXPECT_EQ(genus_of(of_cells(
-                {20, 20, 12},
-                [](int x, int y, int z) { return !(x >= 6 && x < 14 && y >= 6 && y < 14 && z >= 4); })),
-            0);
-  EXPECT_EQ(genus_of(of_cells({20, 20, 12},
-                              [](int x, int y, int z) {
-                                return !(x >= 6 && x < 14 && y >= 6 && y < 14 && z >= 4 && z < 8);
-                              })),
-            0);
+  const TriangleMesh blind = of_cells(
+      {20, 20, 12}, [](int x, int y, int z) { return !(x >= 6 && x < 14 && y >= 6 && y < 14 && z >= 4); });
+  EXPECT_TRUE(handles_of(blind, 0).empty());
+  const TriangleMesh hollow = of_cells({20, 20, 12}, [](int x, int y, int z) {
+    return !(x >= 6 && x < 14 && y >= 6 && y < 14 && z >= 4 && z < 8);
+  });
+  EXPECT_TRUE(handles_of(hollow, 0).empty());
   TriangleMesh open = block(true, false);
   open.triangles.pop_back();
   EXPECT_TRUE(handles_of(open, 0).empty());

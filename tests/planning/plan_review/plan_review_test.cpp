@@ -163,9 +163,10 @@ TEST_F(PlanReview, BonesOfABentKneeLieInOneFrame) {
     const cases::Case knee = phantom::case_of(
         phantom::make_phantom_knee({.side = side, .seed = seed, .edge_length_mm = 4}), "test");
     const CaseReview review(knee);
-    const auto axis = tunnels::knee_surroundings_of(knee.bones.at(BoneKind::Femur).mesh,
-                                                    review.bone(BoneKind::Femur).surroundings)
-                          .axis;
+    tunnels::KneeSurroundings surroundings;
+    tunnels::put_femur(surroundings, knee.bones.at(BoneKind::Femur).mesh,
+                       review.bone(BoneKind::Femur).surroundings);
+    const auto axis = surroundings.axis;
     ASSERT_TRUE(axis);
     for (const double flexion_deg : {-10, 0, 30, 60, 90}) {
       const auto turn = graft::femur_from_tibia(*axis, geometry::rad_from_deg(flexion_deg));

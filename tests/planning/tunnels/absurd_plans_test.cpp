@@ -206,7 +206,8 @@ TEST_P(AbsurdPlans, EveryCheckIsData) {
 TEST_P(AbsurdPlans, TheKneeIsCheckedAsAWhole) {
   const auto femoral = measure(knee_.femoral_tunnel, *femur_.surface),
              tibial = measure(knee_.tibial_tunnel, *tibia_.surface);
-  auto knee = knee_surroundings_of(femur_.mesh, femur_.known);
+  KneeSurroundings knee;
+  put_femur(knee, femur_.mesh, femur_.known);
   knee.insertions_mm = {{BoneKind::Femur, knee_.femoral_tunnel.entry_mm},
                         {BoneKind::Tibia, knee_.tibial_tunnel.entry_mm}};
   const KneePlan plan{&knee_.femoral_tunnel, &femoral, &knee_.tibial_tunnel, &tibial};
@@ -248,7 +249,8 @@ TEST_P(AbsurdPlans, TheMapTellsGoodEntriesFromBadOnes) {
 // Through the portal the drill comes from below, from medial and from in front; straight backwards it cannot
 // come. From outside in there are aims, and each leaves through the lateral cortex.
 TEST_P(AbsurdPlans, APortalAllowsSomeAims) {
-  const auto knee = knee_surroundings_of(femur_.mesh, femur_.known);
+  KneeSurroundings knee;
+  put_femur(knee, femur_.mesh, femur_.known);
   ASSERT_TRUE(knee.axis);
   const Vector3d entry = knee_.femoral_tunnel.entry_mm;
   const auto aims =
