@@ -15,18 +15,13 @@
 #include "planning/plan_review/tunnel_verdict.h"
 #include "planning/postop/achieved_file.h"
 #include "planning/tunnels/check_numbers.h"
+#include "planning/tunnels/tunnel_json.h"
 
 namespace arthronaut::report {
 
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json json_of(const tunnels::Tunnel& tunnel) {
-  return {{"entry_mm", files::to_json(tunnel.entry_mm)},
-          {"direction", files::to_json(tunnel.direction)},
-          {"diameter_mm", tunnel.diameter_mm}};
-}
 
 ordered_json json_of(const operation::TunnelDifference& difference) {
   return {{"entry_mm", difference.entry_mm},
@@ -40,7 +35,7 @@ ordered_json tunnels_of(const Content& content) {
   ordered_json all = ordered_json::array();
   for (const auto& [key, tunnel] : knee.plan.tunnels) {
     ordered_json node = {{"tunnel", tunnels::name_of(key)}};
-    node.update(json_of(tunnel));
+    node.update(tunnels::to_json(tunnel));
     const cases::PlanFit fit = cases::plan_fit(knee, key);
     node["valid"] = fit.is_valid();
     if (!fit.is_valid()) node["reason"] = fit.reason;
@@ -138,7 +133,7 @@ ordered_json session_of(const Content& content) {
   for (const PlanInForce& in_force : plans_in_force(session)) {
     ordered_json plan = {{"tunnel", tunnels::name_of(in_force.plan.tunnel.key())},
                          {"since_s", in_force.since_s}};
-    plan.update(json_of(in_force.plan.tunnel));
+    plan.update(tunnels::to_json(in_force.plan.tunnel));
     plan["length_mm"] = in_force.plan.length_mm;
     node["plans"].push_back(std::move(plan));
   }
@@ -159,8 +154,8 @@ ordered_json session_of(const Content& content) {
 ordered_json json_of(const Content& content, const operation::AchievedTunnel& achieved,
                      ordered_json session) {
   ordered_json node = {{"tunnel", tunnels::name_of(achieved.planned.key())}, {"session", std::move(session)}};
-  node["planned"] = json_of(achieved.planned);
-  node["measured"] = json_of(achieved.measured);
+  node["planned"] = tunnels::to_json(achieved.planned);
+  node["measured"] = tunnels::to_json(achieved.measured);
   node["difference"] = json_of(operation::compare(achieved.planned, achieved.measured));
   if (const auto place = place_of(content, achieved)) postop::put_place(node, *place);
   node["depth_mm"] = nullptr;
@@ -169,7 +164,7 @@ ordered_json json_of(const Content& content, const operation::AchievedTunnel& ac
   node["sigma_angle_deg"] = achieved.sigma_angle_deg;
   node["poses"] = achieved.pose_count;
   if (achieved.truth) {
-    node["truth"] = json_of(*achieved.truth);
+    node["truth"] = tunnels::to_json(*achieved.truth);
     node["difference_of_truth"] = json_of(operation::compare(achieved.planned, *achieved.truth));
   }
   return node;
@@ -193,9 +188,9 @@ ordered_json postoperative_of(const Content& content) {
     // Of an earlier plan the differences alone are known, not what they are from.
     if (const auto plan = content.knee.plan.tunnels.find(key);
         plan != content.knee.plan.tunnels.end() && verdict != postop::ComparisonVerdict::OfAnEarlierPlan)
-      node["planned"] = json_of(plan->second);
+      node["planned"] = tunnels::to_json(plan->second);
     node["achieved"] = nullptr;
-    if (found.is_found) node["achieved"] = json_of(found.tunnel);
+    if (found.is_found) node["achieved"] = tunnels::to_json(found.tunnel);
     node["offset_mm"] = number(found.offset_mm);
     node["offset_across_mm"] = number(found.offset_across_mm);
     node["angle_deg"] = number(geometry::deg_from_rad(found.angle_rad));

@@ -1,11 +1,11 @@
 #include "navigation/operation/achieved_tunnel.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "planning/files/achieved_shape.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/rigid_transform.h"
+#include "planning/tunnels/tunnel_json.h"
 
 namespace arthronaut::operation {
 
@@ -13,25 +13,6 @@ namespace {
 
 constexpr std::string_view kAchievedFormat = "arthronaut.achieved";
 constexpr int kAchievedVersion = 2;  // of one that was taken back; of the others 1
-
-nlohmann::ordered_json to_json(const tunnels::Tunnel& tunnel) {
-  return {{"entry_mm", files::to_json(tunnel.entry_mm)},
-          {"direction", files::to_json(tunnel.direction)},
-          {"diameter_mm", tunnel.diameter_mm}};
-}
-
-tunnels::Tunnel tunnel_from(const files::JsonObject& node, const tunnels::TunnelKey& key) {
-  tunnels::Tunnel tunnel;
-  tunnel.bone = key.bone;
-  tunnel.bundle = key.bundle;
-  tunnel.entry_mm = node.vector3("entry_mm");
-  tunnel.direction = node.vector3("direction");
-  if (tunnel.direction.norm() < 1e-6) node.fail("direction", "must not be zero");
-  // One that was written normalised comes back to the bit: what is read and written again is the same file.
-  if (std::abs(tunnel.direction.squaredNorm() - 1) > 1e-12) tunnel.direction.normalize();
-  tunnel.diameter_mm = node.positive_number("diameter_mm");
-  return tunnel;
-}
 
 bool is_taken_back(const std::filesystem::path& file) {
   try {
@@ -68,11 +49,10 @@ std::vector<std::filesystem::path> achieved_files(const std::filesystem::path& s
 
 AchievedTunnel read_achieved_file(const std::filesystem::path& file) {
   const auto root = files::read_achieved(file, files::AchievedShape::OfSession);
-  tunnels::TunnelKey key = bones::bone_kind_from_text(root.text("bone"));
-  if (root.has("bundle")) key.bundle = norms::bundle_from_text(root.text("bundle"));
+  const tunnels::TunnelKey key = tunnels::read_key(root);
   AchievedTunnel achieved;
-  achieved.planned = tunnel_from(root.object("planned"), key);
-  achieved.measured = tunnel_from(root.object("measured"), key);
+  achieved.planned = tunnels::read_tunnel(root.object("planned"), key);
+  achieved.measured = tunnels::read_tunnel(root.object("measured"), key);
   // Nought, or hardly more, stands in older files where nobody knew it.
   constexpr double kLeastKnownDepth_mm = 1;
   if (root.has("depth_mm") && root.number("depth_mm") > kLeastKnownDepth_mm)
@@ -82,7 +62,7 @@ AchievedTunnel read_achieved_file(const std::filesystem::path& file) {
   achieved.sigma_offset_mm = root.number("sigma_offset_mm");
   achieved.sigma_angle_deg = root.number("sigma_angle_deg");
   achieved.is_taken_back = root.has("is_taken_back") && root.boolean("is_taken_back");
-  if (root.has("truth")) achieved.truth = tunnel_from(root.object("truth"), key);
+  if (root.has("truth")) achieved.truth = tunnels::read_tunnel(root.object("truth"), key);
   return achieved;
 }
 
@@ -91,8 +71,8 @@ void write_achieved_file(const std::filesystem::path& file, const AchievedTunnel
       {"format", kAchievedFormat},
       {"version", achieved.is_taken_back ? kAchievedVersion : 1},
       {"bone", bones::to_text(achieved.planned.bone)},
-      {"planned", to_json(achieved.planned)},
-      {"measured", to_json(achieved.measured)},
+      {"planned", tunnels::to_json(achieved.planned)},
+      {"measured", tunnels::to_json(achieved.measured)},
       {"timestamp_ns", achieved.timestamp_ns},
       {"pose_count", achieved.pose_count},
       {"sigma_offset_mm", achieved.sigma_offset_mm},
@@ -102,7 +82,7 @@ void write_achieved_file(const std::filesystem::path& file, const AchievedTunnel
     json["bundle"] = norms::to_text(achieved.planned.bundle);
   if (achieved.depth_mm) json["depth_mm"] = *achieved.depth_mm;
   if (achieved.is_taken_back) json["is_taken_back"] = true;
-  if (achieved.truth) json["truth"] = to_json(*achieved.truth);
+  if (achieved.truth) json["truth"] = tunnels::to_json(*achieved.truth);
   files::write_json(file, json);
 }
 

@@ -8,6 +8,7 @@
 #include "navigation/registration/registration_file.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
+#include "planning/tunnels/tunnel_json.h"
 
 namespace arthronaut::operation {
 
@@ -51,12 +52,8 @@ void add(Json& json, const ChooseRegistration& choose) { json["entry"] = choose.
 void add(Json& json, const ReadDepthStop& stop) { json["depth_mm"] = stop.depth_mm; }
 void add(Json& json, const std::optional<PlannedTunnel>& plan) {
   if (!plan) return;
-  const tunnels::Tunnel& tunnel = plan->tunnel;
-  json["bone"] = bones::to_text(tunnel.bone);
-  if (tunnel.bundle != norms::Bundle::Whole) json["bundle"] = norms::to_text(tunnel.bundle);
-  json["entry_mm"] = files::to_json(tunnel.entry_mm);
-  json["direction"] = files::to_json(tunnel.direction);
-  json["diameter_mm"] = tunnel.diameter_mm;
+  tunnels::put_key(plan->tunnel.key(), json);
+  json.update(tunnels::to_json(plan->tunnel));
   json["length_mm"] = plan->length_mm;
 }
 void add(Json& json, const OfferPlan& offer) {
@@ -110,11 +107,7 @@ void add(Json&, const Plain&) {}
 std::optional<PlannedTunnel> plan_from(const files::JsonObject& json) {
   if (!json.has("bone")) return std::nullopt;
   PlannedTunnel plan;
-  plan.tunnel.bone = bones::bone_kind_from_text(json.text("bone"));
-  if (json.has("bundle")) plan.tunnel.bundle = norms::bundle_from_text(json.text("bundle"));
-  plan.tunnel.entry_mm = json.vector3("entry_mm");
-  plan.tunnel.direction = json.vector3("direction");
-  plan.tunnel.diameter_mm = json.positive_number("diameter_mm");
+  plan.tunnel = tunnels::read_tunnel(json, tunnels::read_key(json));
   plan.length_mm = json.number("length_mm");
   return plan;
 }

@@ -4,10 +4,12 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "planning/bones/bone_json.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/csv_cell.h"
 #include "planning/files/json_document.h"
 #include "planning/files/sha256.h"
+#include "planning/tunnels/tunnel_json.h"
 
 namespace arthronaut::recording {
 
@@ -104,8 +106,8 @@ SessionHeader read_session_header(const std::filesystem::path& folder, pipeline:
   SessionHeader header;
   header.id = json.text("id");
   header.started_utc = json.text("started_utc");
-  header.bone = bones::bone_kind_from_text(json.text("bone"));
-  header.side = bones::side_from_text(json.text("side"));
+  header.bone = bones::read_bone_kind(json, "bone");
+  header.side = bones::read_side(json, "side");
   header.refractive_index = json.positive_number("refractive_index");
   header.probe_name = json.text("probe");
   header.guide_name = json.text("guide");
@@ -176,11 +178,8 @@ std::string plan_to_text(const std::optional<tunnels::Tunnel>& plan, double plan
   nlohmann::ordered_json json;
   json["format"] = kPlanFormat;
   json["version"] = kFilesVersion;
-  json["bone"] = bones::to_text(plan->bone);
-  if (plan->bundle != norms::Bundle::Whole) json["bundle"] = norms::to_text(plan->bundle);
-  json["entry_mm"] = files::to_json(plan->entry_mm);
-  json["direction"] = files::to_json(plan->direction);
-  json["diameter_mm"] = plan->diameter_mm;
+  tunnels::put_key(plan->key(), json);
+  json.update(tunnels::to_json(*plan));
   json["length_mm"] = planned_length_mm;
   return json.dump();
 }
@@ -189,13 +188,7 @@ RecordedSession::PlanChange plan_from_text(const std::string& text, const std::f
   RecordedSession::PlanChange change;
   if (text.empty()) return change;
   const files::JsonObject json = files::parse_json(text, name, kPlanFormat, kFilesVersion);
-  tunnels::Tunnel tunnel;
-  tunnel.bone = bones::bone_kind_from_text(json.text("bone"));
-  if (json.has("bundle")) tunnel.bundle = norms::bundle_from_text(json.text("bundle"));
-  tunnel.entry_mm = json.vector3("entry_mm");
-  tunnel.direction = json.vector3("direction");
-  tunnel.diameter_mm = json.positive_number("diameter_mm");
-  change.plan = tunnel;
+  change.plan = tunnels::read_tunnel(json, tunnels::read_key(json));
   change.planned_length_mm = json.number("length_mm");
   return change;
 }

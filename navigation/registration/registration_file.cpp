@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "navigation/camera/medium.h"
+#include "planning/bones/bone_json.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/files/json_covariance.h"
 #include "planning/files/json_document.h"
-#include "planning/geometry/error.h"
 
 namespace arthronaut::registration {
 
@@ -109,11 +109,7 @@ nlohmann::ordered_json to_json(const Provenance& of) {
 Provenance provenance_from(const files::JsonObject& json) {
   Provenance of;
   of.mesh_sha256 = json.text("mesh_sha256");
-  try {
-    of.bone = bones::bone_kind_from_text(json.text("bone"));
-  } catch (const InvalidInput& error) {
-    json.fail("bone", error.what());
-  }
+  of.bone = bones::read_bone_kind(json, "bone");
   of.world_marker_id = json.int32("marker_id");
   of.camera = json.text("camera");
   of.tools = json.text("tools");

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "navigation/sources/camera_modes.h"
 #include "planning/geometry/error.h"
 #include "planning/log/log.h"
 

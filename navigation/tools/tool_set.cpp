@@ -5,10 +5,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "planning/bones/bone_json.h"
 #include "planning/files/format.h"
 #include "planning/files/json_covariance.h"
 #include "planning/files/json_document.h"
-#include "planning/geometry/error.h"
 #include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::tools {
@@ -303,12 +303,8 @@ ToolSet read_tools_file(const std::filesystem::path& file) {
   Owners owners;
   for (const files::JsonObject& entry : document.objects("world_markers")) {
     WorldMarker marker;
-    const std::string bone = entry.text("bone");
-    try {
-      marker.bone = bones::bone_kind_from_text(bone);
-    } catch (const InvalidInput&) {
-      entry.fail("bone", "must be \"femur\" or \"tibia\", is \"" + bone + "\"");
-    }
+    marker.bone = bones::read_bone_kind(entry, "bone");
+    const std::string bone(bones::to_text(marker.bone));
     if (set.find_world_marker(marker.bone)) entry.fail("bone", "the " + bone + " has a world marker already");
     read_markers(entry, "the world marker of the " + bone, owners, marker);
     set.world_markers.push_back(marker);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "planning/bones/bone_json.h"
 #include "planning/files/json_document.h"
 #include "planning/files/remove_file.h"
 
@@ -15,14 +16,10 @@ constexpr std::string_view kBoneDoubtsFormat = "arthronaut.bone_doubts";
 constexpr int kBoneDoubtsVersion = 2;
 
 SideDoubt side_doubt_from(const files::JsonObject& node) {
-  const auto side = [&](const char* key) {
-    const std::string word = node.text(key);
-    if (word != "left" && word != "right") node.fail(key, "must be left or right");
-    return bones::side_from_text(word);
-  };
   const auto witness = side_witness_from_text(node.text("witness"));
   if (!witness) node.fail("witness", "is none that is known");
-  return {*witness, side("told"), side("said"), node.has("looked_on") ? node.text("looked_on") : ""};
+  return {*witness, bones::read_side(node, "told"), bones::read_side(node, "said"),
+          node.has("looked_on") ? node.text("looked_on") : ""};
 }
 
 }  // namespace
@@ -76,10 +73,8 @@ BoneDoubts load_bone_doubts(const fs::path& case_folder) {
   BoneDoubts doubts;
   for (const files::JsonObject& bone :
        files::read_json(file, kBoneDoubtsFormat, kBoneDoubtsVersion).objects("bones")) {
-    const std::string kind = bone.text("kind");
-    if (kind != "femur" && kind != "tibia") bone.fail("kind", "must be femur or tibia");
-    if (auto of_bone = doubts_from(bone); !of_bone.empty())
-      doubts[bones::bone_kind_from_text(kind)] = std::move(of_bone);
+    const bones::BoneKind kind = bones::read_bone_kind(bone, "kind");
+    if (auto of_bone = doubts_from(bone); !of_bone.empty()) doubts[kind] = std::move(of_bone);
   }
   return doubts;
 }

@@ -1,6 +1,7 @@
 // case.json and the meshes beside it.
 #include <nlohmann/json.hpp>
 
+#include "planning/bones/bone_json.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_outline.h"
@@ -65,22 +66,6 @@ files::JsonObject read_case_json(const fs::path& folder) {
   return files::read_json(file, kCaseFormat, kCaseVersion);
 }
 
-bones::Side side_of(const files::JsonObject& root) {
-  try {
-    return bones::side_from_text(root.text("side"));
-  } catch (const InvalidInput&) {
-    root.fail("side", "must be left or right");
-  }
-}
-
-bones::BoneKind kind_of(const files::JsonObject& bone) {
-  try {
-    return bones::bone_kind_from_text(bone.text("kind"));
-  } catch (const InvalidInput&) {
-    bone.fail("kind", "must be femur or tibia");
-  }
-}
-
 // One that is broken says nothing, and is no reason to keep a surgeon from the bones: how they lie is looked
 // at besides (tunnels/knee_pose.h). Who writes it, or exports by it, is told.
 bool says_two_frames(const fs::path& folder) {
@@ -95,9 +80,9 @@ bool says_two_frames(const fs::path& folder) {
 
 CaseOutline read_case_outline(const fs::path& case_folder) {
   const auto root = read_case_json(case_folder);
-  CaseOutline outline{root.text("name"), side_of(root), "", {}, {}};
+  CaseOutline outline{root.text("name"), bones::read_side(root, "side"), "", {}, {}};
   if (root.has("created_utc")) outline.created_utc = root.text("created_utc");
-  for (const auto& node : root.objects("bones")) outline.bones.insert(kind_of(node));
+  for (const auto& node : root.objects("bones")) outline.bones.insert(bones::read_bone_kind(node, "kind"));
   const fs::path plan = case_folder / "plan.json";
   if (!fs::exists(plan)) return outline;
   for (const auto& [key, tunnel] : plan_from(files::read_text(plan), plan).tunnels)
@@ -109,11 +94,11 @@ Case load_case(const fs::path& folder) {
   const auto root = read_case_json(folder);
   Case result;
   result.name = root.text("name");
-  result.side = side_of(root);
+  result.side = bones::read_side(root, "side");
   if (root.has("created_utc")) result.created_utc = root.text("created_utc");
   for (const auto& node : root.objects("bones")) {
     bones::Bone bone;
-    bone.kind = kind_of(node);
+    bone.kind = bones::read_bone_kind(node, "kind");
     if (node.has("source")) bone.source = node.text("source");
     bone.mesh = bones::read_mesh(mesh_file(folder, bone.kind),
                                  {.space = bones::Space::LPS, .unit = bones::LengthUnit::Millimetre});

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "planning/bones/bone_json.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/landmark_json.h"
 #include "planning/cases/plan_file.h"
@@ -39,21 +40,11 @@ auto value_of(const Map& map, BoneKind kind) {
   return found == map.end() ? typename Map::mapped_type{} : found->second;
 }
 
-bones::Side side_from(const files::JsonObject& node, std::string_view key) {
-  try {
-    return bones::side_from_text(node.text(key));
-  } catch (const InvalidInput&) {
-    node.fail(key, "must be left or right");
-  }
-}
-
 KeptSide kept_side_from(const files::JsonObject& node) {
   KeptSide kept;
   SideContents& contents = kept.contents;
   for (const files::JsonObject& bone : node.objects("bones")) {
-    const std::string name = bone.text("kind");
-    if (name != "femur" && name != "tibia") bone.fail("kind", "must be femur or tibia");
-    const BoneKind kind = bones::bone_kind_from_text(name);
+    const BoneKind kind = bones::read_bone_kind(bone, "kind");
     kept.meshes[kind] = bone.text("mesh_sha256");
     landmarks::LandmarkStates states;
     if (auto marks = landmarks_from(bone, states); !marks.empty()) {
@@ -70,9 +61,9 @@ Sides load_sides(const fs::path& case_folder) {
   Sides sides;
   if (!fs::exists(sides_file(case_folder))) return sides;
   const auto root = files::read_json(sides_file(case_folder), kSidesFormat, kSidesVersion);
-  if (root.has("changing_to")) sides.changing_to = side_from(root, "changing_to");
+  if (root.has("changing_to")) sides.changing_to = bones::read_side(root, "changing_to");
   for (const files::JsonObject& node : root.objects("sides"))
-    sides.kept[side_from(node, "side")] = kept_side_from(node);
+    sides.kept[bones::read_side(node, "side")] = kept_side_from(node);
   if (sides.changing_to && !sides.kept.contains(*sides.changing_to))
     root.fail("changing_to", "names a side of which nothing is said");
   return sides;

@@ -1,6 +1,5 @@
 #include "planning/cases/plan_file.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "planning/bones/mesh_hash.h"
@@ -10,6 +9,7 @@
 #include "planning/files/sha256.h"
 #include "planning/geometry/error.h"
 #include "planning/tunnels/diameter_range.h"
+#include "planning/tunnels/tunnel_json.h"
 
 namespace arthronaut::cases {
 
@@ -53,28 +53,10 @@ Plan plan_from(const std::string& text, const fs::path& file) {
 Plan plan_from(const files::JsonObject& root) {
   Plan plan;
   for (const auto& node : root.objects("tunnels")) {
-    tunnels::Tunnel tunnel;
-    try {
-      tunnel.bone = bones::bone_kind_from_text(node.text("bone"));
-    } catch (const InvalidInput&) {
-      node.fail("bone", "must be femur or tibia");
-    }
-    tunnel.entry_mm = node.vector3("entry_mm");
-    tunnel.direction = node.vector3("direction");
-    if (tunnel.direction.norm() < 1e-6) node.fail("direction", "must not be zero");
-    // One that was written normalised comes back to the bit: the plan's hash and the steps of undo need it.
-    if (std::abs(tunnel.direction.squaredNorm() - 1) > 1e-12) tunnel.direction.normalize();
-    tunnel.diameter_mm = node.positive_number("diameter_mm");
+    const tunnels::Tunnel tunnel = tunnels::read_tunnel(node, tunnels::read_key(node));
     if (tunnel.diameter_mm < tunnels::kLeastDiameter_mm || tunnel.diameter_mm > tunnels::kGreatestDiameter_mm)
       node.fail("diameter_mm", files::format("is %g, must be %g to %g", tunnel.diameter_mm,
                                              tunnels::kLeastDiameter_mm, tunnels::kGreatestDiameter_mm));
-    if (node.has("bundle")) {
-      try {
-        tunnel.bundle = norms::bundle_from_text(node.text("bundle"));
-      } catch (const InvalidInput&) {
-        node.fail("bundle", "must be single, am or pl");
-      }
-    }
     const auto others = plan.of(tunnel.bone);
     if (plan.tunnels.contains(tunnel.key())) {
       node.fail("bone", tunnel.bundle == norms::Bundle::Whole ? "has two tunnels"
@@ -113,10 +95,8 @@ nlohmann::ordered_json to_json(const Plan& plan) {
   auto tunnels = nlohmann::ordered_json::array();
   int version = 1;
   for (const auto& [key, tunnel] : plan.tunnels) {
-    nlohmann::ordered_json node = {{"bone", bones::to_text(key.bone)},
-                                   {"entry_mm", files::to_json(tunnel.entry_mm)},
-                                   {"direction", files::to_json(tunnel.direction)},
-                                   {"diameter_mm", tunnel.diameter_mm}};
+    nlohmann::ordered_json node = {{"bone", bones::to_text(key.bone)}};
+    node.update(tunnels::to_json(tunnel));
     if (key.bundle != norms::Bundle::Whole) {
       node["bundle"] = norms::to_text(key.bundle);
       version = kPlanFormatVersion;

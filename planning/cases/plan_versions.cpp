@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "planning/bones/bone_json.h"
 #include "planning/cases/plan_file.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
@@ -43,13 +44,7 @@ PlanVersion version_from(const fs::path& file) {
   PlanVersion version{number_of(file), root.text("kept_utc"), plan_from(root)};
   if (root.has("name")) version.words.name = root.text("name");
   if (root.has("note")) version.words.note = root.text("note");
-  if (root.has("side")) {
-    try {
-      version.side = bones::side_from_text(root.text("side"));
-    } catch (const InvalidInput&) {
-      root.fail("side", "must be left or right");
-    }
-  }
+  if (root.has("side")) version.side = bones::read_side(root, "side");
   return version;
 }
 

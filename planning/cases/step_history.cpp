@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "planning/bones/bone_json.h"
 #include "planning/cases/landmark_json.h"
 #include "planning/cases/plan_file.h"
 #include "planning/files/json_document.h"
 #include "planning/files/remove_file.h"
-#include "planning/geometry/error.h"
 
 namespace arthronaut::cases {
 
@@ -102,9 +102,7 @@ StepHistory load_step_history(const fs::path& case_folder) {
   for (const files::JsonObject& node : root.objects("landmarks")) {
     PlanState& set = landmark_sets.emplace_back();
     for (const files::JsonObject& bone : node.objects("bones")) {
-      const std::string name = bone.text("kind");
-      if (name != "femur" && name != "tibia") bone.fail("kind", "must be femur or tibia");
-      const BoneKind kind = bones::bone_kind_from_text(name);
+      const BoneKind kind = bones::read_bone_kind(bone, "kind");
       set.landmarks[kind] = landmarks_from(bone, set.landmark_states[kind]);
     }
   }
@@ -126,11 +124,7 @@ StepHistory load_step_history(const fs::path& case_folder) {
   if (position < 0 || static_cast<std::size_t>(position) > history.steps.size())
     root.fail("position", "is beyond the steps");
   history.position = static_cast<std::size_t>(position);
-  try {
-    history.side = bones::side_from_text(root.text("side"));
-  } catch (const InvalidInput&) {
-    root.fail("side", "must be left or right");
-  }
+  history.side = bones::read_side(root, "side");
   return history;
 }
 

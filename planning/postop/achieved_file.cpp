@@ -3,8 +3,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "planning/bones/bone_json.h"
 #include "planning/files/achieved_shape.h"
 #include "planning/files/json_document.h"
+#include "planning/tunnels/tunnel_json.h"
 
 namespace arthronaut::postop {
 
@@ -90,9 +92,7 @@ AchievedTunnel tunnel_of(const files::JsonObject& node, const tunnels::TunnelKey
   achieved.reasons = node.texts("reasons");
   achieved.is_found = node.has("entry_mm");
   if (!achieved.is_found) return achieved;
-  achieved.tunnel.entry_mm = node.vector3("entry_mm");
-  achieved.tunnel.direction = node.vector3("direction");
-  achieved.tunnel.diameter_mm = node.positive_number("diameter_mm");
+  achieved.tunnel = tunnels::read_tunnel(node, key);
   achieved.length_mm = node.number("length_mm");
   achieved.offset_mm = node.number("offset_mm");
   achieved.angle_rad = geometry::rad_from_deg(node.number("angle_deg"));
@@ -122,12 +122,10 @@ std::map<tunnels::TunnelKey, Comparison> read_achieved_file(const std::filesyste
   const files::JsonObject document = files::read_achieved(file, files::AchievedShape::OfComparison);
   std::map<bones::BoneKind, AchievedBone> found;
   for (const files::JsonObject& node : document.objects("bones"))
-    found[bones::bone_kind_from_text(node.text("bone"))] = bone_of(node);
+    found[bones::read_bone_kind(node, "bone")] = bone_of(node);
   std::map<tunnels::TunnelKey, Comparison> comparisons;
   for (const files::JsonObject& node : document.objects("tunnels")) {
-    const tunnels::TunnelKey key{
-        bones::bone_kind_from_text(node.text("bone")),
-        node.has("bundle") ? norms::bundle_from_text(node.text("bundle")) : norms::Bundle::Whole};
+    const tunnels::TunnelKey key = tunnels::read_key(node);
     Comparison& comparison = comparisons[key];
     comparison.tunnel = tunnel_of(node, key);
     if (node.has("kept_because")) comparison.kept_because = node.text("kept_because");
