@@ -27,7 +27,7 @@ importing::SaidSide say_side(const fs::path& case_folder, bones::Side side) {
                          "its session " + facts.id + " drilled a tunnel by the plan of a " + was +
                              " knee: its side stays. Import the bones into another case, as a " + is +
                              " knee");
-    if (facts.side == was) ++session_count;
+    if (facts.side == before) ++session_count;
   }
   importing::SaidSide said = importing::say_side_of_case(case_folder, side);
   if (session_count > 0)

@@ -82,7 +82,7 @@ library::PlanVerdicts verdicts_of(const std::vector<CaseRecord>& records, bool c
 void print(const Context& context, const std::vector<CaseRecord>& records,
            const library::PlanVerdicts& verdicts, std::size_t known_count) {
   for (const CaseRecord& record : records) {
-    context.say(record.name + (record.side.empty() ? "" : ", " + record.side + " knee") + ": " +
+    context.say(record.name + (record.side ? ", " + library::word_of(record.side) + " knee" : "") + ": " +
                 std::string(to_text(record.state())));
     context.say("    " + record.folder.string());
     const std::string outcome = record.last_outcome();
@@ -115,7 +115,8 @@ void print(const Context& context, const std::vector<CaseRecord>& records,
 }
 
 void list_cases(const Context& context, const CasesArguments& arguments) {
-  library::CaseQuery query{.words = arguments.search, .side = arguments.side};
+  library::CaseQuery query{.words = arguments.search};
+  if (!arguments.side.empty()) query.side = bones::side_from_text(arguments.side);
   if (!arguments.state.empty()) query.state = library::case_state_from_text(arguments.state);
   query.order = library::case_order_from_text(arguments.order);
   const auto opened = workstation_library::open_library();

@@ -54,7 +54,7 @@ void ReviewView::case_opened(const mode::OpenCase& opened) {
   model_ = opened.model;
   case_folder_ = opened.folder;
   read_only_ = opened.read_only;
-  sessions_.open(case_folder_, std::string(bones::to_text(model_->knee().side)));
+  sessions_.open(case_folder_, model_->knee().side);
   chosen_.reset();
   open_.reset();
   todays_.clear();

@@ -29,11 +29,12 @@ std::string session_title(const std::string& folder_name) {
          date.substr(15);
 }
 
-SessionLine session_line(const library::SessionFacts& facts, const std::string& case_side) {
+SessionLine session_line(const library::SessionFacts& facts, std::optional<bones::Side> case_side) {
   SessionLine line;
   std::vector<std::string> doubts = facts.doubts();
-  if (!facts.side.empty() && !case_side.empty() && facts.side != case_side)
-    doubts.push_back("recorded as of a " + facts.side + " knee, the case is a " + case_side + " one");
+  if (facts.side && case_side && facts.side != case_side)
+    doubts.push_back("recorded as of a " + library::word_of(facts.side) + " knee, the case is a " +
+                     library::word_of(case_side) + " one");
   line.words = facts.what();
   line.words += (line.words.empty() ? "" : "; ") + facts.outcome();
   for (const std::string& doubt : doubts) line.words += "; " + doubt;
@@ -47,7 +48,7 @@ SessionLine session_line(const library::SessionFacts& facts, const std::string& 
   return line;
 }
 
-void SessionList::open(const std::filesystem::path& case_folder, const std::string& case_side) {
+void SessionList::open(const std::filesystem::path& case_folder, bones::Side case_side) {
   case_folder_ = case_folder;
   case_side_ = case_side;
   folders_.clear();

@@ -24,15 +24,16 @@ struct SessionLine {
   std::string words;
   bool is_being_recorded = false;  // when it was read
 };
-// case_side: "left" or "right"; a session that was recorded as of the other one says so. Empty: not known.
-[[nodiscard]] SessionLine session_line(const library::SessionFacts& facts, const std::string& case_side = {});
+// A session that was recorded as of the other side than the case's says so; no side: not known.
+[[nodiscard]] SessionLine session_line(const library::SessionFacts& facts,
+                                       std::optional<bones::Side> case_side = {});
 
 class SessionList {
  public:
   explicit SessionList(std::function<void()> wake) : wake_(std::move(wake)) {}
 
   // Of another case, of that side: nothing is listed yet.
-  void open(const std::filesystem::path& case_folder, const std::string& case_side);
+  void open(const std::filesystem::path& case_folder, bones::Side case_side);
   // As the folders are now. Throws std::filesystem::filesystem_error.
   void read();
   [[nodiscard]] const std::vector<std::filesystem::path>& folders() const { return folders_; }
@@ -50,7 +51,7 @@ class SessionList {
 
   std::function<void()> wake_;
   std::filesystem::path case_folder_;
-  std::string case_side_;
+  std::optional<bones::Side> case_side_;
   std::vector<std::filesystem::path> folders_;
   worker::Awaited<Lines> reading_;
   bool reads_again_ = false;  // what is being read is of before

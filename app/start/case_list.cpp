@@ -14,6 +14,17 @@ namespace fs = std::filesystem;
 using library::CaseRecord;
 using library::CaseState;
 
+namespace {
+
+// Either, the first, the second, and either again.
+template <typename T>
+std::optional<T> after(const std::optional<T>& now, T first, T second) {
+  if (!now) return first;
+  return *now == first ? std::optional(second) : std::nullopt;
+}
+
+}  // namespace
+
 CaseList::CaseList(std::function<void(const fs::path&)> open, std::function<void()> wake)
     : open_(std::move(open)), library_(workstation_library::data_folder(), wake), pictures_(wake) {}
 
@@ -85,7 +96,7 @@ const CaseRecord* CaseList::selected() const {
 
 bool CaseList::lists_built_in() const {
   const library::CaseQuery& query = view_.query;
-  return query.words.empty() && query.side.empty() && !query.state;
+  return query.words.empty() && !query.side && !query.state;
 }
 
 std::size_t CaseList::selected_row() const {
@@ -158,14 +169,13 @@ void CaseList::add_actions(widgets::Actions& actions, const std::function<bool()
                GLFW_KEY_SPACE, 0, false, [this, is_shown] { return is_shown() && view_.shows_trends; },
                [this] { return view_.with_simulated; },
                [this] { view_.with_simulated = !view_.with_simulated; }});
-  actions.add(
-      {"start.trend_bone", "Femur, tibia or both",
-       "Which bone's tunnels and sessions the trends are of, and their limits", GLFW_KEY_TAB, 0, false,
-       [this, is_shown] { return is_shown() && view_.shows_trends; },
-       [this] { return !view_.trend_bone.empty(); },
-       [this] {
-         view_.trend_bone = view_.trend_bone.empty() ? "femur" : view_.trend_bone == "femur" ? "tibia" : "";
-       }});
+  actions.add({"start.trend_bone", "Femur, tibia or both",
+               "Which bone's tunnels and sessions the trends are of, and their limits", GLFW_KEY_TAB, 0,
+               false, [this, is_shown] { return is_shown() && view_.shows_trends; },
+               [this] { return view_.trend_bone.has_value(); },
+               [this] {
+                 view_.trend_bone = after(view_.trend_bone, bones::BoneKind::Femur, bones::BoneKind::Tibia);
+               }});
   actions.add({"start.forget",
                "Take off the list",
                "The missing case is not listed any more; nothing is deleted",
@@ -185,10 +195,9 @@ void CaseList::add_actions(widgets::Actions& actions, const std::function<bool()
 
 void CaseList::add_filter_actions(widgets::Actions& actions, const std::function<bool()>& lists) {
   actions.add({"start.side", "Side", "Both sides, left knees, right knees", GLFW_KEY_S, 0, false, lists,
-               [this] { return !view_.query.side.empty(); },
+               [this] { return view_.query.side.has_value(); },
                [this] {
-                 std::string& side = view_.query.side;
-                 side = side.empty() ? "left" : side == "left" ? "right" : "";
+                 view_.query.side = after(view_.query.side, bones::Side::Left, bones::Side::Right);
                  filter();
                }});
   actions.add({"start.state", "State", "Cases in any state, then those in one", GLFW_KEY_A, 0, false, lists,

@@ -61,7 +61,7 @@ class CaseList {
     // Of the sessions' trends, then of the daily checks of each device.
     std::size_t chart = 0;
     bool with_simulated = false;
-    std::string trend_bone;  // "femur", "tibia"; empty: both, told apart by their shapes
+    std::optional<bones::BoneKind> trend_bone;  // empty: both, told apart by their shapes
   };
   void filter();
   void keep_note();  // where it was changed

@@ -149,7 +149,7 @@ void CaseList::draw_head(const widgets::Ui& ui, widgets::Rect head) {
                        now);
     x += ui.theme.px(140);
   };
-  filter_button("start.side", view_.query.side.empty() ? "both" : view_.query.side);
+  filter_button("start.side", view_.query.side ? library::word_of(view_.query.side) : "both");
   filter_button("start.state", view_.query.state ? std::string(to_text(*view_.query.state)) : "any");
   filter_button("start.order", std::string(to_text(view_.query.order)));
   if (devices_.empty()) return;
@@ -239,7 +239,7 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
   const float right = ui.theme.px(170), wide = at.x + width - x - right;
   // A long name is cut, never the side: a wrong side is a wrong operation.
   ImFont* const font = ui.theme.strong;
-  const std::string side = record.side.empty() ? "" : "  \u2013  " + record.side;
+  const std::string side = record.side ? "  \u2013  " + library::word_of(record.side) : "";
   const float side_wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, side.c_str()).x;
   widgets::draw_text(draw, font, x, at.y + ui.theme.px(6),
                      record.is_there ? widgets::kText : widgets::kQuietText,
@@ -320,9 +320,7 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
                                                                                : "not verified"));
   }
   for (const library::PostoperativeFacts& found : record->postoperative) {
-    const std::string tunnel = found.bone + (found.bundle == "am"   ? " AM"
-                                             : found.bundle == "pl" ? " PL"
-                                                                    : "");
+    const std::string tunnel = tunnels::name_of(found.tunnel);
     widgets::status_row(ui, found.is_reliable ? Severity::Quiet : Severity::Caution, "After the operation",
                         found.entry_offset_mm
                             ? files::format("%s %.1f mm, %.1f\u00B0 from the plan", tunnel.c_str(),

@@ -125,7 +125,7 @@ void draw_points(const widgets::Ui& ui, const Chart& chart, const Charted& chart
       draw.AddCircle(at, radius, widgets::kAccent, 0, ui.theme.px(2));
     else if (charted.is_outside(points[i].value))  // by shape, too: a square
       draw.AddRectFilled({at.x - radius, at.y - radius}, {at.x + radius, at.y + radius}, widgets::kBad);
-    else if (points[i].bone == "tibia")
+    else if (points[i].bone == bones::BoneKind::Tibia)
       draw.AddTriangleFilled({at.x, at.y - radius}, {at.x + radius, at.y + radius},
                              {at.x - radius, at.y + radius}, widgets::kAccent);
     else
@@ -134,7 +134,7 @@ void draw_points(const widgets::Ui& ui, const Chart& chart, const Charted& chart
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ImVec2 at = chart.at(i, points[i].value);
     if (std::hypot(at.x - mouse.x, at.y - mouse.y) > 2 * radius) continue;
-    const std::string bone = points[i].bone.empty() ? "" : ", " + points[i].bone;
+    const std::string bone = points[i].bone ? ", " + library::word_of(points[i].bone) : "";
     const std::string words = points[i].case_name + bone + (points[i].is_simulated ? ", simulated, " : ", ") +
                               files::local_day(points[i].when_utc) + ": " + charted.number(points[i].value);
     ImGui::SetTooltip("%s", words.c_str());
@@ -258,9 +258,9 @@ void CaseList::draw_trends(const widgets::Ui& ui, const widgets::Rect& area) {
                charted.points.size();
     const std::string one = is_of_comparisons(trend) ? "tunnel in a CT" : "session";
     const std::string many = is_of_comparisons(trend) ? "tunnels in CTs" : "sessions";
-    words = (view_.trend_bone.empty()      ? std::string("Femur (round) and tibia (pointed)")
-             : view_.trend_bone == "femur" ? "Femur"
-                                           : "Tibia") +
+    words = (!view_.trend_bone                            ? std::string("Femur (round) and tibia (pointed)")
+             : view_.trend_bone == bones::BoneKind::Femur ? "Femur"
+                                                          : "Tibia") +
             ": " + std::to_string(charted.points.size()) + " " + (charted.points.size() == 1 ? one : many) +
             " of " + std::to_string(found_.size()) + (found_.size() == 1 ? " listed case" : " listed cases");
     if (left_out > 0) words += "; " + std::to_string(left_out) + " simulated left out";
@@ -269,7 +269,7 @@ void CaseList::draw_trends(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("trend_points", std::to_string(charted.points.size()));
   ui.log.note_state("trend", chart_name(view_.chart));
   ui.log.note_state("trend_says", words);
-  ui.log.note_state("trend_bone", view_.trend_bone.empty() ? "both" : view_.trend_bone);
+  ui.log.note_state("trend_bone", view_.trend_bone ? library::word_of(view_.trend_bone) : "both");
 
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   widgets::draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, chart_name(view_.chart));

@@ -60,8 +60,8 @@ void read_header(const fs::path& folder, SessionFacts& facts) {
   pipeline::PipelineOptions options;
   const SessionHeader header = read_session_header(folder, options);
   facts.started_utc = header.started_utc;
-  facts.bone = bones::to_text(header.bone);
-  facts.side = bones::to_text(header.side);
+  facts.bone = header.bone;
+  facts.side = header.side;
   if (header.source_kind) facts.source_kind = sources::to_text(*header.source_kind);
   facts.is_exercise = is_exercise(header);
 }

@@ -31,14 +31,14 @@ const cases::Identity* whose(const CaseRecord& record, const Identities* identit
 }
 
 std::string searched(const CaseRecord& record, const cases::Identity* patient) {
-  std::string text = record.name + "\n" + record.note + "\n" + record.side + "\n" + record.created_utc +
-                     "\n" + record.changed_utc + "\n" + std::string(to_text(record.state())) + "\n" +
-                     files::local_day(record.created_utc) + "\n" + files::local_day(record.changed_utc) +
-                     "\n" + record.plan_in_words() + "\n" + record.folder.string() + "\n" + record.problem +
-                     "\n" + record.part_problem;
+  std::string text = record.name + "\n" + record.note + "\n" + word_of(record.side) + "\n" +
+                     record.created_utc + "\n" + record.changed_utc + "\n" +
+                     std::string(to_text(record.state())) + "\n" + files::local_day(record.created_utc) +
+                     "\n" + files::local_day(record.changed_utc) + "\n" + record.plan_in_words() + "\n" +
+                     record.folder.string() + "\n" + record.problem + "\n" + record.part_problem;
   for (const SessionFacts& session : record.sessions)
-    text += "\n" + session.started_utc + "\n" + files::local_day(session.started_utc) + "\n" + session.bone +
-            "\n" + session.source_kind + "\n" + session.outcome();
+    text += "\n" + session.started_utc + "\n" + files::local_day(session.started_utc) + "\n" +
+            word_of(session.bone) + "\n" + session.source_kind + "\n" + session.outcome();
   if (patient != nullptr)
     text += "\n" + patient->patient_name + "\n" + patient->name_in_words() + "\n" + patient->patient_id +
             "\n" + patient->birth_date + "\n" + patient->birth_date_in_words();
@@ -92,7 +92,7 @@ std::vector<std::size_t> find_cases(std::span<const CaseRecord> records, const C
   std::vector<std::string> names(records.size());
   for (std::size_t i = 0; i < records.size(); ++i) {
     const CaseRecord& record = records[i];
-    if (!query.side.empty() && record.side != query.side) continue;
+    if (query.side && record.side != query.side) continue;
     if (query.state && record.state() != *query.state) continue;
     if (!words.empty()) {
       const std::string text = searched(record, whose(record, identities));

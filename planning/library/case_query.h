@@ -26,7 +26,7 @@ struct CaseQuery {
   // Each must stand somewhere in name, note, side, dates, state, plan, folder or a session's bone, source and
   // outcome; capital or not.
   std::string words = {};
-  std::string side = {};  // "left", "right"; empty: either
+  std::optional<bones::Side> side = {};  // empty: either
   std::optional<CaseState> state = {};
   CaseOrder order = CaseOrder::Newest;
 };

@@ -19,6 +19,7 @@
 #include "planning/files/json_document.h"
 #include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
+#include "planning/tunnels/tunnel_json.h"
 
 namespace arthronaut::library {
 
@@ -155,8 +156,7 @@ std::vector<PostoperativeFacts> read_postoperative(const fs::path& case_folder) 
   const fs::path file = case_folder / "achieved.json";
   if (!fs::exists(file)) return facts;
   for (const auto& node : files::read_achieved(file, files::AchievedShape::OfComparison).objects("tunnels")) {
-    facts.push_back({.bone = node.text("bone"),
-                     .bundle = node.has("bundle") ? node.text("bundle") : "",
+    facts.push_back({.tunnel = tunnels::read_key(node),
                      .entry_offset_mm = optional_number(node, "offset_mm"),
                      .angle_deg = optional_number(node, "angle_deg"),
                      .diameter_mm = optional_number(node, "diameter_mm"),
@@ -166,6 +166,14 @@ std::vector<PostoperativeFacts> read_postoperative(const fs::path& case_folder) 
 }
 
 }  // namespace
+
+std::string word_of(const std::optional<bones::BoneKind>& bone) {
+  return bone ? std::string(bones::to_text(*bone)) : std::string();
+}
+
+std::string word_of(const std::optional<bones::Side>& side) {
+  return side ? std::string(bones::to_text(*side)) : std::string();
+}
 
 std::string_view to_text(CaseState state) {
   return std::find_if(kStates.begin(), kStates.end(), [&](const auto& one) { return one.first == state; })
@@ -194,7 +202,7 @@ std::string SessionFacts::what() const {
   if (length_min)
     length = *length_min < kShort_min ? files::format("%.0f s", 60 * *length_min)
                                       : files::format("%.1f min", *length_min);
-  for (const std::string& part : {is_exercise ? std::string("exercise") : source_kind, bone, length})
+  for (const std::string& part : {is_exercise ? std::string("exercise") : source_kind, word_of(bone), length})
     if (!part.empty()) words += (words.empty() ? "" : ", ") + part;
   return words;
 }
@@ -263,7 +271,7 @@ CaseRecord read_case_record(const fs::path& case_folder, const SessionReader& re
   record.problem = problem_of([&] {
     const cases::CaseOutline outline = cases::read_case_outline(case_folder);
     record.name = outline.name;
-    record.side = bones::to_text(outline.side);
+    record.side = outline.side;
     record.created_utc = outline.created_utc;
     record.bones = outline.bones;
     record.planned = outline.planned;

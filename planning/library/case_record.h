@@ -13,16 +13,21 @@
 #include <vector>
 
 #include "planning/bones/bone.h"
+#include "planning/tunnels/tunnel.h"
 
 namespace arthronaut::library {
+
+// "femur", "left"; empty where it is not known.
+[[nodiscard]] std::string word_of(const std::optional<bones::BoneKind>& bone);
+[[nodiscard]] std::string word_of(const std::optional<bones::Side>& side);
 
 // One session of a case. What is not recorded stays empty.
 struct SessionFacts {
   std::string id, started_utc;
-  std::string bone;          // "femur", "tibia"
-  std::string side;          // "left", "right": as which it was recorded; not in the library's index
-  std::string source_kind;   // "live", "recording", "simulation"; empty in older records
-  bool is_exercise = false;  // training: no operation, and in no CaseRecord
+  std::optional<bones::BoneKind> bone;
+  std::optional<bones::Side> side;  // as which it was recorded; not in the library's index
+  std::string source_kind;          // "live", "recording", "simulation"; empty in older records
+  bool is_exercise = false;         // training: no operation, and in no CaseRecord
   bool was_finished = false;
   bool is_being_recorded = false;                // when it was looked at: not cut off
   std::optional<bool> registration_is_reliable;  // of the last registration
@@ -52,8 +57,7 @@ using SessionReader = std::function<SessionFacts(const std::filesystem::path& se
 
 // What `compare` found in a post-operative CT of this case, where achieved.json was written into its folder.
 struct PostoperativeFacts {
-  std::string bone;         // "femur", "tibia"
-  std::string bundle = {};  // "am", "pl"; empty: of the bone's single tunnel
+  tunnels::TunnelKey tunnel = bones::BoneKind::Femur;
   std::optional<double> entry_offset_mm, angle_deg, diameter_mm;  // empty: no tunnel was found
   bool is_reliable = false;
 };
@@ -78,7 +82,7 @@ struct CaseRecord {
   // Empty: all of it can.
   std::string part_problem;
   std::string name;
-  std::string side;         // "left", "right"
+  std::optional<bones::Side> side;
   std::string created_utc;  // ISO 8601
   std::string changed_utc;  // when case, plan, note or a session was written last
   std::set<bones::BoneKind> bones, planned;

@@ -31,10 +31,15 @@ std::set<bones::BoneKind> kinds_from(const json& names) {
   return kinds;
 }
 
+std::optional<bones::BoneKind> bone_from(const json& node) {
+  const std::string word = node.at("bone");
+  return word.empty() ? std::nullopt : std::optional(bones::bone_kind_from_text(word));
+}
+
 ordered_json to_json(const SessionFacts& facts) {
   ordered_json node = {{"id", facts.id},
                        {"started_utc", facts.started_utc},
-                       {"bone", facts.bone},
+                       {"bone", word_of(facts.bone)},
                        {"source_kind", facts.source_kind},
                        {"finished", facts.was_finished},
                        {"verified", facts.was_verified},
@@ -59,7 +64,7 @@ SessionFacts session_from(const json& node) {
   SessionFacts facts;
   facts.id = node.at("id");
   facts.started_utc = node.at("started_utc");
-  facts.bone = node.at("bone");
+  facts.bone = bone_from(node);
   facts.source_kind = node.at("source_kind");
   facts.was_finished = node.at("finished");
   facts.was_verified = node.at("verified");
@@ -80,8 +85,8 @@ SessionFacts session_from(const json& node) {
 }
 
 ordered_json to_json(const PostoperativeFacts& facts) {
-  ordered_json node = {{"bone", facts.bone}, {"reliable", facts.is_reliable}};
-  if (!facts.bundle.empty()) node["bundle"] = facts.bundle;
+  ordered_json node = {{"bone", bones::to_text(facts.tunnel.bone)}, {"reliable", facts.is_reliable}};
+  if (facts.tunnel.bundle != norms::Bundle::Whole) node["bundle"] = norms::to_text(facts.tunnel.bundle);
   put(node, "entry_offset_mm", facts.entry_offset_mm);
   put(node, "angle_deg", facts.angle_deg);
   put(node, "diameter_mm", facts.diameter_mm);
@@ -90,8 +95,8 @@ ordered_json to_json(const PostoperativeFacts& facts) {
 
 PostoperativeFacts postoperative_from(const json& node) {
   PostoperativeFacts facts;
-  facts.bone = node.at("bone");
-  facts.bundle = node.value("bundle", std::string());
+  facts.tunnel = {bones::bone_kind_from_text(node.at("bone").get<std::string>()),
+                  norms::bundle_from_text(node.value("bundle", "single"))};
   facts.is_reliable = node.at("reliable");
   take(node, "entry_offset_mm", facts.entry_offset_mm);
   take(node, "angle_deg", facts.angle_deg);
@@ -104,7 +109,7 @@ PostoperativeFacts postoperative_from(const json& node) {
 ordered_json to_json(const CaseRecord& record) {
   ordered_json node = {{"folder", record.folder.string()},
                        {"name", record.name},
-                       {"side", record.side},
+                       {"side", word_of(record.side)},
                        {"state", to_text(record.state())},
                        {"there", record.is_there},
                        {"created_utc", record.created_utc},
@@ -130,7 +135,7 @@ CaseRecord record_from(const json& node) {
   record.problem = node.value("problem", std::string());
   record.part_problem = node.value("part_problem", std::string());
   record.name = node.at("name");
-  record.side = node.at("side");
+  if (const std::string side = node.at("side"); !side.empty()) record.side = bones::side_from_text(side);
   record.created_utc = node.at("created_utc");
   record.changed_utc = node.at("changed_utc");
   record.bones = kinds_from(node.at("bones"));

@@ -49,7 +49,7 @@ class Row {
 };
 
 void add_session(Row& row, const SessionFacts& session) {
-  row.add(session.id).add(session.started_utc).add(session.bone).add(session.source_kind);
+  row.add(session.id).add(session.started_utc).add(word_of(session.bone)).add(session.source_kind);
   row.add(session.outcome()).add(session.was_finished).add(session.registration_is_reliable);
   row.add(session.registration_rms_mm).add(session.predicted_error_mm).add(session.was_verified);
   row.add(std::to_string(session.alarm_count)).add(session.entry_offset_mm).add(session.angle_deg);
@@ -58,9 +58,9 @@ void add_session(Row& row, const SessionFacts& session) {
 }
 constexpr int kSessionColumns = 17;
 
-void add_postoperative(Row& row, const CaseRecord& record, std::string_view bone, std::string_view bundle) {
+void add_postoperative(Row& row, const CaseRecord& record, const tunnels::TunnelKey& tunnel) {
   for (const PostoperativeFacts& facts : record.postoperative) {
-    if (facts.bone != bone || facts.bundle != bundle) continue;
+    if (facts.tunnel != tunnel) continue;
     row.add(facts.entry_offset_mm).add(facts.angle_deg).add(facts.is_reliable);
     return;
   }
@@ -69,7 +69,7 @@ void add_postoperative(Row& row, const CaseRecord& record, std::string_view bone
 
 std::string row_of(const CaseRecord& record, const SessionFacts* session, const Identities* identities) {
   Row row;
-  row.add(record.name).add(record.folder.string()).add(record.side);
+  row.add(record.name).add(record.folder.string()).add(word_of(record.side));
   row.add(std::string(to_text(record.state()))).add(record.created_utc).add(record.changed_utc);
   row.add(record.planned.contains(bones::BoneKind::Femur));
   row.add(record.planned.contains(bones::BoneKind::Tibia));
@@ -77,10 +77,12 @@ std::string row_of(const CaseRecord& record, const SessionFacts* session, const 
     add_session(row, *session);
   else
     row.add_empty(kSessionColumns);
-  add_postoperative(row, record, "femur", "");
-  add_postoperative(row, record, "tibia", "");
-  for (const char* bone : {"femur", "tibia"})
-    for (const char* bundle : {"am", "pl"}) add_postoperative(row, record, bone, bundle);
+  using bones::BoneKind;
+  using norms::Bundle;
+  for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) add_postoperative(row, record, bone);
+  for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia})
+    for (const Bundle bundle : {Bundle::Anteromedial, Bundle::Posterolateral})
+      add_postoperative(row, record, {bone, bundle});
   row.add(record.note)
       .add(session != nullptr && !session->problem.empty() ? session->problem
            : !record.problem.empty()                       ? record.problem

@@ -33,7 +33,7 @@ std::optional<double> value_of(const SessionFacts& session, Trend trend) {
 }
 
 // What is rehearsed or looked at after an operation is not what was compared.
-const SessionFacts* compared_session_of(const CaseRecord& record, const std::string& bone) {
+const SessionFacts* compared_session_of(const CaseRecord& record, bones::BoneKind bone) {
   const SessionFacts* best = nullptr;
   const auto rank = [](const SessionFacts& session) {
     return session.is_simulated() ? 0 : session.is_drilled() ? 2 : 1;
@@ -49,17 +49,17 @@ void add_comparisons(const CaseRecord& record, Trend trend, const TrendOptions& 
                      std::vector<TrendPoint>& points) {
   for (const PostoperativeFacts& facts : record.postoperative) {
     const auto value = trend == Trend::AchievedOffset ? facts.entry_offset_mm : facts.angle_deg;
-    if (!value || !facts.is_reliable || (!options.bone.empty() && facts.bone != options.bone)) continue;
-    const SessionFacts* session = compared_session_of(record, facts.bone);
+    if (!value || !facts.is_reliable || (options.bone && facts.tunnel.bone != options.bone)) continue;
+    const SessionFacts* session = compared_session_of(record, facts.tunnel.bone);
     // A bone that was never navigated is of what its case is: one that was only rehearsed is nobody's.
     const bool is_simulated = session != nullptr ? session->is_simulated() : record.is_simulated();
     if (is_simulated && !options.with_simulated) continue;
     if (session == nullptr)
       points.push_back(
-          {record.created_utc, *value, record.name, "", record.folder, facts.bone, is_simulated});
+          {record.created_utc, *value, record.name, "", record.folder, facts.tunnel.bone, is_simulated});
     else
-      points.push_back(
-          {session->started_utc, *value, record.name, session->id, record.folder, facts.bone, is_simulated});
+      points.push_back({session->started_utc, *value, record.name, session->id, record.folder,
+                        facts.tunnel.bone, is_simulated});
   }
 }
 
@@ -115,7 +115,7 @@ std::vector<TrendPoint> trend_of(std::span<const CaseRecord> records, Trend tren
     for (const SessionFacts& session : record.sessions) {
       // Without a header nobody knows when it was, or whether of a simulation.
       if (session.started_utc.empty() || (session.is_simulated() && !options.with_simulated)) continue;
-      if (!options.bone.empty() && session.bone != options.bone) continue;
+      if (options.bone && session.bone != options.bone) continue;
       const auto value = value_of(session, trend);
       if (value)
         points.push_back({session.started_utc, *value, record.name, session.id, record.folder, session.bone,

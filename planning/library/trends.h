@@ -31,13 +31,13 @@ struct TrendPoint {
   double value = 0;
   std::string case_name, session;
   std::filesystem::path case_folder;
-  std::string bone = {};  // "femur", "tibia"; empty: of none (a check of accuracy), or not known
+  std::optional<bones::BoneKind> bone = {};  // empty: of none (a check of accuracy), or not known
   bool is_simulated = false;
 };
 
 struct TrendOptions {
   bool with_simulated = false;  // a simulation is no operation: it would make the spread look small
-  std::string bone = {};        // "femur", "tibia"; empty: either
+  std::optional<bones::BoneKind> bone = {};  // empty: either
 };
 // What was measured after the operation, in a CT; the others are of sessions.
 [[nodiscard]] constexpr bool is_of_comparisons(Trend trend) {

@@ -263,7 +263,7 @@ TEST_F(Schemas, DescribeTheListOfCases) {
     record.folder = "/cases/A.arthro";
     record.name = "A";
   }
-  records[0].side = "left";
+  records[0].side = bones::Side::Left;
   records[0].bones = records[0].planned = {bones::BoneKind::Femur, bones::BoneKind::Tibia};
   library::SessionFacts session;
   session.id = "0001-20260131-120000";
@@ -272,9 +272,9 @@ TEST_F(Schemas, DescribeTheListOfCases) {
   session.depth_mm = session.registering_min = session.verifying_min = session.drilling_min = 2;
   session.problem = "poses.csv: cut off";
   records[0].sessions = {session, library::SessionFacts{}};
-  records[0].postoperative = {{.bone = "femur", .entry_offset_mm = 1, .angle_deg = 2, .diameter_mm = 9},
+  records[0].postoperative = {{.entry_offset_mm = 1, .angle_deg = 2, .diameter_mm = 9},
                               library::PostoperativeFacts()};
-  records[0].postoperative[1].bone = "tibia";
+  records[0].postoperative[1].tunnel = bones::BoneKind::Tibia;
   records[1].is_there = false;
   records[2].problem = "case.json: broken";
   const library::Identities named{{records[0].folder, {"Muster^Anna", "4711", "19900131"}}};

@@ -14,7 +14,7 @@ TEST(SessionList, SaysWhenItWas) {
 
 library::SessionFacts drilled() {
   library::SessionFacts facts;
-  facts.bone = "femur";
+  facts.bone = bones::BoneKind::Femur;
   facts.source_kind = "live";
   facts.was_finished = facts.was_verified = true;
   facts.registration_is_reliable = true;
@@ -30,7 +30,7 @@ TEST(SessionList, SaysWhatItWas) {
   EXPECT_EQ(line.words, "live, femur, 5.2 min; drilled, 1.2 mm and 0.8\u00B0 from the plan");
   EXPECT_EQ(line.severity, widgets::Severity::Good);
   library::SessionFacts facts;
-  facts.bone = "tibia";
+  facts.bone = bones::BoneKind::Tibia;
   facts.was_finished = true;
   EXPECT_EQ(session_line(facts).words, "tibia; not registered");
   EXPECT_EQ(session_line(facts).severity, widgets::Severity::Quiet);
@@ -41,9 +41,9 @@ TEST(SessionList, SaysWhatItWas) {
 // What was recorded as of the other knee says so: the case's side was changed since.
 TEST(SessionList, SaysOfWhichSideItWasRecorded) {
   library::SessionFacts facts = drilled();
-  facts.side = "left";
-  EXPECT_EQ(session_line(facts, "left").severity, widgets::Severity::Good);
-  const SessionLine line = session_line(facts, "right");
+  facts.side = bones::Side::Left;
+  EXPECT_EQ(session_line(facts, bones::Side::Left).severity, widgets::Severity::Good);
+  const SessionLine line = session_line(facts, bones::Side::Right);
   EXPECT_TRUE(line.words.ends_with("; recorded as of a left knee, the case is a right one")) << line.words;
   EXPECT_EQ(line.severity, widgets::Severity::Caution);
 }
@@ -51,7 +51,7 @@ TEST(SessionList, SaysOfWhichSideItWasRecorded) {
 // What is being recorded is neither ticked nor doubted for having no end yet.
 TEST(SessionList, SaysWhatIsBeingRecorded) {
   library::SessionFacts facts;
-  facts.bone = "femur";
+  facts.bone = bones::BoneKind::Femur;
   facts.is_being_recorded = true;
   EXPECT_EQ(session_line(facts).words, "femur; not registered, being recorded");
   EXPECT_EQ(session_line(facts).severity, widgets::Severity::Quiet);

@@ -76,7 +76,7 @@ TEST_F(SessionFactsTest, SaysStepsRegistrationAndWhatWasReached) {
   EXPECT_EQ(facts.problem, "");
   EXPECT_EQ(facts.id, "0001-20260131-120000");
   EXPECT_EQ(facts.started_utc, "2026-01-02T03:04:05Z");
-  EXPECT_EQ(facts.bone, "femur");
+  EXPECT_EQ(facts.bone, bones::BoneKind::Femur);
   EXPECT_EQ(facts.source_kind, "live");
   EXPECT_TRUE(facts.was_finished);
   EXPECT_TRUE(facts.was_verified);
@@ -157,7 +157,7 @@ TEST_F(SessionFactsTest, TellsWhatIsWholeOfABrokenSession) {
   const library::SessionFacts facts = read();
   EXPECT_THAT(facts.problem, HasSubstr("session.sqlite"));
   EXPECT_EQ(facts.predicted_error_mm, 0.6);
-  EXPECT_EQ(facts.bone, "femur");
+  EXPECT_EQ(facts.bone, bones::BoneKind::Femur);
   EXPECT_THAT(read_session_facts(folder_ / "none").problem, HasSubstr("none"));
 }
 

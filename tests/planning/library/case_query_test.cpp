@@ -15,10 +15,10 @@ class CaseQueryTest : public ::testing::Test {
  protected:
   CaseQueryTest() {
     records_.resize(4);
-    set(0, "Bauer", "left", "2026-01-05", "2026-01-09");
-    set(1, "adler", "right", "2026-01-07", "2026-01-08");
-    set(2, "Ärmel", "right", "2026-01-01", "2026-01-10");
-    set(3, "Cramer", "left", "2026-01-03", "2026-01-07");
+    set(0, "Bauer", bones::Side::Left, "2026-01-05", "2026-01-09");
+    set(1, "adler", bones::Side::Right, "2026-01-07", "2026-01-08");
+    set(2, "Ärmel", bones::Side::Right, "2026-01-01", "2026-01-10");
+    set(3, "Cramer", bones::Side::Left, "2026-01-03", "2026-01-07");
     records_[0].planned = {bones::BoneKind::Femur};
     records_[1].note = "Revision, #study\nsecond line";
     records_[2].is_there = false;
@@ -30,7 +30,7 @@ class CaseQueryTest : public ::testing::Test {
     drilled.entry_offset_mm = 3;
     records_[1].sessions = {drilled};
   }
-  void set(std::size_t i, const char* name, const char* side, const char* created, const char* changed) {
+  void set(std::size_t i, const char* name, bones::Side side, const char* created, const char* changed) {
     records_[i].name = name;
     records_[i].side = side;
     records_[i].created_utc = std::string(created) + "T12:00:00Z";
@@ -72,9 +72,9 @@ TEST_F(CaseQueryTest, EveryWordMustStandSomewhere) {
 }
 
 TEST_F(CaseQueryTest, FiltersBySideAndState) {
-  EXPECT_THAT(found({.side = "left"}), ElementsAre(0, 3));
+  EXPECT_THAT(found({.side = bones::Side::Left}), ElementsAre(0, 3));
   EXPECT_THAT(found({.state = CaseState::Missing}), ElementsAre(2));
-  EXPECT_THAT(found({.side = "left", .state = CaseState::Drilled}), ElementsAre(3));
+  EXPECT_THAT(found({.side = bones::Side::Left, .state = CaseState::Drilled}), ElementsAre(3));
 }
 
 TEST_F(CaseQueryTest, WordsOfStatesAndOrdersComeBack) {

@@ -40,7 +40,7 @@ TEST_F(CaseRecordTest, SaysWhatTheFolderHolds) {
     std::filesystem::create_directories(knee_ / "sessions" / session);
   const CaseRecord record = read();
   EXPECT_EQ(record.name, "Knie Ä");
-  EXPECT_EQ(record.side, "right");
+  EXPECT_EQ(record.side, bones::Side::Right);
   EXPECT_EQ(record.created_utc, "2026-01-31T12:00:00Z");
   EXPECT_THAT(record.bones, ::testing::ElementsAre(bones::BoneKind::Femur, bones::BoneKind::Tibia));
   EXPECT_THAT(record.planned, ::testing::ElementsAre(bones::BoneKind::Femur));
@@ -184,7 +184,7 @@ TEST(SessionFactsTest, TellWhatItWasAndWhatIsDoubtful) {
   SessionFacts facts;
   EXPECT_EQ(facts.what(), "");
   EXPECT_TRUE(facts.doubts().empty()) << "that it was cut off stands in the outcome";
-  facts.bone = "tibia";
+  facts.bone = bones::BoneKind::Tibia;
   facts.source_kind = "simulation";
   facts.length_min = 2.04;
   EXPECT_EQ(facts.what(), "simulation, tibia, 2.0 min");

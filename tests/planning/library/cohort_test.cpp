@@ -20,11 +20,11 @@ std::vector<CaseRecord> two_cases() {
   std::vector<CaseRecord> records(2);
   records[0].name = "A";
   records[0].folder = "/cases/A.arthro";
-  records[0].side = "left";
+  records[0].side = bones::Side::Left;
   records[0].planned = {bones::BoneKind::Femur};
   SessionFacts session;
   session.id = "0001";
-  session.bone = "femur";
+  session.bone = bones::BoneKind::Femur;
   session.registration_is_reliable = true;
   session.predicted_error_mm = 0.4;
   session.entry_offset_mm = 1.25;
@@ -32,14 +32,16 @@ std::vector<CaseRecord> two_cases() {
   session.drilling_min = 3.5;
   records[0].sessions = {session, session};
   records[0].sessions[1].id = "0002";
-  records[0].postoperative = {
-      {.bone = "tibia", .entry_offset_mm = 2, .angle_deg = 1, .diameter_mm = 9, .is_reliable = true},
-      {.bone = "femur",
-       .bundle = "pl",
-       .entry_offset_mm = 3,
-       .angle_deg = 4,
-       .diameter_mm = 6,
-       .is_reliable = false}};
+  records[0].postoperative = {{.tunnel = bones::BoneKind::Tibia,
+                               .entry_offset_mm = 2,
+                               .angle_deg = 1,
+                               .diameter_mm = 9,
+                               .is_reliable = true},
+                              {.tunnel = {bones::BoneKind::Femur, norms::Bundle::Posterolateral},
+                               .entry_offset_mm = 3,
+                               .angle_deg = 4,
+                               .diameter_mm = 6,
+                               .is_reliable = false}};
   records[1].name = "B";
   records[1].folder = "/cases/B.arthro";
   records[1].problem = "case.json: broken";

@@ -103,7 +103,7 @@ TEST_F(LibraryTest, ACaseThatIsGoneStaysAsMissingUntilItIsForgotten) {
   fs::rename(a, root_ / "elsewhere");
   auto records = library->look();
   ASSERT_THAT(names(records), ElementsAre("A (missing)"));
-  EXPECT_EQ(records[0].side, "left");
+  EXPECT_EQ(records[0].side, bones::Side::Left);
   EXPECT_THAT(names(library->known()), ElementsAre("A (missing)"));
   fs::rename(root_ / "elsewhere", a);
   EXPECT_THAT(names(library->look()), ElementsAre("A"));

@@ -5,20 +5,21 @@
 namespace arthronaut::library {
 namespace {
 
+using bones::BoneKind;
+
 SessionFacts session(const std::string& when, double offset_mm, const std::string& kind = "live") {
   SessionFacts facts;
   facts.id = when;
   facts.started_utc = when;
   facts.source_kind = kind;
-  facts.bone = "femur";
+  facts.bone = BoneKind::Femur;
   facts.entry_offset_mm = offset_mm;
   return facts;
 }
 
-PostoperativeFacts found(const std::string& bone, double offset_mm, std::optional<double> angle_deg,
-                         bool is_reliable) {
+PostoperativeFacts found(BoneKind bone, double offset_mm, std::optional<double> angle_deg, bool is_reliable) {
   PostoperativeFacts facts;
-  facts.bone = bone;
+  facts.tunnel = bone;
   facts.entry_offset_mm = offset_mm;
   facts.angle_deg = angle_deg;
   facts.is_reliable = is_reliable;
@@ -32,7 +33,7 @@ TEST(TrendTest, GoesThroughTheSessionsInTime) {
   records[0].sessions = {session("2026-01-01", 1), session("2026-01-03", 3)};
   records[1].name = "B";
   records[1].sessions = {session("2026-01-02", 2), session("2026-01-04", 4, "simulation"), SessionFacts{}};
-  records[1].sessions[0].bone = "tibia";
+  records[1].sessions[0].bone = BoneKind::Tibia;
   const auto values = [&](const TrendOptions& options) {
     std::vector<double> all;
     for (const TrendPoint& point : trend_of(records, Trend::EntryOffset, options)) all.push_back(point.value);
@@ -40,10 +41,10 @@ TEST(TrendTest, GoesThroughTheSessionsInTime) {
   };
   EXPECT_EQ(values({}), (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(values({.with_simulated = true}), (std::vector<double>{1, 2, 3, 4}));
-  EXPECT_EQ(values({.bone = "tibia"}), (std::vector<double>{2}));
+  EXPECT_EQ(values({.bone = BoneKind::Tibia}), (std::vector<double>{2}));
   EXPECT_EQ(trend_of(records, Trend::EntryOffset)[1].case_name, "B");
-  EXPECT_EQ(trend_of(records, Trend::EntryOffset)[0].bone, "femur");
-  EXPECT_EQ(trend_of(records, Trend::EntryOffset)[1].bone, "tibia");
+  EXPECT_EQ(trend_of(records, Trend::EntryOffset)[0].bone, BoneKind::Femur);
+  EXPECT_EQ(trend_of(records, Trend::EntryOffset)[1].bone, BoneKind::Tibia);
   EXPECT_TRUE(trend_of(records, Trend::Drilling).empty());
 }
 
@@ -51,7 +52,8 @@ TEST(TrendTest, GoesThroughTheSessionsInTime) {
 TEST(TrendTest, LimitsAreOfTheOperationsAlone) {
   std::vector<TrendPoint> real, mixed, simulated;
   for (int i = 0; i < 10; ++i) {
-    const TrendPoint point{"2026-01-0" + std::to_string(i), 2 + 0.1 * (i % 3), "A", "", {}, "femur", false};
+    const TrendPoint point{
+        "2026-01-0" + std::to_string(i), 2 + 0.1 * (i % 3), "A", "", {}, BoneKind::Femur, false};
     TrendPoint rehearsed = point;
     rehearsed.value = 9 - i;
     rehearsed.is_simulated = true;
@@ -81,13 +83,13 @@ TEST(TrendTest, GoesThroughTheComparisonsWithACt) {
   std::vector<CaseRecord> records(3);
   records[0].name = "A";
   records[0].sessions = {session("2026-01-03", 1), session("2026-01-05", 1)};
-  records[0].postoperative = {found("femur", 2.5, 4, true), found("tibia", 9, 9, false)};
+  records[0].postoperative = {found(BoneKind::Femur, 2.5, 4, true), found(BoneKind::Tibia, 9, 9, false)};
   records[1].name = "B";
   records[1].created_utc = "2026-01-04";
-  records[1].postoperative = {found("tibia", 1.5, std::nullopt, true)};
+  records[1].postoperative = {found(BoneKind::Tibia, 1.5, std::nullopt, true)};
   records[2].name = "C";
   records[2].sessions = {session("2026-01-01", 1, "simulation")};
-  records[2].postoperative = {found("femur", 0.5, 1, true)};
+  records[2].postoperative = {found(BoneKind::Femur, 0.5, 1, true)};
   const auto points = trend_of(records, Trend::AchievedOffset);
   ASSERT_EQ(points.size(), 2U);
   EXPECT_EQ(points[0].case_name, "B");
@@ -95,7 +97,7 @@ TEST(TrendTest, GoesThroughTheComparisonsWithACt) {
   EXPECT_EQ(points[1].value, 2.5);
   EXPECT_EQ(points[1].when_utc, "2026-01-05");
   EXPECT_EQ(trend_of(records, Trend::AchievedOffset, {.with_simulated = true}).size(), 3U);
-  EXPECT_EQ(trend_of(records, Trend::AchievedOffset, {.bone = "femur"}).size(), 1U);
+  EXPECT_EQ(trend_of(records, Trend::AchievedOffset, {.bone = BoneKind::Femur}).size(), 1U);
   ASSERT_EQ(trend_of(records, Trend::AchievedAngle).size(), 1U);
   EXPECT_EQ(trend_of(records, Trend::AchievedAngle)[0].value, 4);
 }
@@ -106,7 +108,7 @@ TEST(TrendTest, AComparisonIsOfTheOperation) {
   SessionFacts looked_at = session("2026-02-03", 0);
   looked_at.entry_offset_mm.reset();
   records[0].sessions = {session("2026-01-03", 1), looked_at, session("2026-03-03", 1, "simulation")};
-  records[0].postoperative = {found("femur", 2.5, 4, true)};
+  records[0].postoperative = {found(BoneKind::Femur, 2.5, 4, true)};
   auto points = trend_of(records, Trend::AchievedOffset);
   ASSERT_EQ(points.size(), 1U);
   EXPECT_EQ(points[0].when_utc, "2026-01-03");
@@ -121,7 +123,7 @@ TEST(TrendTest, ABoneThatWasNotNavigatedIsOfWhatItsCaseIs) {
   std::vector<CaseRecord> records(1);
   records[0].created_utc = "2026-01-02";
   records[0].sessions = {session("2026-01-03", 1, "simulation")};
-  records[0].postoperative = {found("femur", 2.5, 4, true), found("tibia", 1.5, 2, true)};
+  records[0].postoperative = {found(BoneKind::Femur, 2.5, 4, true), found(BoneKind::Tibia, 1.5, 2, true)};
   EXPECT_TRUE(trend_of(records, Trend::AchievedOffset).empty());
   EXPECT_EQ(trend_of(records, Trend::AchievedOffset, {.with_simulated = true}).size(), 2U);
   records[0].sessions.push_back(session("2026-01-04", 1));
