@@ -15,6 +15,10 @@
 
 namespace arthronaut::review {
 
+class CheckRun;
+class ReportRun;
+class SessionList;
+
 // What the panels read. Preconditions: the session has frames.
 struct ReviewScreen {
   const SessionReview& review;
@@ -77,6 +81,16 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Revie
                    const landmarks::AnatomicalAxes& axes);
 // The numbers of this moment, the registration, today's numbers beside them, and planned against achieved.
 void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewScreen& screen);
+// Whether the record is as it was recorded; reasons name the files within the session alone.
+void draw_check(const widgets::Ui& ui, const CheckRun& run, const SessionList& sessions);
+// By which calibration it was recorded; nothing where that is not known.
+void draw_camera(const widgets::Ui& ui, const SessionReview& review);
+// What it was recorded of: as large as the word in the bar above, and in its colour, since what a recording
+// is of changes nothing of what it is.
+void draw_origin(const widgets::Ui& ui, const widgets::Rect& area, const recording::SessionHeader& header);
+// Of whichever session it was asked for: its file names it. null: none was. refusal: why the one that was
+// asked for last was not begun. Of a plan that was changed since (not of now) it is no tick.
+void draw_report(const widgets::Ui& ui, const ReportRun* report, const std::string& refusal, bool is_of_now);
 
 // "1:02.3"
 [[nodiscard]] std::string clock_text(double seconds);

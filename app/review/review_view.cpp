@@ -6,8 +6,6 @@
 #include <utility>
 
 #include "app/widgets/list_rows.h"
-#include "app/widgets/source_banner.h"
-#include "navigation/camera/calibration_words.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/worker/freed_memory.h"
 #include "planning/cases/case.h"
@@ -202,7 +200,7 @@ void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
     widgets::text_centered(ui, rest, ui.theme.title, widgets::kQuietText, text);
     return;
   }
-  draw_origin(ui, rest.cut_top(ui.theme.px(58), gap));
+  draw_origin(ui, rest.cut_top(ui.theme.px(58), gap), open_->review.session->header);
   // The numbers first: what was achieved stands below the moment's, and is to be read without scrolling.
   const widgets::Rect numbers = rest.cut_right(ui.theme.px(430), gap);
   const widgets::Rect line = rest.cut_bottom(ui.theme.px(300), gap);
@@ -241,8 +239,8 @@ void ReviewView::draw_side(const widgets::Ui& ui, const widgets::Rect& area) {
   ImGui::Separator();
   draw_buttons(ui);
   if (open_) draw_end(ui);
-  if (open_) draw_check(ui);
-  if (open_) draw_camera(ui);
+  if (open_) draw_check(ui, *open_->check, sessions_);
+  if (open_) draw_camera(ui, open_->review);
   if (open_ && !has_frames())
     for (const std::string& problem : open_->review.problems)
       widgets::status_row(ui, widgets::Severity::Caution, "Not whole", problem);
@@ -257,73 +255,9 @@ void ReviewView::draw_side(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::end_panel();
 }
 
-void ReviewView::draw_check(const widgets::Ui& ui) const {
-  using Outcome = recording::SessionCheck::Outcome;
-  const std::string error = open_->check->error();
-  const CheckProgress progress = open_->check->progress();
-  if (!error.empty()) {
-    ui.log.note_state("record", "failed");
-    return widgets::status_row(ui, widgets::Severity::Bad, "Record", error);
-  }
-  if (!progress.result) {
-    ui.log.note_state("record", "checking");
-    return widgets::status_row(ui, widgets::Severity::Quiet, "Record",
-                               "checked to " + std::to_string(progress.percent) + " %");
-  }
-  const recording::SessionCheck& check = *progress.result;
-  const bool is_broken = check.outcome == Outcome::Broken;
-  ui.log.note_state("record", is_broken ? "broken" : check.is_unbroken() ? "unbroken" : "unknown");
-  widgets::status_row(ui,
-                      is_broken             ? widgets::Severity::Bad
-                      : check.is_unbroken() ? widgets::Severity::Good
-                                            : widgets::Severity::Quiet,
-                      is_broken ? "Not as recorded" : "Record",
-                      sessions_.within(recording::check_words(check)));
-}
-
-void ReviewView::draw_camera(const widgets::Ui& ui) const {
-  const auto& camera = open_->review.session->options.calibrated;
-  if (camera == nullptr) return;  // why stands among what is not whole
-  const std::string words = camera::in_words(*camera);
-  ui.log.note_state("camera", words);
-  widgets::status_row(ui, widgets::Severity::Quiet, "Camera", words);
-}
-
 bool ReviewView::is_report_of_now() const {
-  return report_ != nullptr && model_ != nullptr &&
+  return report_ != nullptr && report_->has_ended() && model_ != nullptr &&
          report_->plan_sha256() == cases::plan_sha256(cases::with_named_meshes(model_->knee()));
-}
-
-// Of whichever session it was asked for: its file names it. Of a plan that was changed since it is no tick.
-void ReviewView::draw_report(const widgets::Ui& ui) const {
-  if (!no_report_.empty()) {
-    ui.log.note_state("report", "refused");
-    widgets::status_row(ui, widgets::Severity::Bad, "No report", no_report_);
-    return;
-  }
-  const std::string problem = report_ != nullptr && report_->has_ended() ? report_->problem() : "";
-  const bool is_of_now = report_ != nullptr && !is_writing_report() && is_report_of_now();
-  ui.log.note_state("report", report_ == nullptr       ? "none"
-                              : is_writing_report()    ? "running"
-                              : report_->was_stopped() ? "stopped"
-                              : !problem.empty()       ? "failed"
-                              : is_of_now              ? "written"
-                                                       : "of an earlier plan");
-  if (report_ == nullptr) return;
-  if (is_writing_report()) {
-    const ReportRun::Progress progress = report_->progress();
-    ui.log.note_state("report_part", progress.what);
-    widgets::text_in(ui.theme.body, widgets::kQuietText, "Report: " + progress.what + ". R stops it.");
-    ImGui::ProgressBar(static_cast<float>(progress.share), {-1, 0});
-  } else if (report_->was_stopped())
-    widgets::status_row(ui, widgets::Severity::Quiet, "Report", "stopped; nothing was written");
-  else if (problem.empty() && is_of_now)
-    widgets::status_row(ui, widgets::Severity::Good, "Report", report_->file().string());
-  else if (problem.empty())
-    widgets::status_row(ui, widgets::Severity::Caution, "Report of an earlier plan",
-                        report_->file().string() + ": the plan was changed since");
-  else
-    widgets::status_row(ui, widgets::Severity::Bad, "No report", problem);
 }
 
 void ReviewView::draw_buttons(const widgets::Ui& ui) {
@@ -341,7 +275,7 @@ void ReviewView::draw_buttons(const widgets::Ui& ui) {
     ImGui::SameLine();
     widgets::action_button(ui, "review.resume", width);
   }
-  draw_report(ui);
+  draw_report(ui, report_.get(), no_report_, is_report_of_now());
   if (!open_ || !open_->today) return ui.log.note_state("today", "none");
   const TodayProgress progress = open_->today->progress();
   const std::string error = open_->today->error();
@@ -351,23 +285,6 @@ void ReviewView::draw_buttons(const widgets::Ui& ui) {
   ImGui::ProgressBar(
       progress.total > 0 ? static_cast<float>(progress.done) / static_cast<float>(progress.total) : 0,
       {-1, 0}, progress.total > 0 ? nullptr : "Making the bone ready");
-}
-
-// As large as the word in the bar above, and in its colour: what a recording is of changes nothing of what it
-// is.
-void ReviewView::draw_origin(const widgets::Ui& ui, const widgets::Rect& area) const {
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  ImFont* const font = ui.theme.afar;
-  const std::string words = origin_in_words(open_->review.session->header);
-  const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str());
-  const float margin = ui.theme.px(14);
-  const widgets::Rect plate{area.x, area.y, size.x + 2 * margin, area.height};
-  draw.AddRectFilled(plate.min(), plate.max(), widgets::banner_color(sources::SourceKind::Recording, true),
-                     ui.theme.px(6));
-  draw.AddText(font, font->FontSize, {plate.x + margin, plate.center().y - size.y / 2}, widgets::kBackground,
-               words.c_str());
-  ui.log.note("review.origin", plate.min(), plate.max());
-  ui.log.note_state("origin", words);
 }
 
 void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) {

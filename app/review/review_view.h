@@ -104,17 +104,13 @@ class ReviewView : public mode::Mode {
   [[nodiscard]] bool runs_today() const;
   // Keys are meant for the folders in which a CT is looked for.
   [[nodiscard]] bool browses() { return shows_postop_ && postop_.browser() != nullptr; }
-  // Whether the plan is still the one that it tells of.
+  // Whether it is written, and the plan is still the one that it tells of.
   [[nodiscard]] bool is_report_of_now() const;
   [[nodiscard]] bool is_writing_report() const { return report_ != nullptr && !report_->has_ended(); }
   [[nodiscard]] ReviewScreen screen() const;
   void draw_side(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_buttons(const widgets::Ui& ui);
-  void draw_report(const widgets::Ui& ui) const;
-  void draw_check(const widgets::Ui& ui) const;
-  void draw_camera(const widgets::Ui& ui) const;
   void draw_note_field(const widgets::Ui& ui);
-  void draw_origin(const widgets::Ui& ui, const widgets::Rect& area) const;
   void draw_picture(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_scene(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_numbers(const widgets::Ui& ui, widgets::Rect area);
