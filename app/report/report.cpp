@@ -16,6 +16,7 @@
 #include "app/report/report_words.h"
 #include "app/report/result_summary.h"
 #include "app/report/session_rows.h"
+#include "app/report/session_sections.h"
 #include "app/report/settings_section.h"
 #include "app/report/stills.h"
 #include "app/scene/plan_picture.h"
@@ -137,8 +138,6 @@ class Report {
   void plan_page();
   void say_plan_fit(const tunnels::TunnelKey& key);
   void navigate_page();
-  void registration_section(const registration::RegistrationSummary& registration);
-  void time_line_section(const recording::RecordedSession& session);
   // is_own: drilled in the session that is told of.
   void result_section(const operation::AchievedTunnel& achieved, bool is_own);
   void result_pictures();
@@ -199,49 +198,6 @@ void Report::say_plan_fit(const tunnels::TunnelKey& key) {
     pages_.sentence("The plan of the " + name + " does not say on which surface of the bone it was made.",
                     {.size_pt = 8.5, .ink = kGray});
   }
-}
-
-void Report::registration_section(const registration::RegistrationSummary& registration) {
-  const auto of_pose = [&](double value_mm) {
-    return registration.has_pose ? number(value_mm, " mm", 2) : std::string("\u2013");
-  };
-  pages_.heading("Registration of the bone");
-  pages_.table({70, 100},
-               {{"Quantity", "Value"},
-                {"Verdict", registration.reliable ? "reliable" : "NOT RELIABLE"},
-                {"Touched points", std::to_string(registration.point_count)},
-                {"Distance of the points to the bone, RMS", of_pose(registration.rms_mm)},
-                {"Points that fit",
-                 registration.has_pose ? number(100 * registration.inlier_fraction, " %", 0) : "\u2013"},
-                {"Predicted error at the target, one sigma", of_pose(registration.predicted_tre_mm)}});
-  for (const auto& reason : registration.reasons) pages_.sentence("– " + reason, {.ink = kWarning});
-  for (const auto& assumption : registration.assumptions) pages_.sentence("– assumed: " + assumption);
-  pages_.sentence(
-      "A small distance of the points does not prove a small error at the tunnel: the predicted error is the "
-      "figure "
-      "to go by.",
-      {.size_pt = 8, .ink = kGray});
-}
-
-// Steps as the record has them, and what whoever looked at it marked.
-void Report::time_line_section(const recording::RecordedSession& session) {
-  std::vector<std::vector<std::string>> rows;
-  for (const Step& step : steps_of(session)) rows.push_back({clock_text(step.time_s), step.words});
-  if (!rows.empty()) {
-    pages_.heading("Steps");
-    rows.insert(rows.begin(), {"Time", "Step"});
-    pages_.table({24, 146}, rows);
-  }
-  if (content_.marks.empty() && content_.marks_problem.empty()) return;
-  pages_.heading("Marks of who looked at the session");
-  rows = {{"Time", "Note"}};
-  for (const recording::SessionMark& mark : content_.marks)
-    rows.push_back({clock_text(time_s(session, mark.timestamp_ns)),
-                    (mark.note.empty() ? std::string("(no note)") : mark.note) + "  (frame " +
-                        std::to_string(mark.frame) + ")"});
-  if (!content_.marks.empty()) pages_.table({24, 146}, rows);
-  if (!content_.marks_problem.empty())
-    pages_.sentence("NOT READABLE: " + content_.marks_problem, {.ink = kWarning});
 }
 
 void Report::result_section(const operation::AchievedTunnel& achieved, bool is_own) {
@@ -325,11 +281,11 @@ void Report::navigate_page() {
     rows.push_back({"Plan in force", plan});
   std::ranges::move(rows_of(content_.safety), std::back_inserter(rows));
   pages_.table({70, 100}, rows);
-  if (content_.registration) registration_section(*content_.registration);
+  if (content_.registration) draw_registration(pages_, *content_.registration);
   if (!content_.registration_problem.empty())
     pages_.sentence("NOT READABLE: the registration: " + content_.registration_problem,
                     {.bold = true, .ink = kWarning});
-  time_line_section(session);
+  draw_time_line(pages_, content_);
   for (const operation::AchievedTunnel& achieved : content_.achieved) result_section(achieved, true);
   for (const Content::Earlier& earlier : content_.earlier) {
     result_section(earlier.achieved, false);
