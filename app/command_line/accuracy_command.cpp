@@ -35,8 +35,12 @@ void check_clip(Context& context, const CheckArguments& arguments) {
     throw InvalidInput(arguments.ruler.video, "", why + " (--no-keep measures alone)");
   const RulerClip clip = look_at_ruler(arguments.ruler);
   const AccuracyCheck check = workstation_library::daily_check_of(
-      clip.summary, clip.options.ruler, clip.options.refractive_index, arguments.ruler.camera,
-      std::filesystem::path(arguments.ruler.video).filename(), recorded, arguments.device);
+      clip.summary, {.ruler = clip.options.ruler,
+                     .refractive_index = clip.options.refractive_index,
+                     .camera_file = arguments.ruler.camera,
+                     .source = std::filesystem::path(arguments.ruler.video).filename(),
+                     .clip = recorded,
+                     .device = arguments.device});
   context.say(
       files::format("%s, in %s: %zu frames", check.device.c_str(), check.medium.c_str(), check.frame_count));
   context.say(check.is_dated ? "recorded " + check.checked_utc

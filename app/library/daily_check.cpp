@@ -56,31 +56,28 @@ std::optional<RecordedClip> recorded_clip(const std::filesystem::path& video_or_
   return clip;
 }
 
-library::AccuracyCheck daily_check_of(const calibration::FluidCheckSummary& summary,
-                                      const calibration::Ruler& ruler, double refractive_index,
-                                      const std::filesystem::path& camera_file, const std::string& source,
-                                      const std::optional<RecordedClip>& clip, const std::string& device) {
-  const camera::CalibrationRecord camera = camera::read_camera_file(camera_file);
+library::AccuracyCheck daily_check_of(const calibration::FluidCheckSummary& summary, const RulerLook& look) {
+  const camera::CalibrationRecord camera = camera::read_camera_file(look.camera_file);
   if (camera.provenance.origin != provenance::Origin::Measured)
-    throw InvalidInput(camera_file, "origin",
+    throw InvalidInput(look.camera_file, "origin",
                        camera.provenance.origin == provenance::Origin::Simulated
                            ? "is of a simulated arthroscope, whose accuracy says nothing of a real one"
                            : "is nominal, of no arthroscope that was calibrated: its accuracy is nobody's");
   library::AccuracyCheck check;
   check.checked_utc = files::utc_now();
-  if (clip) {
-    check.clip_sha256 = clip->sha256;
-    check.is_dated = !clip->recorded_utc.empty();
-    if (check.is_dated) check.checked_utc = clip->recorded_utc;
+  if (look.clip) {
+    check.clip_sha256 = look.clip->sha256;
+    check.is_dated = !look.clip->recorded_utc.empty();
+    if (check.is_dated) check.checked_utc = look.clip->recorded_utc;
   }
-  check.device = device;
+  check.device = look.device;
   if (check.device.empty())
     check.device = camera.scope_name + (camera.head_name.empty() ? "" : ", " + camera.head_name);
   if (check.device.empty()) check.device = "arthroscope";
-  check.medium = camera::medium_to_text(refractive_index);
-  check.source = source;
-  check.camera_sha256 = files::sha256_of_file(camera_file);
-  check.true_mm = ruler.first_from_second.translation_mm.norm();
+  check.medium = camera::medium_to_text(look.refractive_index);
+  check.source = look.source;
+  check.camera_sha256 = files::sha256_of_file(look.camera_file);
+  check.true_mm = look.ruler.first_from_second.translation_mm.norm();
   check.distance_mm = summary.distance_mm;
   check.spread_mm = summary.distance_spread_mm;
   check.frame_count = summary.frame_count;
@@ -89,14 +86,12 @@ library::AccuracyCheck daily_check_of(const calibration::FluidCheckSummary& summ
 }
 
 DailyKeeping keep_daily_check(const std::filesystem::path& data_folder,
-                              const calibration::FluidCheckSummary& summary, double refractive_index,
-                              const std::filesystem::path& camera_file, const std::string& source,
+                              const calibration::FluidCheckSummary& summary, const RulerLook& look,
                               bool is_live) {
   if (!(summary.distance_mm > 0)) return {false, "not kept: the ruler was not measured"};
   if (!is_live) return {false, "not kept: of a recording, not of today's arthroscope"};
   try {
-    const library::AccuracyCheck check =
-        daily_check_of(summary, calibration::Ruler(), refractive_index, camera_file, source, std::nullopt);
+    const library::AccuracyCheck check = daily_check_of(summary, look);
     (void)library::keep_accuracy_check(data_folder, check);
     return {true, files::format("kept: %.3f of %.3f mm", check.distance_mm, check.true_mm)};
   } catch (const InvalidInput& error) {

@@ -17,15 +17,19 @@ struct RecordedClip {
 // Of a video file or a printf pattern of stills; nullopt where there is no such file. Throws IoError.
 [[nodiscard]] std::optional<RecordedClip> recorded_clip(const std::filesystem::path& video_or_pattern);
 
-// clip: of a recorded clip, whose time is the check's; nullopt: of a live arthroscope, of now. device: what
-// the arthroscope is called; empty: scope and head of the camera's file. Throws IoError or InvalidInput: a
-// simulated arthroscope's, or a nominal one's, says nothing of a real one.
+// By what the ruler was looked at.
+struct RulerLook {
+  calibration::Ruler ruler = {};
+  double refractive_index = 1;
+  std::filesystem::path camera_file;
+  std::string source = {};                // "camera 0", "clip.mkv"
+  std::optional<RecordedClip> clip = {};  // whose time is the check's; empty: a live arthroscope, now
+  std::string device = {};  // what the arthroscope is called; empty: scope and head of the camera's file
+};
+
+// Throws IoError or InvalidInput: a simulated arthroscope's, or a nominal one's, says nothing of a real one.
 [[nodiscard]] library::AccuracyCheck daily_check_of(const calibration::FluidCheckSummary& summary,
-                                                    const calibration::Ruler& ruler, double refractive_index,
-                                                    const std::filesystem::path& camera_file,
-                                                    const std::string& source,
-                                                    const std::optional<RecordedClip>& clip,
-                                                    const std::string& device = "");
+                                                    const RulerLook& look);
 
 struct DailyKeeping {
   bool is_kept = false;
@@ -35,7 +39,6 @@ struct DailyKeeping {
 // What was recorded earlier is not today's, and is not kept.
 [[nodiscard]] DailyKeeping keep_daily_check(const std::filesystem::path& data_folder,
                                             const calibration::FluidCheckSummary& summary,
-                                            double refractive_index, const std::filesystem::path& camera_file,
-                                            const std::string& source, bool is_live);
+                                            const RulerLook& look, bool is_live);
 
 }  // namespace arthronaut::workstation_library

@@ -65,9 +65,12 @@ void FluidStation::keep_verdict() {
     return;
   }
   // The same look is the day's check of accuracy, also where the verdict could not be written.
-  const workstation_library::DailyKeeping daily = workstation_library::keep_daily_check(
-      workstation_library::data_folder(), *summary, status_.job.refractive_index,
-      cases::camera_file(case_folder_), source.name, source.is_live);
+  const workstation_library::DailyKeeping daily =
+      workstation_library::keep_daily_check(workstation_library::data_folder(), *summary,
+                                            {.refractive_index = status_.job.refractive_index,
+                                             .camera_file = cases::camera_file(case_folder_),
+                                             .source = source.name},
+                                            source.is_live);
   daily_check_ = {daily.is_kept ? widgets::Severity::Good : widgets::Severity::Caution, "Daily check",
                   daily.text};
 }

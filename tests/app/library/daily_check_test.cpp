@@ -34,8 +34,14 @@ class DailyCheckTest : public ::testing::Test {
     camera::write_camera_file(folder_ / "camera.json", record);
   }
   [[nodiscard]] DailyKeeping keep(const fs::path& data_folder, bool is_live = true) const {
-    return keep_daily_check(data_folder, summary_, camera::kSalineIndex, folder_ / "camera.json", "camera 0",
-                            is_live);
+    return keep_daily_check(data_folder, summary_, look("camera 0"), is_live);
+  }
+  [[nodiscard]] RulerLook look(const std::string& source,
+                               const std::optional<RecordedClip>& clip = {}) const {
+    return {.refractive_index = camera::kSalineIndex,
+            .camera_file = folder_ / "camera.json",
+            .source = source,
+            .clip = clip};
   }
 
   const test::TemporaryFolder folder_;
@@ -77,16 +83,14 @@ TEST_F(DailyCheckTest, AClipIsKnownByItsBytesAndDatedByItsFile) {
   ASSERT_TRUE(one && two);
   EXPECT_EQ(one->sha256, two->sha256);
   EXPECT_LT(two->recorded_utc, one->recorded_utc);
-  const auto check =
-      daily_check_of(summary_, {}, camera::kSalineIndex, folder_ / "camera.json", "two.mkv", two);
+  const auto check = daily_check_of(summary_, look("two.mkv", two));
   EXPECT_EQ(check.checked_utc, two->recorded_utc);
   EXPECT_EQ(check.clip_sha256, two->sha256);
   EXPECT_FALSE(recorded_clip(folder_ / "three.mkv"));
   fs::last_write_time(folder_ / "one.mkv", fs::file_time_type::clock::now() + std::chrono::hours(48));
   const auto undated = recorded_clip(folder_ / "one.mkv");
   ASSERT_TRUE(undated);
-  EXPECT_FALSE(daily_check_of(summary_, {}, camera::kSalineIndex, folder_ / "camera.json", "one.mkv", undated)
-                   .is_dated);
+  EXPECT_FALSE(daily_check_of(summary_, look("one.mkv", undated)).is_dated);
   // Stills are one clip: another picture among them makes it another one.
   std::ofstream(folder_ / "f_0001.png") << "a";
   const std::string before = recorded_clip(folder_ / "f_%04d.png")->sha256;
