@@ -151,6 +151,7 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
                                    [](const recording::FrameGlance& f) { return f.intrinsics_are_known; }));
   review.tracks.push_back(
       track_of(timeline, "Guidance", [](const recording::FrameGlance& f) { return f.is_guided(); }));
+  review.tracks.back().is_guidance = true;
   const auto registrations = follow(review);
   if (!timeline.frames().empty())
     review.moments = moments_of(

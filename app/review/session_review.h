@@ -24,6 +24,7 @@ struct Stretch {
 struct TimeTrack {
   std::string name;  // "Femur marker", "Probe", "Guidance", ...
   std::vector<Stretch> stretches;
+  bool is_guidance = false;
 };
 
 // What guidance stood on, from a frame of the record on.

@@ -297,8 +297,7 @@ std::optional<std::size_t> draw_time_line(const widgets::Ui& ui, const widgets::
   for (const TimeTrack& track : tracks) {
     draw_name(ui, draw, inner.x, row, track.name.c_str());
     draw.AddRectFilled({scale.left, row.top()}, {scale.left + scale.width, row.bottom()}, kTrough);
-    draw_stretches(draw, scale, row, track.stretches,
-                   track.name == "Guidance" ? widgets::kAccent : widgets::kGood);
+    draw_stretches(draw, scale, row, track.stretches, track.is_guidance ? widgets::kAccent : widgets::kGood);
     next(1);
   }
   Row graph{row.y, 1.5F * row.height};
