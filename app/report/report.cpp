@@ -19,6 +19,7 @@
 #include "app/report/session_sections.h"
 #include "app/report/settings_section.h"
 #include "app/report/stills.h"
+#include "app/report/versions.h"
 #include "app/scene/plan_picture.h"
 #include "navigation/camera/medium.h"
 #include "navigation/operation/achieved_tunnel.h"
@@ -161,6 +162,7 @@ void Report::plan_page() {
     about.push_back({"Created", files::utc_in_words(content_.knee.created_utc)});
   if (!options_.made_utc.empty() && !options_.is_deidentified)
     about.push_back({"Report made", files::utc_in_words(options_.made_utc)});
+  about.push_back({"Versions", versions_in_words()});
   pages_.table({45, 125}, about);
   draw_plan_verdicts(pages_, content_);
   pages_.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
@@ -302,7 +304,7 @@ void Report::navigate_page() {
 
 void Report::result_pictures() {
   if (content_.session) {
-    pages_.continue_as("Result, camera, tools and versions");
+    pages_.continue_as("Result, camera and tools");
     if (!options_.is_deidentified) draw_stills_section(pages_, content_);
     begin_part("Drawing what was achieved");
     const Result navigated =

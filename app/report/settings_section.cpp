@@ -1,7 +1,6 @@
 #include "app/report/settings_section.h"
 
 #include "app/report/report_words.h"
-#include "app/report/versions.h"
 #include "navigation/camera/calibration_words.h"
 #include "navigation/camera/medium.h"
 #include "navigation/recording/session.h"
@@ -80,20 +79,15 @@ void tools_table(FlowingPages& pages, const recording::RecordedSession& session)
       where = "axis through " + point(tool.axis->point_mm, 2) + " along " + point(tool.axis->direction, 3);
     rows.push_back({tool.name, ids_of(tool), number(tool.size_mm, " mm", 2), known_by(tool), where});
   }
-  pages.table({30, 14, 18, 22, 86}, rows);
+  pages.table({30, 16, 18, 22, 84}, rows);
 }
 
 }  // namespace
 
 void draw_settings_section(FlowingPages& pages, const Content& content) {
-  pages.continue_as("Camera, tools and versions");
+  pages.continue_as("Camera and tools");
   camera_section(pages, content);
   if (content.session) tools_table(pages, *content.session);
-  pages.heading("Versions", 6);
-  std::string text;
-  for (const auto& [name, version] : versions())
-    text += (text.empty() ? "" : " \u00B7 ") + name + " " + version;
-  pages.sentence(text, {.size_pt = 8.5});
 }
 
 }  // namespace arthronaut::report

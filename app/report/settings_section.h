@@ -1,4 +1,4 @@
-// What the figures of a report hang on: camera, tools and versions. Inner header of report.
+// What the figures of a report hang on: camera and tools. Inner header of report.
 #pragma once
 
 #include "app/report/flowing_pages.h"
@@ -6,7 +6,7 @@
 
 namespace arthronaut::report {
 
-// Camera and tools of the session, else the case's camera where it has one; versions always.
+// Camera and tools of the session, else the case's camera where it has one.
 void draw_settings_section(FlowingPages& pages, const Content& content);
 
 }  // namespace arthronaut::report

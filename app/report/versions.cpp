@@ -19,4 +19,11 @@ std::vector<std::pair<std::string, std::string>> versions() {
           {"SQLite", sqlite3_libversion()}};
 }
 
+std::string versions_in_words() {
+  std::string words;
+  for (const auto& [name, version] : versions())
+    words += (words.empty() ? "" : " \u00B7 ") + name + " " + version;
+  return words;
+}
+
 }  // namespace arthronaut::report

@@ -59,6 +59,7 @@ TEST_F(Report, ShowsWhatTheSurgeonSaw) {
   expect_contains(text, "0:00.4: drilled");
   expect_contains(text, "5 in 0:00.4");  // frames
   expect_contains(text, "Blue: as planned.");
+  EXPECT_LE(page_count(pdf_info()), 4) << "a report that is filed";
   EXPECT_EQ(text.find("-0.0"), std::string::npos) << text;
   const std::string bytes = made({});
   EXPECT_EQ(bytes, made({}));
