@@ -108,8 +108,8 @@ TEST_F(PivotCommand, TakesTheAxisIntoTheTools) {
   EXPECT_EQ(guide.nominal, tools::NominalParts{.end = true});
 }
 
-// Hazard 6: by a simulated camera nothing real is measured, and the file says so for ever.
-TEST_F(PivotCommand, Hazard6MarksWhatASimulatedCameraFound) {
+// By a simulated camera nothing real is measured, and the file says so for ever.
+TEST_F(PivotCommand, Hazard26MarksWhatASimulatedCameraFound) {
   write_swing(28);
   set_in_camera("origin", "simulated");
   ASSERT_EQ(pivot(2).exit_code, 0);
