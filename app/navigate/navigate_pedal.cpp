@@ -222,7 +222,7 @@ void NavigateView::take_step_back() {
 
 Repeat NavigateView::repeat_of(operation::Step step) const {
   const auto& plan = live_->operation->plan;
-  const bool is_said_drilled = plan && choices_.is_drilled(*live_->operation, *plan);
+  const bool is_said_drilled = plan && drilled_as(*plan) != nullptr;
   return navigate::repeat_of(step, *live_->operation, is_said_drilled);
 }
 
@@ -274,9 +274,9 @@ RailContext NavigateView::rail_context() const {
   const auto was_measured = [](const FinishedTunnel& tunnel) { return tunnel.measured.has_value(); };
   context.was_measured = context.is_drilled && std::ranges::all_of(finished.front().tunnels, was_measured);
   const auto& plan = live_->operation->plan;
-  const auto& kind = started_.kind();
-  context.was_verified = kind && plan && choices_.verified.contains({*kind, plan->tunnel.key()});
-  context.marker_is_out = kind && choices_.markers_out.contains({*kind, choices_.bone});
+  const operation::DrilledTunnel* const drilled = plan ? drilled_as(*plan) : nullptr;
+  context.was_verified = drilled != nullptr && drilled->was_verified;
+  context.marker_is_out = marker_is_out(choices_.bone);
   return context;
 }
 

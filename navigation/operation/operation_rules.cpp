@@ -158,7 +158,7 @@ void Operation::Parts::watch_guidance() {
   }
   if (marker_is_out && is_live() && frame.world_is_seen()) {
     marker_is_out = false;
-    note(JournalKind::Note, "the world marker is seen again: it is not out");
+    note(JournalKind::MarkerOut, "the world marker is seen again: it is not out");
   }
   grades.add(frame.guidance, frame.timestamp_ns);
   drilling.add(frame.guidance, frame.timestamp_ns);
@@ -280,6 +280,7 @@ void Operation::Parts::apply(const MarkerOut&) {
 
 void Operation::Parts::apply(const OfferPlan& offer) {
   offered.reset();
+  note(JournalKind::MarkerOut);
   resumed_plan_waits = false;
   if (offer.plan == plan) return;
   // An operation that was gone on with is under way before its next source begins, too.
