@@ -190,6 +190,7 @@ class Loop {
     if (step.has_ended) return end(LiveState::Phase::Ended);
     live_.trouble = run_.watch().trouble();
     live_.trouble_words = run_.watch().words();
+    live_.changed_to_px = run_.watch().changed_to_px();
     // How old the last one is the screen sees for itself; why none comes is news.
     if (step.picture == nullptr) return live_.trouble != SourceTrouble::None ? publish() : void();
     const Clock::time_point ready = Clock::now();
@@ -286,10 +287,10 @@ void LiveOperation::end_source() { thread_->worker.post(EndSource{}); }
 void LiveOperation::apply(operation::Command command) { thread_->worker.post(std::move(command)); }
 void LiveOperation::keep_video(bool on) { thread_->worker.post(VideoRequest{on}); }
 void LiveOperation::keep_pictures_as(recording::PicturesAs as) { thread_->worker.post(as); }
-void LiveOperation::shown(const LiveState& live, double drawn_s) {
 void LiveOperation::goes_on_after(const std::filesystem::path& session_folder) {
   thread_->worker.post(LeftRecord{session_folder});
 }
+void LiveOperation::shown(const LiveState& live, double drawn_s) {
   if (live.operation->source != nullptr && live.operation->source->kind == sources::SourceKind::Live)
     thread_->display.shown(live, drawn_s, now_s());
 }

@@ -41,6 +41,7 @@ struct LiveState {
   // its pictures take from stage to stage, as of the last second that was counted.
   SourceTrouble trouble = SourceTrouble::None;
   std::string trouble_words;
+  std::optional<Eigen::Vector2i> changed_to_px{};  // with NoPicture: see SourceWatch
   LatencyReport latency{};
   OperationRun::Refusal refusal;  // of what was asked for last
   double refused_s = 0;           // when refusal.count changed last, on the same clock

@@ -160,7 +160,8 @@ OperationRun::Step OperationRun::step() {
   const std::int64_t taken_ns = sources::steady_now_ns();
   (void)follow_registration();
   if (next.frame == nullptr) {
-    if (is_live && !next.has_ended && live_.watch.silence(source_->trouble(), taken_ns))
+    if (is_live && !next.has_ended &&
+        live_.watch.silence(source_->trouble(), taken_ns, source_->changed_to_px()))
       note_trouble(silence_ns());
     return {nullptr, next.has_ended};
   }
