@@ -164,15 +164,8 @@ void NavigateView::take_next_step() {
       return start_same_kind();
     case Kind::Act:
       return act(step.action);
-    case Kind::OpenCase:
-    case Kind::TypeAddress:
-    case Kind::WaitForSearch:
-    case Kind::Exercise:
-    case Kind::WaitForEnd:
-    case Kind::WaitForPicture:
-    case Kind::ChangeMedium:
-    case Kind::WaitForPictures:
-      return;  // none of them acts
+    default:
+      return;  // it does not act: see acts()
   }
 }
 
