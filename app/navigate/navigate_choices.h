@@ -28,6 +28,7 @@ struct NavigateChoices {
   bool undistorts = false;
   std::optional<NavigateLayout> layout;  // empty: as things stand
   double guidance_seen_s = -1e9;         // when something was guided last
+  double touch_asked_s = -1e9;           // when a touch was asked for last
   int stroke = -1;                       // selected
   std::optional<operation::Step> looked_at;  // the surgeon went back to it; empty: the one of now
   PedalStep pedal;                           // what is asked of the surgeon now
@@ -60,7 +61,7 @@ struct NavigateChoices {
     bone = other_bone();
     layout.reset();
     looked_at.reset();
-    guidance_seen_s = -1e9;
+    guidance_seen_s = touch_asked_s = -1e9;
     stroke = -1;
     offered_tunnel = 0;
   }

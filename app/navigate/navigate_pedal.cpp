@@ -275,8 +275,8 @@ RailContext NavigateView::rail_context() const {
 
 // What came of it is read in large, also once the step is done; but for a guide that is in the hand.
 void NavigateView::take_touch(bool is_control_point) {
-  if (theatre::LiveOperation::now_s() - choices_.guidance_seen_s > kGuideAway_s)
-    choices_.layout = NavigateLayout::Register;
+  choices_.touch_asked_s = theatre::LiveOperation::now_s();
+  if (choices_.touch_asked_s - choices_.guidance_seen_s > kGuideAway_s) choices_.layout.reset();
   if (is_control_point)
     ask(operation::TouchControlPoint{});
   else

@@ -267,7 +267,8 @@ void NavigateView::read_live() {
 }
 
 NavigateLayout NavigateView::layout(double now_s) const {
-  return choices_.layout.value_or(layout_of(*live_, now_s - choices_.guidance_seen_s, choices_.looked_at));
+  return choices_.layout.value_or(layout_of(*live_, now_s - choices_.guidance_seen_s, choices_.looked_at,
+                                            now_s - choices_.touch_asked_s));
 }
 
 void NavigateView::follow_reached(const NavigateDisplay& display, double now_s) {
