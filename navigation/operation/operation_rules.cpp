@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "navigation/operation/operation_parts.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::operation {
 
@@ -194,7 +195,10 @@ void Operation::Parts::look_for_end_of_loss() {
 void Operation::Parts::skip_verification(const std::string& how) {
   if (verification() != Verification::NotYet || !ledger.entry_in_force()) return;
   skipped_entry = ledger.entry_in_force();
-  note(JournalKind::VerificationSkipped, how);
+  const int wanted = setup.limits.touches_to_verify, missing = ledger.touches().places_to_verify();
+  std::string touched;
+  if (missing < wanted) touched = files::format("; %d of %d touches had been taken", wanted - missing, wanted);
+  note(JournalKind::VerificationSkipped, how + touched + (missing == 0 ? ", too far off to verify" : ""));
 }
 
 Verification Operation::Parts::verification() const {
@@ -276,11 +280,11 @@ void Operation::Parts::apply(const MarkerOut&) {
   }
   find_anew("the world marker is out of the bone");
   marker_is_out = true;
+  note(JournalKind::MarkerOut);
 }
 
 void Operation::Parts::apply(const OfferPlan& offer) {
   offered.reset();
-  note(JournalKind::MarkerOut);
   resumed_plan_waits = false;
   if (offer.plan == plan) return;
   // An operation that was gone on with is under way before its next source begins, too.
