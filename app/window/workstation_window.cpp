@@ -73,6 +73,13 @@ void WorkstationWindow::add_actions() {
                   leave_shown();
                   shows_start_ = true;
                   start_.enter(case_->folder());
+                },
+                {},
+                [this] {
+                  return !works_elsewhere()            ? ""
+                         : paint_.has_running_work()   ? "bones are being written"
+                         : shown().has_running_work() ? "end what runs here first"
+                                                       : "end what runs in another mode first";
                 }});
   add_markups_action();
   actions_.add(
