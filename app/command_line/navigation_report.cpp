@@ -48,10 +48,10 @@ void say_guidance(const Context& context, const theatre::NavigationSummary& summ
     const double value_mm = g.offset_in_mm(direction);
     return format("%.2f mm ", std::abs(value_mm)) + std::string(landmarks::to_text(direction, value_mm >= 0));
   };
-  context.say(format("  offset of the axis %.2f mm: %s, %s; guide %.1f mm %s the entry; one sigma %.2f mm, %.2f deg",
-                     g.offset_mm, part(g.across_plan.side_is).c_str(), part(g.across_plan.up_is).c_str(),
-                     std::abs(g.depth_mm), g.depth_mm < 0 ? "short of" : "beyond", g.sigma_offset_mm,
-                     g.sigma_angle_deg));
+  context.say(format(
+      "  offset of the axis %.2f mm: %s, %s; guide %.1f mm %s the entry; one sigma %.2f mm, %.2f deg",
+      g.offset_mm, part(g.across_plan.side_is).c_str(), part(g.across_plan.up_is).c_str(),
+      std::abs(g.depth_mm), g.depth_mm < 0 ? "short of" : "beyond", g.sigma_offset_mm, g.sigma_angle_deg));
   if (g.drill && g.drill->is_beside_plan())
     context.say(format("  drill %.1f mm beside the plan: nothing is said of what remains",
                        std::max(g.drill->lateral_mm, g.drill->exit_lateral_mm)) +

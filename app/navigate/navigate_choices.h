@@ -26,10 +26,10 @@ struct NavigateChoices {
   bool overlay_on = true;
   double overlay_shown_at_s = 0;
   bool undistorts = false;
-  std::optional<NavigateLayout> layout;  // empty: as things stand
-  double guidance_seen_s = -1e9;         // when something was guided last
-  double touch_asked_s = -1e9;           // when a touch was asked for last
-  int stroke = -1;                       // selected
+  std::optional<NavigateLayout> layout;      // empty: as things stand
+  double guidance_seen_s = -1e9;             // when something was guided last
+  double touch_asked_s = -1e9;               // when a touch was asked for last
+  int stroke = -1;                           // selected
   std::optional<operation::Step> looked_at;  // the surgeon went back to it; empty: the one of now
   PedalStep pedal;                           // what is asked of the surgeon now
   double pedal_since_s = 0;                  // and since when

@@ -1,7 +1,7 @@
-// Looks through the sessions of a case for what was done before, beside the screen: which tunnels are drilled,
-// and an operation that was left in the middle, which it keeps until the surgeon has answered. A program that was killed lets go of its record no
-// sooner than of its memory, on a busy machine many seconds later: what is found as being recorded is looked
-// at again once it is not.
+// Looks through the sessions of a case for what was done before, beside the screen: which tunnels are
+// drilled, and an operation that was left in the middle, which it keeps until the surgeon has answered. A
+// program that was killed lets go of its record no sooner than of its memory, on a busy machine many seconds
+// later: what is found as being recorded is looked at again once it is not.
 //
 // One thread, the window's; nothing here waits but the destructor, for the search at hand.
 #pragma once

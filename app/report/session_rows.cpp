@@ -157,7 +157,7 @@ Safety safety_of(const recording::RecordedSession& session, bool is_being_record
   safety.verification = registration.counts().was_verified ? ByTouches
                         : is_lost                          ? DidNotHold
                         : was_verified                     ? OfAnEarlierRegistration
-                        : !safety.skipped.empty()           ? Skipped
+                        : !safety.skipped.empty()          ? Skipped
                                                            : None;
   const auto kind = session.header().source_kind;
   const bool is_live = kind == sources::SourceKind::Live;

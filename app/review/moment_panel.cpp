@@ -89,8 +89,8 @@ void draw_today(const widgets::Ui& ui, const ReviewScreen& screen) {
   } else if (now->state != guidance::GuidanceState::Valid) {
     widgets::text_in(ui.theme.body, widgets::kText, std::string(guidance::to_text(now->state)));
   } else {
-    std::string text = "offset of the axis " + widgets::fixed(static_cast<double>(now->offset_mm), 2) + " mm, angle " +
-                       widgets::fixed(static_cast<double>(now->angle_deg), 2) + "\u00B0";
+    std::string text = "offset of the axis " + widgets::fixed(static_cast<double>(now->offset_mm), 2) +
+                       " mm, angle " + widgets::fixed(static_cast<double>(now->angle_deg), 2) + "\u00B0";
     if (then.guidance.is_valid())
       text += "; then " + widgets::fixed(guidance_severity::offset_mm(then.guidance), 2) + " mm, " +
               widgets::fixed(then.guidance.angle_deg, 2) + "\u00B0";
@@ -138,8 +138,9 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewS
     const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(104);
     widgets::Rect row{cursor.x, cursor.y, width, height};
     const widgets::Rect left = row.cut_left(width / 2);
-    widgets::number_block(ui, left, "Offset of the axis", widgets::fixed(guidance_severity::offset_mm(at.guidance), 1),
-                          "mm", guidance_severity::severity_of_offset(at.guidance));
+    widgets::number_block(ui, left, "Offset of the axis",
+                          widgets::fixed(guidance_severity::offset_mm(at.guidance), 1), "mm",
+                          guidance_severity::severity_of_offset(at.guidance));
     widgets::number_block(ui, row, "Angle", widgets::fixed(at.guidance.angle_deg, 1) + "\u00B0", "",
                           guidance_severity::severity_of_angle(at.guidance));
     ImGui::Dummy({width, height});

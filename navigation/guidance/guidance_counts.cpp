@@ -14,10 +14,12 @@ std::string GuidanceCounts::reasons_of_most() const {
   for (std::size_t i = 0; i < counts_.size(); ++i)
     if (const auto state = static_cast<GuidanceState>(i); state != GuidanceState::Valid && of(state) > 0)
       reasons.push_back(state);
-  std::ranges::stable_sort(reasons, std::ranges::greater(), [this](GuidanceState state) { return of(state); });
+  std::ranges::stable_sort(reasons, std::ranges::greater(),
+                           [this](GuidanceState state) { return of(state); });
   std::string words;
   for (std::size_t i = 0; i < std::min(kMostTold, reasons.size()); ++i)
-    words += (i > 0 ? ", " : "") + std::string(to_text(reasons[i])) + " (" + std::to_string(of(reasons[i])) + ")";
+    words +=
+        (i > 0 ? ", " : "") + std::string(to_text(reasons[i])) + " (" + std::to_string(of(reasons[i])) + ")";
   return words;
 }
 

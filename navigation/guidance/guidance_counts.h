@@ -12,8 +12,8 @@ class GuidanceCounts {
  public:
   void add(GuidanceState state) { ++counts_[static_cast<std::size_t>(state)]; }
   [[nodiscard]] long of(GuidanceState state) const { return counts_[static_cast<std::size_t>(state)]; }
-  // Where more than half of the frames had none, the two commonest reasons: "drill guide not seen (120), world
-  // marker not seen (30)"; else empty.
+  // Where more than half of the frames had none, the two commonest reasons: "drill guide not seen (120),
+  // world marker not seen (30)"; else empty.
   [[nodiscard]] std::string reasons_of_most() const;
 
  private:

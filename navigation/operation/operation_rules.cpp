@@ -197,7 +197,8 @@ void Operation::Parts::skip_verification(const std::string& how) {
   skipped_entry = ledger.entry_in_force();
   const int wanted = setup.limits.touches_to_verify, missing = ledger.touches().places_to_verify();
   std::string touched;
-  if (missing < wanted) touched = files::format("; %d of %d touches had been taken", wanted - missing, wanted);
+  if (missing < wanted)
+    touched = files::format("; %d of %d touches had been taken", wanted - missing, wanted);
   note(JournalKind::VerificationSkipped, how + touched + (missing == 0 ? ", too far off to verify" : ""));
 }
 

@@ -18,7 +18,8 @@ void FinishedSession::append_event(const SessionEvent& event) {
   const bool has_frames = last.step() && !last.is_null(0);
   const std::int64_t after = has_frames ? last.integer(0) : -1;
   // Who has no pictures of it any more has no time of theirs, either.
-  const std::int64_t time_ns = has_frames ? std::max(event.timestamp_ns, last.integer(1)) : event.timestamp_ns;
+  const std::int64_t time_ns =
+      has_frames ? std::max(event.timestamp_ns, last.integer(1)) : event.timestamp_ns;
   Statement insert =
       database.prepare("INSERT INTO events(after_frame, timestamp_ns, kind, text) VALUES(?,?,?,?)");
   insert.bind(1, after).bind(2, time_ns).bind(3, event.kind).bind(4, event.text).run();

@@ -27,8 +27,7 @@ void LastRegistration::follow(const RecordedSession& session, const SessionEvent
   if (event.kind == kAlarmEvent && !event.text.empty()) alarm_ = event.text;
   if (event.kind == kVerifiedEvent) was_verified_ = true;
   if (event.kind == kVerificationLostEvent) was_verified_ = false;
-  if (event.kind == kCommandEvent)
-    take(operation::command_from_text(event.text, session.folder().string()));
+  if (event.kind == kCommandEvent) take(operation::command_from_text(event.text, session.folder().string()));
 }
 
 void LastRegistration::take(const registration::RegistrationRecord& record) {

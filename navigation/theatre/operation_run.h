@@ -73,8 +73,8 @@ class OperationRun {
   // is. That is recorded, and told by refusal(). What is given while no picture of a live source comes, or
   // after it, is recorded with its own time, on the pictures' clock.
   void apply(const operation::Command& command);
-  // The record of the operation on this bone that another program left. What is said here of its end, that the
-  // marker is out or that a tunnel is not drilled after all, is written there until a source begins.
+  // The record of the operation on this bone that another program left. What is said here of its end, that
+  // the marker is out or that a tunnel is not drilled after all, is written there until a source begins.
   void goes_on_after(const std::filesystem::path& session_folder) { left_folder_ = session_folder; }
   // Takes in what the registration has found and what was seen of the medium meanwhile; true when the first
   // is something new. step() does it too.

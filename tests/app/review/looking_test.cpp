@@ -105,7 +105,8 @@ TEST_F(Looking, TellsWhatHappenedAndJumpsToIt) {
   EXPECT_FALSE(moment_after(frames, 90) || moment_before(frames, 30));
 }
 
-// What is said after the last picture stands at its own time, as in the report; what has none, at its frame's.
+// What is said after the last picture stands at its own time, as in the report; what has none, at its
+// frame's.
 TEST_F(Looking, TellsWhatComesAfterThePicturesByTheRecordsClock) {
   const std::size_t last = timeline_->frames().size() - 1;
   const recording::FrameGlance &first = timeline_->frames().front(), &end = timeline_->frames()[last];

@@ -28,7 +28,16 @@ TEST_F(UntakenKeys, AreSaidWithTheirReason) {
 
 // Of an action that knows why it is not possible, that too.
 TEST_F(UntakenKeys, SayWhyWhereItIsKnown) {
-  actions_.add({"app.cases", "Cases", "", GLFW_KEY_F5, 0, false, [] { return false; }, {}, {}, {},
+  actions_.add({"app.cases",
+                "Cases",
+                "",
+                GLFW_KEY_F5,
+                0,
+                false,
+                [] { return false; },
+                {},
+                {},
+                {},
                 [] { return "end what runs here first"; }});
   EXPECT_EQ(after(GLFW_KEY_F5), "F5 did nothing: Cases is not possible now: end what runs here first");
 }
