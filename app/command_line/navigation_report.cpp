@@ -32,21 +32,26 @@ void say_contour(const Context& context, const theatre::NavigationSummary& summa
 
 void say_guidance(const Context& context, const theatre::NavigationSummary& summary) {
   const guidance::GuidanceNumbers& g = summary.last_guidance;
-  if (!g.is_valid())
-    return context.say("guidance: none; at the end: " + std::string(guidance::to_text(summary.last_state)));
+  const std::string why_not = summary.guidance_counts.reasons_of_most();
+  if (!g.is_valid()) {
+    context.say("guidance: none; at the end: " + std::string(guidance::to_text(summary.last_state)));
+    if (!why_not.empty()) context.say("  frames without it: " + why_not);
+    return;
+  }
   context.say(
       format("guidance in %ld of %ld frames; the last: guide to entry %.2f mm, axis to entry %.2f mm, "
              "angle %.2f deg",
              summary.frames_with_guidance, summary.statistics.frame_count, g.tip_to_entry_mm,
              g.axis_to_entry_mm, g.angle_deg));
+  if (!why_not.empty()) context.say("  frames without it: " + why_not);
   const auto part = [&](landmarks::AnatomicalDirection direction) {
     const double value_mm = g.offset_in_mm(direction);
     return format("%.2f mm ", std::abs(value_mm)) + std::string(landmarks::to_text(direction, value_mm >= 0));
   };
-  context.say(format("  offset %.2f mm: %s, %s; guide %.1f mm %s the entry; one sigma %.2f mm, %.2f deg",
-                     g.offset_mm, part(g.across_plan.side_is).c_str(), part(g.across_plan.up_is).c_str(),
-                     std::abs(g.depth_mm), g.depth_mm < 0 ? "short of" : "beyond", g.sigma_offset_mm,
-                     g.sigma_angle_deg));
+  context.say(format(
+      "  offset of the axis %.2f mm: %s, %s; guide %.1f mm %s the entry; one sigma %.2f mm, %.2f deg",
+      g.offset_mm, part(g.across_plan.side_is).c_str(), part(g.across_plan.up_is).c_str(),
+      std::abs(g.depth_mm), g.depth_mm < 0 ? "short of" : "beyond", g.sigma_offset_mm, g.sigma_angle_deg));
   if (g.drill && g.drill->is_beside_plan())
     context.say(format("  drill %.1f mm beside the plan: nothing is said of what remains",
                        std::max(g.drill->lateral_mm, g.drill->exit_lateral_mm)) +

@@ -4,6 +4,7 @@
 #include "app/command_line/option_checks.h"
 #include "app/command_line/tracking_report.h"
 #include "navigation/camera/calibration_words.h"
+#include "navigation/guidance/guidance_counts.h"
 #include "navigation/recording/cut_short.h"
 #include "navigation/recording/recording_lock.h"
 #include "navigation/recording/replay.h"
@@ -87,6 +88,11 @@ void replay(Context& context, const ReplayArguments& arguments) {
   context.say(format("largest differences: pose %.6f mm, %.6f deg; tip %.6f mm; guidance %.6f mm, %.6f deg",
                      summary.worst_pose_mm, summary.worst_pose_deg, summary.worst_tip_mm,
                      summary.worst_offset_mm, summary.worst_angle_deg));
+  guidance::GuidanceCounts guidance;
+  for (const recording::RecordedFrame& frame : session.frames()) guidance.add(frame.guidance.state);
+  if (const std::string why_not = guidance.reasons_of_most(); !why_not.empty())
+    context.say(format("guidance was recorded in %ld frames; in the others: %s",
+                       guidance.of(guidance::GuidanceState::Valid), why_not.c_str()));
   if (summary.registration_mm) {
     context.say(format("registration found again: %.4f mm from the recorded one at the target",
                        *summary.registration_mm));

@@ -269,7 +269,7 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Naviga
   const guidance::GuidanceNumbers& g = screen.display.guidance;
   draw_number(ui, rest, "Offset", widgets::fixed(g.offset_mm, 1),
               "mm " + widgets::plus_minus(g.sigma_offset_mm),
-              guidance_severity::severity_of(screen.display.grades.offset));
+              guidance_severity::severity_of(screen.display.grades.offset), "of the axis");
   const guidance_severity::OffsetParts parts = guidance_severity::offset_parts(g);
   for (const std::string& part : {parts.side, parts.up})
     (void)rest.cut_top(widgets::draw_afar(ui, rest, widgets::kText, part));

@@ -20,29 +20,39 @@ void NavigateView::finish_step(FinishAction action) {
   }
 }
 
+sources::SourceKind NavigateView::shown_kind() const {
+  const auto& source = live_->operation->source;
+  return source != nullptr ? source->kind : started_.kind().value_or(sources::SourceKind::Live);
+}
+
+const operation::DrilledTunnel* NavigateView::drilled_as(const operation::PlannedTunnel& plan) const {
+  const auto of_kind = drilled_.find(shown_kind());
+  return of_kind == drilled_.end() ? nullptr : of_kind->second.find(plan);
+}
+
+bool NavigateView::marker_is_out(bones::BoneKind bone) const {
+  const auto of_kind = drilled_.find(shown_kind());
+  return of_kind != drilled_.end() && of_kind->second.marker_is_out(bone);
+}
+
 std::vector<FinishedBone> NavigateView::finished_bones() const {
   std::vector<FinishedBone> bones;
   if (model_ == nullptr) return bones;
-  const sources::SourceKind kind = started_.kind().value_or(sources::SourceKind::Live);
-  for (const bones::BoneKind kind_of_bone : {choices_.bone, choices_.other_bone()}) {
-    if (!model_->has_bone(kind_of_bone)) continue;
-    const auto keys = model_->knee().plan.of(kind_of_bone);
+  for (const bones::BoneKind kind : {choices_.bone, choices_.other_bone()}) {
+    if (!model_->has_bone(kind)) continue;
+    const auto keys = model_->knee().plan.of(kind);
     if (keys.empty()) continue;
-    const theatre::LiveOperation* const known = bones_.known(kind_of_bone);
-    FinishedBone bone{kind_of_bone,
+    const theatre::LiveOperation* const known = bones_.known(kind);
+    FinishedBone bone{kind,
                       {},
-                      choices_.markers_out.contains({kind, kind_of_bone}),
+                      marker_is_out(kind),
                       known != nullptr && known->latest()->phase != theatre::LiveState::Phase::NoSource};
     for (const tunnels::TunnelKey& key : keys) {
-      const auto said = choices_.drilled.find({kind, key});
       const auto planned = bones_.planned(key);
-      FinishedTunnel& tunnel = bone.tunnels.emplace_back(FinishedTunnel{key, false, {}, false});
-      tunnel.is_drilled = said != choices_.drilled.end() && planned == said->second;
-      if (const auto measured = choices_.measured.find({kind, key});
-          measured != choices_.measured.end() && planned &&
-          operation::PlannedTunnel{measured->second.planned, planned->length_mm} == *planned)
-        tunnel.measured = measured->second;
-      tunnel.was_verified = choices_.verified.contains({kind, key});
+      const operation::DrilledTunnel* const drilled = planned ? drilled_as(*planned) : nullptr;
+      bone.tunnels.push_back(drilled == nullptr
+                                 ? FinishedTunnel{key, false, {}, false}
+                                 : FinishedTunnel{key, true, drilled->measured, drilled->was_verified});
     }
     bones.push_back(std::move(bone));
   }

@@ -2,7 +2,6 @@
 
 #include "app/widgets/controls.h"
 #include "navigation/registration/verdict/confidence.h"
-#include "navigation/sources/recovering_source.h"
 
 namespace arthronaut::navigate {
 
@@ -77,17 +76,15 @@ bool needs_pictures(NextAction action) {
 }  // namespace
 
 std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction action,
-                                   const std::string& trouble_words) {
+                                   const std::optional<Eigen::Vector2i>& changed_to_px) {
   if (!needs_pictures(action)) return "";
   switch (trouble) {
-    case theatre::SourceTrouble::NoPicture: {
-      const std::size_t at = trouble_words.find(sources::kFormatChanged);
-      if (at == std::string::npos) return "wait: no picture comes";
+    case theatre::SourceTrouble::NoPicture:
       // Somebody has to do something about it: no waiting ends that. What it was stands in the panel.
-      const std::size_t size = at + sources::kFormatChanged.size();
-      return "format changed to " + trouble_words.substr(size, trouble_words.find(':', size) - size) +
-             ": set the processor back, or choose the camera (K)";
-    }
+      return changed_to_px ? "format changed to " + std::to_string(changed_to_px->x()) + " x " +
+                                 std::to_string(changed_to_px->y()) +
+                                 ": set the processor back, or choose the camera (K)"
+                           : "wait: no picture comes";
     case theatre::SourceTrouble::Plain:
       return "look after light and camera: the picture is plain";
     case theatre::SourceTrouble::Frozen:
@@ -113,7 +110,8 @@ std::string words_beside_no_picture(theatre::SourceTrouble trouble, NextAction a
   }
 }
 
-std::string words_of(Repeat repeat, operation::Step step, bool is_shown, theatre::SourceTrouble trouble) {
+std::string words_of(Repeat repeat, operation::Step step, bool is_shown, theatre::SourceTrouble trouble,
+                     const std::optional<Eigen::Vector2i>& changed_to_px) {
   const auto wanted = [&] {
     switch (repeat) {
       case Repeat::TouchControl:
@@ -126,7 +124,7 @@ std::string words_of(Repeat repeat, operation::Step step, bool is_shown, theatre
         return is_shown ? NextAction::FollowBullseye : NextAction::StartSource;  // by no picture
     }
   }();
-  const std::string wait = words_without_pictures(trouble, wanted);
+  const std::string wait = words_without_pictures(trouble, wanted, changed_to_px);
   if (!wait.empty()) return wait;
   return is_shown ? words_of(wanted) : words_of(repeat, step);
 }

@@ -19,9 +19,10 @@ namespace arthronaut::navigate {
 // What is to be done about an alarm that no touch of the control point can take away.
 [[nodiscard]] std::string place_anew_words(operation::WayOut way_out);
 // What to do instead of something that needs pictures while the source gives none that show anything; empty
-// where that is no hindrance. trouble_words: why none come, as the source says it.
-[[nodiscard]] std::string words_without_pictures(theatre::SourceTrouble trouble, operation::NextAction action,
-                                                 const std::string& trouble_words = "");
+// where that is no hindrance. changed_to_px: they come in that size, and are not given on.
+[[nodiscard]] std::string words_without_pictures(
+    theatre::SourceTrouble trouble, operation::NextAction action,
+    const std::optional<Eigen::Vector2i>& changed_to_px = std::nullopt);
 // What stands before the step's own words where it can be done all the same, as it takes somebody's word: "no
 // picture comes; ". Empty while pictures come, and for all other steps.
 [[nodiscard]] std::string words_beside_no_picture(theatre::SourceTrouble trouble,
@@ -29,7 +30,8 @@ namespace arthronaut::navigate {
 // Of a step that the surgeon went back to while a source runs: what a press does, or that what it takes is in
 // no picture now. is_shown: what it would show stands on the screen already, and is to be followed.
 [[nodiscard]] std::string words_of(Repeat repeat, operation::Step step, bool is_shown,
-                                   theatre::SourceTrouble trouble);
+                                   theatre::SourceTrouble trouble,
+                                   const std::optional<Eigen::Vector2i>& changed_to_px = std::nullopt);
 // What was asked for a moment ago and not done, with why: "no touch: the probe moves". Short enough to stand
 // in full size beside the step. Empty once it was done, or when that is longer ago than it takes to read.
 [[nodiscard]] std::string refusal_notice(const theatre::LiveState& live, double now_s);

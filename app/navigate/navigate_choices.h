@@ -2,9 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,18 +26,10 @@ struct NavigateChoices {
   bool overlay_on = true;
   double overlay_shown_at_s = 0;
   bool undistorts = false;
-  std::optional<NavigateLayout> layout;  // empty: as things stand
-  double guidance_seen_s = -1e9;         // when something was guided last
-  int stroke = -1;                       // selected
-  // Said to be drilled since the case was opened: by which kind of source, and the very plan that guided. A
-  // rehearsal says nothing of the patient, and a plan of before an edit nothing of the one after it.
-  std::map<std::pair<sources::SourceKind, tunnels::TunnelKey>, operation::PlannedTunnel> drilled;
-  // As it was measured, of the tunnels above.
-  std::map<std::pair<sources::SourceKind, tunnels::TunnelKey>, operation::AchievedTunnel> measured;
-  // Of the same, those to which something guided that touches had verified.
-  std::set<std::pair<sources::SourceKind, tunnels::TunnelKey>> verified;
-  // Whose world markers were said to be out, likewise.
-  std::set<std::pair<sources::SourceKind, bones::BoneKind>> markers_out;
+  std::optional<NavigateLayout> layout;      // empty: as things stand
+  double guidance_seen_s = -1e9;             // when something was guided last
+  double touch_asked_s = -1e9;               // when a touch was asked for last
+  int stroke = -1;                           // selected
   std::optional<operation::Step> looked_at;  // the surgeon went back to it; empty: the one of now
   PedalStep pedal;                           // what is asked of the surgeon now
   double pedal_since_s = 0;                  // and since when
@@ -53,18 +43,6 @@ struct NavigateChoices {
   bool has_real_scope = false, has_camera_file = false;
   std::optional<tools::ToolSet> tools;  // empty: there are none, or they can't be read
 
-  // A source of that kind begins: of a bone that was finished, the operation begins afresh.
-  void begin(sources::SourceKind kind) {
-    looked_at.reset();
-    shows_menu = false;
-    if (markers_out.erase({kind, bone}) == 0) return;
-    const auto is_of_it = [&](const auto& entry) {
-      return entry.first.first == kind && entry.first.second.bone == bone;
-    };
-    std::erase_if(drilled, is_of_it);
-    std::erase_if(measured, is_of_it);
-    std::erase_if(verified, [&](const auto& one) { return one.first == kind && one.second.bone == bone; });
-  }
   // A question begins to be read when its card is there, not while the menu lies over it.
   void note_asked(Question question, double now_s) {
     if (std::exchange(asked, question) != question && question != Question::None) pedal_since_s = now_s;
@@ -75,34 +53,6 @@ struct NavigateChoices {
     pedal_since_s = now_s;
   }
 
-  void follow(const operation::OperationState& state) {
-    using Outcome = operation::DrilledState::Outcome;
-    if (state.plan && state.source != nullptr && state.drilled.outcome != Outcome::NotSaid)
-      drilled.insert_or_assign({state.source->kind, state.plan->tunnel.key()}, *state.plan);
-    // The operation's word: one that is seen again is not out.
-    if (state.source != nullptr && state.marker_is_out) markers_out.insert({state.source->kind, state.bone});
-    if (state.source != nullptr && !state.marker_is_out) markers_out.erase({state.source->kind, state.bone});
-    if (!state.plan || state.source == nullptr) return;
-    const std::pair of(state.source->kind, state.plan->tunnel.key());
-    if (state.drilled.was_taken_back) {
-      drilled.erase(of);
-      measured.erase(of);
-      verified.erase(of);
-      return;
-    }
-    if (!state.drilled.tunnel) return;
-    measured.insert_or_assign(of, *state.drilled.tunnel);
-    if (state.verification == operation::Verification::ByTouches) verified.insert(of);
-    if (state.verification == operation::Verification::Skipped) verified.erase(of);
-  }
-  // By the kind of source that `state` is of.
-  [[nodiscard]] bool is_drilled(const operation::OperationState& state,
-                                const operation::PlannedTunnel& plan) const {
-    if (state.source == nullptr) return false;
-    const auto found = drilled.find({state.source->kind, plan.tunnel.key()});
-    return found != drilled.end() && found->second == plan;
-  }
-
   [[nodiscard]] bones::BoneKind other_bone() const {
     return bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia : bones::BoneKind::Femur;
   }
@@ -111,7 +61,7 @@ struct NavigateChoices {
     bone = other_bone();
     layout.reset();
     looked_at.reset();
-    guidance_seen_s = -1e9;
+    guidance_seen_s = touch_asked_s = -1e9;
     stroke = -1;
     offered_tunnel = 0;
   }

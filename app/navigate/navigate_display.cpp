@@ -269,13 +269,15 @@ bool is_of_source_before(const theatre::LiveState& live) {
 }
 
 NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s,
-                         std::optional<operation::Step> looked_at) {
+                         std::optional<operation::Step> looked_at, double since_touch_s) {
+  constexpr double kTouchIsRead_s = 5;
   if (live.phase == Phase::NoSource || since_guidance_s < kGuideAway_s) return NavigateLayout::Guide;
   const operation::OperationState& state = *live.operation;
   const bool stands = state.registration->in_force.standing == operation::Standing::Stands;
   if (!stands) return NavigateLayout::Register;
   if (state.guided_lately) return NavigateLayout::Guide;
-  if (looked_at ? is_of_probe(*looked_at) : asks_for_probe(state)) return NavigateLayout::Register;
+  const bool is_of_now = looked_at ? is_of_probe(*looked_at) : asks_for_probe(state);
+  if (is_of_now || since_touch_s < kTouchIsRead_s) return NavigateLayout::Register;
   // Once it was aimed by it, strokes that may go on are not what is looked at.
   return state.drilled.has_evidence || !state.draws ? NavigateLayout::Guide : NavigateLayout::Register;
 }

@@ -3,6 +3,7 @@
 // place.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -50,9 +51,11 @@ enum class NavigateLayout { Register, Guide };
 // A guide that is hidden for no longer than this does not change the screen.
 inline constexpr double kGuideAway_s = 2;
 // That of the tool which the step takes: of the one of now, or of the one that the surgeon went back to.
-// since_guidance_s: how long ago guidance was valid last; infinite when it never was.
+// since_guidance_s: how long ago guidance was valid last; infinite when it never was. since_touch_s:
+// likewise, how long ago a touch was asked for: what came of it is read first.
 [[nodiscard]] NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s,
-                                       std::optional<operation::Step> looked_at = std::nullopt);
+                                       std::optional<operation::Step> looked_at = std::nullopt,
+                                       double since_touch_s = std::numeric_limits<double>::infinity());
 
 // Whether the newest picture is of this moment: NavigateDisplay::is_live, without its words.
 [[nodiscard]] bool is_live(const theatre::LiveState* live, double now_s);

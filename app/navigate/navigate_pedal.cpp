@@ -164,15 +164,8 @@ void NavigateView::take_next_step() {
       return start_same_kind();
     case Kind::Act:
       return act(step.action);
-    case Kind::OpenCase:
-    case Kind::TypeAddress:
-    case Kind::WaitForSearch:
-    case Kind::Exercise:
-    case Kind::WaitForEnd:
-    case Kind::WaitForPicture:
-    case Kind::ChangeMedium:
-    case Kind::WaitForPictures:
-      return;  // none of them acts
+    default:
+      return;  // it does not act: see acts()
   }
 }
 
@@ -222,7 +215,7 @@ void NavigateView::take_step_back() {
 
 Repeat NavigateView::repeat_of(operation::Step step) const {
   const auto& plan = live_->operation->plan;
-  const bool is_said_drilled = plan && choices_.is_drilled(*live_->operation, *plan);
+  const bool is_said_drilled = plan && drilled_as(*plan) != nullptr;
   return navigate::repeat_of(step, *live_->operation, is_said_drilled);
 }
 
@@ -274,16 +267,16 @@ RailContext NavigateView::rail_context() const {
   const auto was_measured = [](const FinishedTunnel& tunnel) { return tunnel.measured.has_value(); };
   context.was_measured = context.is_drilled && std::ranges::all_of(finished.front().tunnels, was_measured);
   const auto& plan = live_->operation->plan;
-  const auto& kind = started_.kind();
-  context.was_verified = kind && plan && choices_.verified.contains({*kind, plan->tunnel.key()});
-  context.marker_is_out = kind && choices_.markers_out.contains({*kind, choices_.bone});
+  const operation::DrilledTunnel* const drilled = plan ? drilled_as(*plan) : nullptr;
+  context.was_verified = drilled != nullptr && drilled->was_verified;
+  context.marker_is_out = marker_is_out(choices_.bone);
   return context;
 }
 
 // What came of it is read in large, also once the step is done; but for a guide that is in the hand.
 void NavigateView::take_touch(bool is_control_point) {
-  if (theatre::LiveOperation::now_s() - choices_.guidance_seen_s > kGuideAway_s)
-    choices_.layout = NavigateLayout::Register;
+  choices_.touch_asked_s = theatre::LiveOperation::now_s();
+  if (choices_.touch_asked_s - choices_.guidance_seen_s > kGuideAway_s) choices_.layout.reset();
   if (is_control_point)
     ask(operation::TouchControlPoint{});
   else

@@ -115,11 +115,11 @@ void NavigateView::note_states(const widgets::Ui& ui, const NavigateScreen& scre
   ui.log.note_state("rail", rail_in_letters(screen.rail));
   ui.log.note_state("pedal", screen.pedal_acts ? "acts" : "waits");
   ui.log.note_state("menu", choices_.shows_menu ? "open" : "closed");
-  ui.log.note_state("markers_out", std::to_string(choices_.markers_out.size()));
+  ui.log.note_state("markers_out", std::to_string(drilled_[shown_kind()].markers_out_count()));
   ui.log.note_state("finish", finish_list(finished_bones()).is_done ? "done" : "open");
   const auto& guiding = live_->operation->plan;
   ui.log.note_state("tunnel", guiding ? tunnels::name_of(guiding->tunnel.key()) : "none");
-  ui.log.note_state("drilled", std::to_string(choices_.drilled.size()));
+  ui.log.note_state("drilled", std::to_string(drilled_[shown_kind()].count()));
   ui.log.note_state("plan_verdict", std::string(to_text(judged_.verdict().worst())));
   ui.log.note_state("plan", live_->operation->plan_was_edited ? "edited" : "in force");
   ui.log.note_state("registrations", std::to_string(registration().history->size()));

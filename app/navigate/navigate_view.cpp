@@ -49,6 +49,7 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   started_ = {};
   lent_.reset();
   choices_ = {};
+  drilled_.clear();
   notice_.clear();
   model_ = opened.model;
   case_folder_ = opened.folder;
@@ -125,8 +126,9 @@ void NavigateView::start(theatre::TheatreSource source) {
   choices_.layout.reset();
   cameras_.close();
   choices_.guidance_seen_s = -1e9;
+  choices_.looked_at.reset();
+  choices_.shows_menu = false;
   started_.on_start(choices_.bone, source.setup.kind);
-  choices_.begin(source.setup.kind);
   resume_.answer(choices_.bone);  // it begins: afresh, unless it was resumed
   bones_.used(choices_.bone).start(std::move(source));
   read_live();
@@ -233,7 +235,11 @@ void NavigateView::read_live() {
   } else {
     live_ = TheatreBones::nothing();
   }
-  choices_.follow(*live_->operation);
+  if (const auto before = resume_.take_drilled()) {
+    drilled_[sources::SourceKind::Live].add_before(before->tunnels);
+    bones_.go_on_after(before->newest);
+  }
+  drilled_[shown_kind()].follow(*live_->operation);
   const pipeline::FrameResult& frame = live_->operation->frame;
   resting_.follow(frame.timestamp_ns,
                   frame.tip_is_valid ? std::optional(frame.tip_in_world_mm) : std::nullopt);
@@ -261,7 +267,8 @@ void NavigateView::read_live() {
 }
 
 NavigateLayout NavigateView::layout(double now_s) const {
-  return choices_.layout.value_or(layout_of(*live_, now_s - choices_.guidance_seen_s, choices_.looked_at));
+  return choices_.layout.value_or(layout_of(*live_, now_s - choices_.guidance_seen_s, choices_.looked_at,
+                                            now_s - choices_.touch_asked_s));
 }
 
 void NavigateView::follow_reached(const NavigateDisplay& display, double now_s) {
@@ -283,8 +290,7 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
       screen.planned_length_mm = plan->length_mm;
       const tunnels::TunnelKey key = plan->tunnel.key();
       if (key.bundle != norms::Bundle::Whole)
-        screen.tunnel =
-            tunnels::name_of(key) + (choices_.is_drilled(*live_->operation, *plan) ? ", drilled" : "");
+        screen.tunnel = tunnels::name_of(key) + (drilled_as(*plan) != nullptr ? ", drilled" : "");
     }
     screen.surface = model_->shared_surface(choices_.bone);
     screen.drawn_bone = by_processor ? model_->moving_mesh(choices_.bone) : model_->drawn_mesh(choices_.bone);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 
 #include "app/case/plan_model.h"
@@ -23,6 +24,7 @@
 #include "app/navigate/theatre_layout.h"
 #include "app/sounds/player.h"
 #include "app/sounds/sound_watch.h"
+#include "navigation/operation/drilled_tunnels.h"
 
 namespace arthronaut::navigate {
 
@@ -98,6 +100,11 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] bool acts_now(const PedalStep& step) const;
   [[nodiscard]] bool covers_question() { return choices_.shows_menu && question() != Question::None; }
   [[nodiscard]] Question question();  // due now, shown or not
+  // Of the operation that is shown; before the first source, of the one that would be real.
+  [[nodiscard]] sources::SourceKind shown_kind() const;
+  // By that kind of source, and as that very plan; null: nobody said so.
+  [[nodiscard]] const operation::DrilledTunnel* drilled_as(const operation::PlannedTunnel& plan) const;
+  [[nodiscard]] bool marker_is_out(bones::BoneKind bone) const;
   void finish_step(FinishAction action);
   void find_anew();
   // Another pedal: one step back, to do it again; after the first step the one of now is shown again.
@@ -171,6 +178,7 @@ class NavigateView : public mode::Mode {
   std::optional<Used> used_before_;
   std::string patient_;  // in words; empty: not known
   NavigateChoices choices_;
+  std::map<sources::SourceKind, operation::DrilledTunnels> drilled_;  // before and now
   struct Drawn {
     theatre::LiveStatePtr live;  // and not told to be on the screen yet; else null
     double since_s = 0;          // when that was begun

@@ -42,7 +42,7 @@ Kind kind_of(const theatre::LiveState& live, const PedalContext& context, NextAc
   if (awaits_picture(live)) return Kind::WaitForPicture;
   if (is_in_wrong_medium(live)) return Kind::ChangeMedium;
   if (is_running(live) && !finds_anew &&
-      !words_without_pictures(live.trouble, action, live.trouble_words).empty())
+      !words_without_pictures(live.trouble, action, live.changed_to_px).empty())
     return Kind::WaitForPictures;
   if (!context.guided) return Kind::PlanTunnel;
   if (waits_for_take_over(*live.operation)) return Kind::TakePlanOver;
@@ -66,7 +66,7 @@ std::string words_of_going_back(const PedalStep& step, const theatre::LiveState&
   if (!is_running(live)) return words_of(step.repeat, step.step);
   return step.is_shown && is_in_wrong_medium(live)
              ? kWrongMedium
-             : words_of(step.repeat, step.step, step.is_shown, live.trouble);
+             : words_of(step.repeat, step.step, step.is_shown, live.trouble, live.changed_to_px);
 }
 
 // Behind what is done by a touch: whether the simulated hand lets it be taken now.
@@ -167,7 +167,7 @@ std::string words_of(const PedalStep& step, const theatre::LiveState& live, cons
     case Kind::ChangeMedium:
       return kWrongMedium;
     case Kind::WaitForPictures:
-      return words_without_pictures(live.trouble, step.action, live.trouble_words);
+      return words_without_pictures(live.trouble, step.action, live.changed_to_px);
     case Kind::PlanTunnel:
       return words_of(NextAction::PlanTunnel);
     case Kind::TakePlanOver:

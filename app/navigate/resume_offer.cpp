@@ -55,15 +55,17 @@ void ResumeOffer::open(const open_case::PlanModel& model, const std::filesystem:
   crashed_since_ = crashed_since;
   left_.clear();
   answered_.clear();
-  is_looking_ = !is_read_only && !case_folder.empty() && has_sessions(case_folder);
+  drilled_ = nullptr;
+  is_looking_ = !case_folder.empty() && has_sessions(case_folder);
   if (!is_looking_) return;
-  Search wanted{number_, case_folder, {}, model.knee().plan};
+  Search wanted{number_, case_folder, is_read_only, {}, model.knee().plan};
   for (const auto& [kind, bone] : model.knee().bones) wanted.meshes.emplace(kind, bone.mesh);
   worker_.post(std::move(wanted));
 }
 
 std::optional<LeftBehind> ResumeOffer::search_bone(const Search& search, bones::BoneKind kind,
                                                    const geometry::TriangleMesh& mesh) {
+  if (search.is_read_only) return std::nullopt;
   try {  // without it the operation begins afresh: no reason to end anything
     recording::ResumeSearch found =
         recording::find_resumable(search.case_folder, kind, bones::mesh_sha256(mesh), search.plan.of(kind));
@@ -85,8 +87,22 @@ std::optional<LeftBehind> ResumeOffer::search_bone(const Search& search, bones::
   }
 }
 
+std::shared_ptr<const recording::DrilledBefore> ResumeOffer::search_drilled(const Search& search) {
+  try {  // what nobody can read was drilled by no word: no reason to end anything
+    std::map<bones::BoneKind, std::string> hashes;
+    for (const auto& [kind, mesh] : search.meshes) hashes.emplace(kind, bones::mesh_sha256(mesh));
+    auto before =
+        std::make_shared<const recording::DrilledBefore>(drilled_before(search.case_folder, hashes));
+    for (const std::string& broken : before->passed_over) log::error("drilled tunnels: " + broken);
+    return before;
+  } catch (const std::runtime_error& error) {
+    log::error(std::string("drilled tunnels: ") + error.what());
+    return nullptr;
+  }
+}
+
 ResumeOffer::Found ResumeOffer::search(const Search& search) {
-  Found all{search.number, {}};
+  Found all{search.number, {}, search_drilled(search)};
   for (const auto& [kind, mesh] : search.meshes)
     if (auto left = search_bone(search, kind, mesh)) all.left.emplace(kind, std::move(*left));
   worker::give_freed_memory_back();  // whole sessions were read
@@ -105,6 +121,7 @@ ResumeOffer::Found ResumeOffer::look_at_ended(const Search& search, Found found)
     found.left.erase(before);
     if (is_same) found.left.emplace(kind, std::move(*left));
   }
+  found.drilled = search_drilled(search);
   worker::give_freed_memory_back();
   return found;
 }
@@ -116,8 +133,14 @@ void ResumeOffer::follow() {
   followed_ = newest;
   is_looking_ = false;
   left_ = newest->left;
+  drilled_ = newest->drilled;
   for (const auto& [bone, left] : left_)
     if (left.found.was_declined) answered_.insert(bone);
+}
+
+std::shared_ptr<const recording::DrilledBefore> ResumeOffer::take_drilled() {
+  follow();
+  return std::exchange(drilled_, nullptr);
 }
 
 void ResumeOffer::decline(bones::BoneKind bone) {

@@ -1,7 +1,7 @@
-// Looks through the sessions of a case for an operation that was left in the middle, beside the screen, and
-// keeps what was found until the surgeon has answered. A program that was killed lets go of its record no
-// sooner than of its memory, on a busy machine many seconds later: what is found as being recorded is looked
-// at again once it is not.
+// Looks through the sessions of a case for what was done before, beside the screen: which tunnels are
+// drilled, and an operation that was left in the middle, which it keeps until the surgeon has answered. A
+// program that was killed lets go of its record no sooner than of its memory, on a busy machine many seconds
+// later: what is found as being recorded is looked at again once it is not.
 //
 // One thread, the window's; nothing here waits but the destructor, for the search at hand.
 #pragma once
@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "app/case/plan_model.h"
+#include "navigation/recording/drilled_before.h"
 #include "navigation/recording/resumable.h"
 #include "navigation/worker/worker.h"
 
@@ -38,6 +39,9 @@ class ResumeOffer {
   // crashed_since: since when the program had it that ended last without closing it, in UTC; empty: none did.
   void open(const open_case::PlanModel& model, const std::filesystem::path& case_folder, bool is_read_only,
             const std::string& crashed_since);
+  // Which tunnels its records say are drilled, also of a case that is read-only; once for every search that
+  // has ended, null else.
+  [[nodiscard]] std::shared_ptr<const recording::DrilledBefore> take_drilled();
   // Null: there is none, it is still looked for, or it was answered.
   [[nodiscard]] const LeftBehind* of(bones::BoneKind bone);
   [[nodiscard]] bool is_looking();
@@ -56,16 +60,19 @@ class ResumeOffer {
   struct Search {
     int number = 0;
     std::filesystem::path case_folder;
+    bool is_read_only = false;
     std::map<bones::BoneKind, geometry::TriangleMesh> meshes;
     cases::Plan plan;
   };
   struct Found {
     int number = 0;
     std::map<bones::BoneKind, LeftBehind> left;
+    std::shared_ptr<const recording::DrilledBefore> drilled;  // null: the case's folder cannot be read
   };
   using Worker = worker::Worker<Search, Found>;
   static void work(Worker::Inbox& inbox);
   static Found search(const Search& search);
+  static std::shared_ptr<const recording::DrilledBefore> search_drilled(const Search& search);
   static std::optional<LeftBehind> search_bone(const Search& search, bones::BoneKind kind,
                                                const geometry::TriangleMesh& mesh);
   // Of what is not being recorded any more since, as it was left.
@@ -76,6 +83,7 @@ class ResumeOffer {
   bool is_looking_ = false;
   std::string crashed_since_;
   std::shared_ptr<const Found> followed_;
+  std::shared_ptr<const recording::DrilledBefore> drilled_;  // null: taken, or not found yet
   std::map<bones::BoneKind, LeftBehind> left_;
   std::set<bones::BoneKind> answered_;
   Worker worker_;

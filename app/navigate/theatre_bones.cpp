@@ -71,6 +71,7 @@ void TheatreBones::open(const open_case::PlanModel* model, const std::filesystem
   // A bone that is just being made ready would be waited for.
   ending_.end(std::exchange(bones_, {}));
   chosen_.clear();
+  left_.clear();
   keeps_video_ = false;  // of another case nobody has asked for it
   model_ = model;
   case_folder_ = case_folder;
@@ -170,6 +171,7 @@ theatre::LiveOperation& TheatreBones::operation(bones::BoneKind kind) {
   bone.operation = made(kind);
   bone.operation->keep_pictures_as(pictures_as_);
   if (keeps_video_) bone.operation->keep_video(true);
+  if (const auto left = left_.find(kind); left != left_.end()) bone.operation->goes_on_after(left->second);
   bone.is_used = false;
   note_told(kind, bone);
   return *bone.operation;
@@ -190,6 +192,13 @@ theatre::LiveStatePtr TheatreBones::nothing() {
   auto state = std::make_shared<theatre::LiveState>();
   state->operation = std::make_shared<const OperationState>();
   return state;
+}
+
+void TheatreBones::go_on_after(const std::map<bones::BoneKind, std::filesystem::path>& left) {
+  if (!read_only_.empty()) return;
+  left_ = left;
+  for (const auto& [kind, session_folder] : left_)
+    if (theatre::LiveOperation* const operation = known(kind)) operation->goes_on_after(session_folder);
 }
 
 void TheatreBones::keep_video(bool on) {

@@ -60,6 +60,9 @@ class TheatreBones {
   // A plan that was edited is offered to the operation of its bone; it guides by the one in force until the
   // surgeon takes the other one over.
   void offer_plans();
+  // The records that other programs left of each bone, now and for operations that are made later; see
+  // theatre::OperationRun. Of a case that is read-only, no effect.
+  void go_on_after(const std::map<bones::BoneKind, std::filesystem::path>& left);
   // Of all operations, from now on; see theatre::OperationRun.
   void keep_video(bool on);
   [[nodiscard]] bool keeps_video() const { return keeps_video_; }  // as it was asked for
@@ -92,6 +95,7 @@ class TheatreBones {
   recording::PicturesAs pictures_as_ = recording::PicturesAs::AsTheyCame;
   std::map<bones::BoneKind, Bone> bones_;
   std::map<bones::BoneKind, tunnels::TunnelKey> chosen_;
+  std::map<bones::BoneKind, std::filesystem::path> left_;  // records, by other programs
   sources::BackgroundEnd ending_;
 };
 

@@ -27,15 +27,15 @@ void NavigateView::look_along_plan() {
 }
 
 std::optional<tunnels::TunnelKey> NavigateView::tunnel_to_choose() const {
-  const auto keys = model_->knee().plan.of(choices_.bone);
+  auto keys = model_->knee().plan.of(choices_.bone);
+  std::erase_if(keys, [this](const tunnels::TunnelKey& key) {
+    const auto planned = bones_.planned(key);
+    return planned && drilled_as(*planned) != nullptr;
+  });
+  if (keys.empty()) return std::nullopt;
   if (bones_.must_choose(choices_.bone)) return keys[choices_.offered_tunnel % keys.size()];
-  const auto& plan = live_->operation->plan;
-  if (!plan || live_->operation->next_action != NextAction::Finish) return std::nullopt;
-  for (const tunnels::TunnelKey& key : keys)
-    if (const auto planned = bones_.planned(key);
-        !planned || !choices_.is_drilled(*live_->operation, *planned))
-      return key;
-  return std::nullopt;
+  const bool is_drilled = live_->operation->plan && live_->operation->next_action == NextAction::Finish;
+  return is_drilled ? std::optional(keys.front()) : std::nullopt;
 }
 
 void NavigateView::add_tunnel_actions(widgets::Actions& actions) {

@@ -74,8 +74,8 @@ void draw_postop_section(FlowingPages& pages, const Content& content) {
   }
   std::vector<std::vector<std::string>> rows = {{"Quantity"},
                                                 {"Verdict"},
-                                                {"Entry off the planned one"},
-                                                {"Axis off it, across the plan"},
+                                                {"Offset of the entry"},
+                                                {"Offset of the axis"},
                                                 {"Which way"},
                                                 {"Entry in the grid"},
                                                 {"Angle to the planned axis"},

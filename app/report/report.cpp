@@ -208,7 +208,7 @@ void Report::result_section(const operation::AchievedTunnel& achieved, bool is_o
     pages_.sentence(since, {.bold = true, .ink = kWarning});
   const auto planned_measured = operation::compare(achieved.planned, achieved.measured);
   std::vector<std::vector<std::string>> rows = {
-      {"Comparison", "Entry to entry", "Entry to axis", "Angle"},
+      {"Comparison", "Offset of the entry", "Offset of the axis", "Angle"},
       {"As navigation measured it, against the plan", number(planned_measured.entry_mm, " mm", 2),
        number(planned_measured.axis_to_entry_mm, " mm", 2), number(planned_measured.angle_deg, "°", 2)}};
   if (achieved.truth) {
@@ -220,7 +220,7 @@ void Report::result_section(const operation::AchievedTunnel& achieved, bool is_o
                     number(measured_true.axis_to_entry_mm, " mm", 2),
                     number(measured_true.angle_deg, "°", 2)});
   }
-  pages_.table({86, 28, 28, 28}, rows);
+  pages_.table({80, 32, 32, 26}, rows);
   if (const auto place = place_of(content_, achieved)) {
     std::string words = "As navigation measured it: entry " + postop::off_in_words(*place);
     if (const std::string grid = postop::grid_in_words(*place); !grid.empty()) words += "; " + grid;

@@ -114,8 +114,8 @@ void draw_result_summary(FlowingPages& pages, const Content& content) {
   if (content.session)
     std::ranges::move(plan_warnings(*content.session, content), std::back_inserter(warnings));
   for (const std::string& warning : warnings) pages.sentence(warning, {.bold = true, .ink = kWarning});
-  std::vector<std::vector<std::string>> rows = {
-      {"Tunnel", "Navigation, off the plan", "CT after, off the plan", "CT against navigation"}};
+  std::vector<std::vector<std::string>> rows = {{"Tunnel", "Navigation: offset of the entry",
+                                                 "CT after: offset of the entry", "CT against navigation"}};
   for (const TunnelResult& result : results)
     rows.push_back({tunnels::name_of(result.key), by_navigation(content, result), by_ct(content, result),
                     result.navigated_to_imaged

@@ -144,7 +144,7 @@ Safety safety_of(const recording::RecordedSession& session, bool is_being_record
     is_verified = event.kind == recording::kVerifiedEvent || (is_verified && !ends);
     was_verified = was_verified || is_verified;
     registration.follow(event);
-    if (event.kind == recording::kVerificationSkippedEvent) safety.guidance_began_without = true;
+    if (event.kind == recording::kVerificationSkippedEvent) safety.skipped = event.text;
     if (event.kind == recording::kCommandEvent) command = &event;
     if (event.kind == recording::kTimeOutConfirmedEvent) {
       confirmed = plan;
@@ -157,7 +157,7 @@ Safety safety_of(const recording::RecordedSession& session, bool is_being_record
   safety.verification = registration.counts().was_verified ? ByTouches
                         : is_lost                          ? DidNotHold
                         : was_verified                     ? OfAnEarlierRegistration
-                        : safety.guidance_began_without    ? Skipped
+                        : !safety.skipped.empty()          ? Skipped
                                                            : None;
   const auto kind = session.header().source_kind;
   const bool is_live = kind == sources::SourceKind::Live;
@@ -173,7 +173,7 @@ Safety safety_of(const recording::RecordedSession& session, bool is_being_record
 }
 
 std::string verification_in_words(const Safety& safety) {
-  const std::string without = safety.guidance_began_without ? "; guidance began without it" : "";
+  const std::string without = safety.skipped.empty() ? "" : "; guidance began without it";
   switch (safety.verification) {
     case Safety::Verification::ByTouches:
       return "verified by touches" + without;
@@ -182,7 +182,7 @@ std::string verification_in_words(const Safety& safety) {
     case Safety::Verification::OfAnEarlierRegistration:
       return "verified by touches earlier; of the last registration nothing is recorded" + without;
     case Safety::Verification::Skipped:
-      return "SKIPPED" + without;
+      return "SKIPPED: " + safety.skipped;
     case Safety::Verification::None:
       break;
   }

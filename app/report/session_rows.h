@@ -35,7 +35,7 @@ struct Safety {
   enum class TimeOut { NotRecorded, NotAsked, NotConfirmed, Confirmed };
   std::string cut_short = {};  // why the record is not whole; empty: it is. Names files, and whom they name
   Verification verification = Verification::None;
-  bool guidance_began_without = false;  // a verification
+  std::string skipped = {};  // how guidance began without a verification; empty: it did not
   TimeOut time_out = TimeOut::NotRecorded;
   std::optional<operation::PlannedTunnel> confirmed = {};  // of which plan; nullopt: of none that is known
   bool another_plan_followed = false;                      // which was never confirmed

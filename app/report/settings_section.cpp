@@ -79,7 +79,7 @@ void tools_table(FlowingPages& pages, const recording::RecordedSession& session)
       where = "axis through " + point(tool.axis->point_mm, 2) + " along " + point(tool.axis->direction, 3);
     rows.push_back({tool.name, ids_of(tool), number(tool.size_mm, " mm", 2), known_by(tool), where});
   }
-  pages.table({30, 16, 18, 22, 84}, rows);
+  pages.table({30, 17, 18, 22, 83}, rows);
 }
 
 }  // namespace

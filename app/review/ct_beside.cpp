@@ -11,7 +11,7 @@ CtWords ct_in_words(const postop::Comparison& comparison, const tunnels::Tunnel&
   const std::string why = reasons.empty() ? "" : ": " + reasons.front();
   if (!found.is_found) return {Severity::Caution, "the tunnel was not found" + why};
   if (!postop::is_against(found, planned)) return {Severity::Quiet, "compared with another plan than this"};
-  const std::string text = "entry " + widgets::fixed(found.offset_mm, 1) + " mm, angle " +
+  const std::string text = "offset of the entry " + widgets::fixed(found.offset_mm, 1) + " mm, angle " +
                            widgets::fixed(geometry::deg_from_rad(found.angle_rad), 1) + "\u00B0";
   if (postop::is_relied_on(comparison)) return {Severity::Quiet, text};
   return {Severity::Caution, text + "; not reliable" + why};

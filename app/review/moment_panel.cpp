@@ -39,7 +39,7 @@ void draw_last_moment(const widgets::Ui& ui, const ReviewScreen& screen) {
 void draw_difference(const widgets::Ui& ui, const char* name, const operation::TunnelDifference& d) {
   widgets::text_in(ui.theme.strong, widgets::kText, name);
   widgets::text_in(ui.theme.body, widgets::kText,
-                   "entry " + widgets::fixed(d.entry_mm, 1) + " mm, axis " +
+                   "offset of the entry " + widgets::fixed(d.entry_mm, 1) + " mm, of the axis " +
                        widgets::fixed(d.axis_to_entry_mm, 1) + " mm, angle " +
                        widgets::fixed(d.angle_deg, 1) + "\u00B0");
 }
@@ -89,8 +89,8 @@ void draw_today(const widgets::Ui& ui, const ReviewScreen& screen) {
   } else if (now->state != guidance::GuidanceState::Valid) {
     widgets::text_in(ui.theme.body, widgets::kText, std::string(guidance::to_text(now->state)));
   } else {
-    std::string text = "offset " + widgets::fixed(static_cast<double>(now->offset_mm), 2) + " mm, angle " +
-                       widgets::fixed(static_cast<double>(now->angle_deg), 2) + "\u00B0";
+    std::string text = "offset of the axis " + widgets::fixed(static_cast<double>(now->offset_mm), 2) +
+                       " mm, angle " + widgets::fixed(static_cast<double>(now->angle_deg), 2) + "\u00B0";
     if (then.guidance.is_valid())
       text += "; then " + widgets::fixed(then.guidance.offset_mm, 2) + " mm, " +
               widgets::fixed(then.guidance.angle_deg, 2) + "\u00B0";
@@ -138,7 +138,8 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewS
     const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(104);
     widgets::Rect row{cursor.x, cursor.y, width, height};
     const widgets::Rect left = row.cut_left(width / 2);
-    widgets::number_block(ui, left, "Offset", widgets::fixed(at.guidance.offset_mm, 1), "mm",
+    widgets::number_block(ui, left, "Offset of the axis",
+                          widgets::fixed(at.guidance.offset_mm, 1), "mm",
                           guidance_severity::severity_of_offset(at.guidance));
     widgets::number_block(ui, row, "Angle", widgets::fixed(at.guidance.angle_deg, 1) + "\u00B0", "",
                           guidance_severity::severity_of_angle(at.guidance));

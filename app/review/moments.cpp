@@ -81,6 +81,10 @@ std::vector<Moment> moments_of(const std::vector<SessionEvent>& events,
     if (event.kind == recording::kPlanEvent && std::exchange(plan, event.text) == event.text) continue;
     Moment moment = moment_of(told);
     moment.frame = timeline.at_index(event.after_frame);
+    // What has no time of its own has its frame's.
+    moment.time_s =
+        std::max(timeline.time_s(moment.frame),
+                 static_cast<double>(event.timestamp_ns - timeline.frames().front().timestamp_ns) * 1e-9);
     moments.push_back(std::move(moment));
   }
   return moments;

@@ -23,6 +23,8 @@ struct Moment {
   std::size_t frame = 0;  // of SessionTimeline::frames()
   MomentKind kind = MomentKind::Note;
   std::string words;  // "Asked for: take touch", "Alarm: the marker has moved"
+  // Seconds from the first frame, as the report says it: after the last picture, that of the record's clock.
+  double time_s = 0;
 };
 
 // In the order of the record. What the record holds for running it again alone (outcomes, second looks) is

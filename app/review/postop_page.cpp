@@ -298,9 +298,10 @@ void PostopPage::draw_table(const widgets::Ui& ui, const widgets::Rect& area) {
     const bool is_good = row.severity == widgets::Severity::Good;
     widgets::status_row(ui, is_good && is_earlier ? widgets::Severity::Caution : row.severity, row.tunnel,
                         row.verdict);
-    for (const auto& [name, value] : {std::pair("Entry", &row.offset), std::pair("Grid", &row.grid),
-                                      std::pair("Angle", &row.angle), std::pair("Diameter", &row.diameter),
-                                      std::pair("Length", &row.length), std::pair("Least wall", &row.wall)})
+    for (const auto& [name, value] :
+         {std::pair("Offset of the entry", &row.offset), std::pair("Grid", &row.grid),
+          std::pair("Angle", &row.angle), std::pair("Diameter", &row.diameter),
+          std::pair("Length", &row.length), std::pair("Least wall", &row.wall)})
       if (!value->empty() && row.severity != widgets::Severity::Bad)
         widgets::text_in(ui.theme.body, widgets::kText, std::string(name) + ": " + *value);
     for (const std::string& reason : row.reasons)

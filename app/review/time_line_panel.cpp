@@ -302,7 +302,7 @@ std::optional<std::size_t> draw_time_line(const widgets::Ui& ui, const widgets::
   }
   Row graph{row.y, 1.5F * row.height};
   const float line_px = ui.theme.body->FontSize;
-  draw_name(ui, draw, inner.x, {graph.y - line_px / 2, graph.height}, "Offset to 6 mm");
+  draw_name(ui, draw, inner.x, {graph.y - line_px / 2, graph.height}, "Axis offset to 6 mm");
   draw_name(ui, draw, inner.x, {graph.y + line_px / 2, graph.height}, "red: more than that");
   draw_offsets(ui, draw, scale, graph, screen);
   next(1.5F);
@@ -355,11 +355,11 @@ std::optional<std::size_t> draw_moments(const widgets::Ui& ui, const ReviewScree
   ui.log.note("review.moments", ImGui::GetWindowPos(),
               {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(),
                ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
-  const auto line = [&](std::size_t frame, ImU32 color, const std::string& words, int id) {
+  const auto line = [&](std::size_t frame, double time_s, ImU32 color, const std::string& words, int id) {
     const bool is_now = frame == screen.playback.frame;
     ImGui::PushID(id);
     ImGui::PushStyleColor(ImGuiCol_Text, color);
-    const std::string text = clock_text(screen.timeline().time_s(frame)) + "  " + words;
+    const std::string text = clock_text(time_s) + "  " + words;
     const std::string shown =
         widgets::fitting(ui.theme.body, text, std::max(ImGui::GetContentRegionAvail().x, 1.F));
     if (ImGui::Selectable(shown.c_str(), is_now)) wanted = frame;
@@ -368,9 +368,11 @@ std::optional<std::size_t> draw_moments(const widgets::Ui& ui, const ReviewScree
     ImGui::PopID();
   };
   int id = 0;
-  for (const recording::SessionMark& mark : screen.marks)
-    line(screen.timeline().at_index(mark.frame), widgets::kCaution,
+  for (const recording::SessionMark& mark : screen.marks) {
+    const std::size_t frame = screen.timeline().at_index(mark.frame);
+    line(frame, screen.timeline().time_s(frame), widgets::kCaution,
          "Mark" + (mark.note.empty() ? std::string() : ": " + mark.note), id++);
+  }
   if (!screen.marks.empty()) ImGui::Separator();
   follow_playback(screen);
   ImGuiListClipper clipper;
@@ -378,7 +380,7 @@ std::optional<std::size_t> draw_moments(const widgets::Ui& ui, const ReviewScree
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
       const Moment& moment = screen.review.moments[static_cast<std::size_t>(i)];
-      line(moment.frame, color_of(moment.kind), moment.words, id + i);
+      line(moment.frame, moment.time_s, color_of(moment.kind), moment.words, id + i);
     }
   ImGui::EndChild();
   return wanted;

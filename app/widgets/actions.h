@@ -29,6 +29,7 @@ struct Action {
   std::function<bool()> is_on;       // for switches; empty: not a switch
   std::function<void()> run;
   Hold hold = {};
+  std::function<std::string()> why_not = {};  // while it is not enabled: "pictures come: end them first"
   [[nodiscard]] bool can_run() const { return !is_enabled || is_enabled(); }
   [[nodiscard]] bool needs_hold() const { return !hold.to.empty() && (!hold.when || hold.when()); }
 };

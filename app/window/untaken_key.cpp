@@ -45,8 +45,10 @@ void UntakenKey::note(const widgets::KeyPress& press, const widgets::Actions& ac
   const bool is_one = std::ranges::none_of(actions.all(), [&](const widgets::Action& other) {
     return is_its(other) && other.label != its->label;
   });
+  const std::string why = is_one && its->why_not ? its->why_not() : "";
   words_ = name +
-           " did nothing: " + (is_one ? its->label + " is not possible now" : "there is nothing for it now");
+           " did nothing: " + (is_one ? its->label + " is not possible now" : "there is nothing for it now") +
+           (why.empty() ? "" : ": " + why);
   action_ = its->id;
 }
 

@@ -19,8 +19,11 @@ void WorkstationWindow::add_actions() {
          },
          [this, i] { return shown_ == i && !shows_start() && !shows_paint(); }, [this, i] { show(i); }});
   }
-  actions_.add({"app.cases", "Cases",
-                "Open another case, or import one; drop a folder on the window for the same", GLFW_KEY_F5, 0,
+  actions_.add({"app.cases",
+                "Cases",
+                "Open another case, or import one; drop a folder on the window for the same",
+                GLFW_KEY_F5,
+                0,
                 false,
                 // An import that waits for an answer is here, and nowhere else.
                 [this] { return case_ != nullptr && !works_elsewhere() && opening_ == nullptr; },
@@ -30,6 +33,13 @@ void WorkstationWindow::add_actions() {
                   leave_shown();
                   shows_start_ = true;
                   start_.enter(case_->folder());
+                },
+                {},
+                [this] {
+                  return !works_elsewhere()           ? ""
+                         : paint_.has_running_work()  ? "bones are being written"
+                         : shown().has_running_work() ? "end what runs here first"
+                                                      : "end what runs in another mode first";
                 }});
   add_markups_action();
   actions_.add(

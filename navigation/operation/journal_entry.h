@@ -40,6 +40,7 @@ enum class JournalKind {
   DrilledByWord,     // without poses; text: "femur AM: " and why
   DrilledTakenBack,  // the one of before; achieved is set
   SaidTooEarly,      // of one that was drilled by word alone, or under another source; text: "femur AM"
+  MarkerOut,         // the world marker is out of the bone; text: empty, or why it is not after all
   Note,
 };
 

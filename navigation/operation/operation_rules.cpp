@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "navigation/operation/operation_parts.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::operation {
 
@@ -158,7 +159,7 @@ void Operation::Parts::watch_guidance() {
   }
   if (marker_is_out && is_live() && frame.world_is_seen()) {
     marker_is_out = false;
-    note(JournalKind::Note, "the world marker is seen again: it is not out");
+    note(JournalKind::MarkerOut, "the world marker is seen again: it is not out");
   }
   grades.add(frame.guidance, frame.timestamp_ns);
   drilling.add(frame.guidance, frame.timestamp_ns);
@@ -194,7 +195,11 @@ void Operation::Parts::look_for_end_of_loss() {
 void Operation::Parts::skip_verification(const std::string& how) {
   if (verification() != Verification::NotYet || !ledger.entry_in_force()) return;
   skipped_entry = ledger.entry_in_force();
-  note(JournalKind::VerificationSkipped, how);
+  const int wanted = setup.limits.touches_to_verify, missing = ledger.touches().places_to_verify();
+  std::string touched;
+  if (missing < wanted)
+    touched = files::format("; %d of %d touches had been taken", wanted - missing, wanted);
+  note(JournalKind::VerificationSkipped, how + touched + (missing == 0 ? ", too far off to verify" : ""));
 }
 
 Verification Operation::Parts::verification() const {
@@ -276,6 +281,7 @@ void Operation::Parts::apply(const MarkerOut&) {
   }
   find_anew("the world marker is out of the bone");
   marker_is_out = true;
+  note(JournalKind::MarkerOut);
 }
 
 void Operation::Parts::apply(const OfferPlan& offer) {

@@ -200,6 +200,9 @@ camera::FramePtr PrefetchedSource::next() {
 
 NextFrame PrefetchedSource::next_within(double seconds) { return state_->take(seconds); }
 
+std::optional<Eigen::Vector2i> PrefetchedSource::changed_to_px() const {
+  return state_->info.line != nullptr ? state_->info.line->changed_to_px() : std::nullopt;
+}
 std::string PrefetchedSource::trouble() const {
   return state_->info.line != nullptr ? state_->info.line->trouble() : "";
 }

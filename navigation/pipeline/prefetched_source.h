@@ -51,6 +51,8 @@ class PrefetchedSource : public sources::FrameSource {
   [[nodiscard]] NextFrame next_within(double seconds);
   // Why a live source gives nothing now; empty: it does, or does not know.
   [[nodiscard]] std::string trouble() const;
+  // The size of the pictures that it gets and does not give, since they are of another one than before.
+  [[nodiscard]] std::optional<Eigen::Vector2i> changed_to_px() const;
   // What is wrong with the pictures that it gives; empty: nothing that it knows of.
   [[nodiscard]] std::string remark() const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "navigation/recording/last_registration.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/registration/registration_file.h"
@@ -18,17 +19,6 @@ bool is_same_marker(const tools::WorldMarker* a, const tools::WorldMarker* b) {
          tools::are_same(a->markers, b->markers);
 }
 
-// The alarm that came after the session's last registration; empty when none did.
-std::string alarm_after_registration(const std::filesystem::path& folder) {
-  std::string alarm;
-  const RecordedSession session(folder);
-  for (const SessionEvent& event : session.events()) {
-    if (is_registration(event)) alarm.clear();
-    if (event.kind == kAlarmEvent) alarm = event.text;  // empty: the alarm is over
-  }
-  return alarm;
-}
-
 std::optional<KnownRegistration> registration_of(const std::filesystem::path& folder, bones::BoneKind bone,
                                                  const tools::ToolSet& tools) {
   if (!std::filesystem::exists(folder / "registration.json")) return std::nullopt;
@@ -38,11 +28,13 @@ std::optional<KnownRegistration> registration_of(const std::filesystem::path& fo
   if (!is_same_marker(then.find_world_marker(bone), tools.find_world_marker(bone))) return std::nullopt;
   const auto record = registration::read_registration_record(folder / "registration.json");
   KnownRegistration known{record.registration, record.of, folder, "", {}};
+  // The newest is what would be guided by: one that is void, or none, is no reason to take the one before it.
   if (!known.registration.reliable) {
-    known.refusal = "it is not reliable";
-    for (const std::string& reason : known.registration.reasons) known.refusal += "; " + reason;
-  } else if (const std::string alarm = alarm_after_registration(folder); !alarm.empty()) {
-    known.refusal = "it was in doubt at the end: " + alarm;
+    known.refusal = doubt_of(known.registration);
+  } else {
+    LastRegistration last;
+    last.follow(RecordedSession(folder));
+    known.refusal = last.refusal();
   }
   return known;
 }

@@ -2,15 +2,12 @@
 
 #include <utility>
 
-#include "navigation/operation/command.h"
-
 namespace arthronaut::recording {
 
 void CountingRegistration::follow(const SessionEvent& event) {
   // What verified the one before says nothing of this one.
   // What that event takes away, the one right after it says.
-  static const std::string kMarkerOut = operation::to_text(operation::MarkerOut{});
-  const bool says_out = event.kind == kCommandEvent && event.text == kMarkerOut;
+  const bool says_out = event.kind == kMarkerOutEvent && event.text.empty();
   const bool was_taken_away = std::exchange(marker_goes_out_, says_out) && !newest_.file.empty();
   if (is_registration(event)) {
     last_file_ = event.text;

@@ -37,17 +37,13 @@ struct Decision {
   std::string kind, text;
 };
 
-bool names_a_registration(const std::string& kind) {
-  return kind == kRegistrationEvent || kind == kGivenRegistrationEvent;
-}
-
 std::vector<Decision> decisions_of(const std::vector<SessionEvent>& events) {
   std::vector<Decision> decisions;
   for (const SessionEvent& event : events)
     if (std::ranges::find(kDecisions, event.kind) != kDecisions.end() &&
         (event.kind != kDrilledTakenBackEvent || !event.text.empty()))
       decisions.push_back(
-          {event.after_frame, event.kind, names_a_registration(event.kind) ? std::string() : event.text});
+          {event.after_frame, event.kind, is_registration(event) ? std::string() : event.text});
   return decisions;
 }
 

@@ -86,6 +86,8 @@ std::string_view kind_of(JournalKind kind) {
       return kDrilledTakenBackEvent;
     case JournalKind::SaidTooEarly:
       return kSaidTooEarlyEvent;
+    case JournalKind::MarkerOut:
+      return kMarkerOutEvent;
     case JournalKind::Note:
       return "note";
   }

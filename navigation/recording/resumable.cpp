@@ -10,73 +10,16 @@
 #include "navigation/recording/case_sessions.h"
 #include "navigation/recording/declined_resume.h"
 #include "navigation/recording/hash_chain.h"
+#include "navigation/recording/last_registration.h"
 #include "navigation/recording/recording_lock.h"
 #include "navigation/recording/rerun.h"
 #include "navigation/recording/session_files.h"
-#include "navigation/registration/registration_file.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
 
 namespace {
-
-// The registration that guided at the end, as it was found, and whether it may be brought back.
-class LastRegistration {
- public:
-  void follow(const RecordedSession& session) {
-    for (const SessionEvent& event : session.events()) follow(session, event);
-  }
-  [[nodiscard]] const std::optional<registration::RegistrationSummary>& registration() const { return good_; }
-  [[nodiscard]] const registration::Provenance& of() const { return of_; }
-  [[nodiscard]] bool was_verified() const { return was_verified_; }
-  [[nodiscard]] const std::string& alarm() const { return alarm_; }
-  [[nodiscard]] std::string refusal() const {
-    if (!alarm_.empty()) return "it was in doubt at the end: " + alarm_;
-    if (!doubt_.empty()) return doubt_;
-    return good_ ? "" : "nothing was registered";
-  }
-
- private:
-  void follow(const RecordedSession& session, const SessionEvent& event) {
-    if (is_registration(event)) take(registration::read_registration_record(session.folder() / event.text));
-    // What is void is of something else: what it is of decides again, and one touch, when it is brought back.
-    if (event.kind == kVoidEvent) doubt_.clear();
-    if (event.kind == kAlarmEvent && !event.text.empty()) alarm_ = event.text;
-    if (event.kind == kVerifiedEvent) was_verified_ = true;
-    if (event.kind == kVerificationLostEvent) was_verified_ = false;
-    if (event.kind == kCommandEvent)
-      take(operation::command_from_text(event.text, session.folder().string()));
-  }
-  void take(const registration::RegistrationRecord& record) {
-    if (!record.registration.has_pose) {  // the marker was placed anew
-      *this = {};
-      return;
-    }
-    // An alarm is over when what guided guides again, not when something else takes its place.
-    if (record.registration.reliable) return take(record.registration, record.of.value_or(of_));
-    doubt_ = "it is not reliable";
-    for (const std::string& reason : record.registration.reasons) doubt_ += "; " + reason;
-  }
-  void take(const operation::Command& command) {
-    // What it takes away is written a moment later, and a program may have ended in between.
-    if (std::holds_alternative<operation::MarkerPlacedAnew>(command)) *this = {};
-    const auto* given = std::get_if<operation::GiveRegistration>(&command);
-    if (given != nullptr && given->registration.reliable) take(given->registration, given->of);
-    const auto* resume = std::get_if<operation::ResumeOperation>(&command);
-    if (resume != nullptr && resume->registration) take(*resume->registration, resume->registration_of);
-  }
-  void take(const registration::RegistrationSummary& registration, const registration::Provenance& of) {
-    *this = {};
-    good_ = registration;
-    of_ = of;
-  }
-
-  std::optional<registration::RegistrationSummary> good_;
-  registration::Provenance of_;
-  std::string alarm_, doubt_;
-  bool was_verified_ = false;
-};
 
 // By its chain of hashes, which is written with all that is recorded, and after it: a database that was cut
 // off is put in order by whoever reads it, and would be of now with every look. (Only of before there was a

@@ -107,6 +107,8 @@ inline constexpr std::string_view kDrilledTakenBackEvent =
     "tunnel not drilled";  // text: the file that held it; of older records empty: by word alone
 inline constexpr std::string_view kSaidTooEarlyEvent =
     "said too early";  // of a tunnel without a file of this record; text: "femur AM"
+inline constexpr std::string_view kMarkerOutEvent =
+    "world marker out";  // text: empty, or why it is not after all
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier
 inline constexpr std::string_view kSourceEndedEvent = "source ended";
 inline constexpr std::string_view kSourceTroubleEvent =

@@ -29,6 +29,7 @@ constexpr std::array kNames{
     Name{kDrilledByWordEvent, "tunnel drilled, by word alone", Gravity::Step, true, false},
     Name{kDrilledTakenBackEvent, "said too early: not drilled", Gravity::Step, true, true},
     Name{kSaidTooEarlyEvent, "said too early: not drilled", Gravity::Step, true, false},
+    Name{kMarkerOutEvent, "world marker out", Gravity::Step, true, false},
     Name{kDroppedPicturesEvent, "pictures dropped", Gravity::Alarm, false, false},
     Name{kVideoStoppedEvent, "video stopped", Gravity::Alarm, false, false},
     Name{kRecordingStoppedEvent, "recording stopped", Gravity::Alarm, false, false}};
@@ -91,6 +92,7 @@ std::vector<ToldEvent> told_events(const std::vector<SessionEvent>& events, cons
       next.words = "alarm is over";
       next.gravity = Gravity::Step;
     }
+    if (event.kind == kMarkerOutEvent && !event.text.empty()) next.words = "world marker not out";
     if (!is_registration(event)) continue;
     const PoseFollower::Change change = poses.follow(event);
     if (change == PoseFollower::Change::Verdict) {

@@ -54,9 +54,9 @@ class RecoveringSource final : public FrameSource {
 
  private:
   void tell_size(const Eigen::Vector2i& now_px) {
-    tell(info_.name + ": " + std::string(kFormatChanged) + size_in_words(now_px) +
-         ": set the processor back to " + size_in_words(info_.image_size_px) +
-         ", or choose the camera again");
+    tell(info_.name + ": the source's format changed to " + size_in_words(now_px) +
+             ": set the processor back to " + size_in_words(info_.image_size_px) + ", or choose the camera again",
+         now_px);
   }
 
   camera::FramePtr take() {
@@ -114,9 +114,9 @@ class RecoveringSource final : public FrameSource {
     line_->say_of_pictures(remark_);
   }
 
-  void tell(const std::string& trouble) {
+  void tell(const std::string& trouble, const std::optional<Eigen::Vector2i>& changed_to_px = std::nullopt) {
     if (trouble != line_->trouble()) log::warning("source: " + trouble);
-    line_->say(trouble);
+    line_->say(trouble, changed_to_px);
   }
 
   LiveOpener opener_;

@@ -16,15 +16,10 @@
 #include <Eigen/Core>
 #include <functional>
 #include <string>
-#include <string_view>
 
 #include "navigation/sources/frame_source.h"
 
 namespace arthronaut::sources {
-
-// What SourceInfo::line says of pictures in another size than the first ones, between the source's name and
-// that size; what is to be done about it follows.
-inline constexpr std::string_view kFormatChanged = "the source's format changed to ";
 
 // Numbers and times of a live source's frames, over all its connections: they go on where they were, and by
 // what captured_ns went on; where that goes back by more than a second, from there.

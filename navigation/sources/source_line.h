@@ -4,10 +4,12 @@
 // Threads: any.
 #pragma once
 
+#include <Eigen/Core>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,10 +17,12 @@ namespace arthronaut::sources {
 
 class SourceLine {
  public:
-  // The source: why no picture comes, in words for the screen; empty: they come.
-  void say(std::string trouble) {
+  // The source: why no picture comes, in words for the screen; empty: they come. changed_to_px: those that
+  // it gets are of that size, and no waiting makes them fit.
+  void say(std::string trouble, const std::optional<Eigen::Vector2i>& changed_to_px = std::nullopt) {
     const std::lock_guard lock(mutex_);
     trouble_ = std::move(trouble);
+    changed_to_px_ = changed_to_px;
     has_trouble_ = !trouble_.empty();
   }
   void pictures_come() {
@@ -42,6 +46,10 @@ class SourceLine {
     const std::lock_guard lock(mutex_);
     return trouble_;
   }
+  [[nodiscard]] std::optional<Eigen::Vector2i> changed_to_px() const {
+    const std::lock_guard lock(mutex_);
+    return changed_to_px_;
+  }
   // Without a lock while there is none: asked for with every picture.
   [[nodiscard]] std::string remark() const {
     if (!has_remark_) return {};
@@ -58,6 +66,7 @@ class SourceLine {
   mutable std::mutex mutex_;
   std::condition_variable ending_;
   std::string trouble_, remark_;
+  std::optional<Eigen::Vector2i> changed_to_px_;
   std::atomic<bool> has_trouble_ = false, has_remark_ = false, ends_ = false;
 };
 

@@ -89,8 +89,11 @@ struct EndSource {};
 struct VideoRequest {
   bool on;
 };
+struct LeftRecord {
+  std::filesystem::path session_folder;
+};
 struct FollowRegistration {};
-using Request = std::variant<TheatreSource, EndSource, VideoRequest, recording::PicturesAs,
+using Request = std::variant<TheatreSource, EndSource, VideoRequest, recording::PicturesAs, LeftRecord,
                              FollowRegistration, operation::Command>;
 using LiveWorker = worker::Worker<Request, LiveState>;
 
@@ -166,6 +169,7 @@ class Loop {
     publish();
   }
   void take(const recording::PicturesAs& as) { run_.keep_pictures_as(as); }
+  void take(const LeftRecord& left) { run_.goes_on_after(left.session_folder); }
   void take(const FollowRegistration&) {
     if (run_.follow_registration()) publish();
   }
@@ -186,6 +190,7 @@ class Loop {
     if (step.has_ended) return end(LiveState::Phase::Ended);
     live_.trouble = run_.watch().trouble();
     live_.trouble_words = run_.watch().words();
+    live_.changed_to_px = run_.watch().changed_to_px();
     // How old the last one is the screen sees for itself; why none comes is news.
     if (step.picture == nullptr) return live_.trouble != SourceTrouble::None ? publish() : void();
     const Clock::time_point ready = Clock::now();
@@ -282,6 +287,9 @@ void LiveOperation::end_source() { thread_->worker.post(EndSource{}); }
 void LiveOperation::apply(operation::Command command) { thread_->worker.post(std::move(command)); }
 void LiveOperation::keep_video(bool on) { thread_->worker.post(VideoRequest{on}); }
 void LiveOperation::keep_pictures_as(recording::PicturesAs as) { thread_->worker.post(as); }
+void LiveOperation::goes_on_after(const std::filesystem::path& session_folder) {
+  thread_->worker.post(LeftRecord{session_folder});
+}
 void LiveOperation::shown(const LiveState& live, double drawn_s) {
   if (live.operation->source != nullptr && live.operation->source->kind == sources::SourceKind::Live)
     thread_->display.shown(live, drawn_s, now_s());

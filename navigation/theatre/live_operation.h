@@ -41,6 +41,7 @@ struct LiveState {
   // its pictures take from stage to stage, as of the last second that was counted.
   SourceTrouble trouble = SourceTrouble::None;
   std::string trouble_words;
+  std::optional<Eigen::Vector2i> changed_to_px{};  // with NoPicture: see SourceWatch
   LatencyReport latency{};
   OperationRun::Refusal refusal;  // of what was asked for last
   double refused_s = 0;           // when refusal.count changed last, on the same clock
@@ -73,8 +74,10 @@ class LiveOperation {
   void start(TheatreSource source);
   void end_source();
   void apply(operation::Command command);
-  void keep_video(bool on);                         // see OperationRun
-  void keep_pictures_as(recording::PicturesAs as);  // see OperationRun
+  // See OperationRun.
+  void keep_video(bool on);
+  void keep_pictures_as(recording::PicturesAs as);
+  void goes_on_after(const std::filesystem::path& session_folder);
   void request_stop();
   // The screen shows this state from now on, as it was at drawn_s, on the clock of now_s(): after each time
   // that it was drawn. For the latency to the screen, and to know pictures that come too slowly.

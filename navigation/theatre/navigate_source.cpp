@@ -102,6 +102,7 @@ class Navigation {
     world_was_seen_ = world_was_seen_ || frame.world_is_seen();
     summary_.frames_with_tip += frame.tip_is_valid ? 1 : 0;
     summary_.last_state = frame.guidance.state;
+    summary_.guidance_counts.add(frame.guidance.state);
     summary_.frames_registered += state->registration->in_force.standing == operation::Standing::Stands;
     summary_.frames_bone_seen += state->contour.state == contour::ContourState::Holds;
     summary_.frames_bone_otherwise += state->contour.state == contour::ContourState::LooksOtherwise;

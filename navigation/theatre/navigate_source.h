@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "navigation/guidance/guidance_counts.h"
 #include "navigation/operation/operation.h"
 #include "navigation/pipeline/track_video.h"
 #include "navigation/recording/operation_record.h"
@@ -68,6 +69,7 @@ struct NavigationSummary {
   operation::Standing standing = operation::Standing::None;
   bool registration_was_found = false;  // here, not given
   long frames_with_tip = 0, frames_with_guidance = 0;
+  guidance::GuidanceCounts guidance_counts;  // of all frames
   // Frames in which a registration stood, and those of them whose picture was seen to show the bone where it
   // lay.
   long frames_registered = 0, frames_bone_seen = 0, frames_bone_otherwise = 0;

@@ -71,6 +71,8 @@ std::string what_of(const JournalEntry& entry) {
       return "tunnel not drilled after all";
     case JournalKind::SaidTooEarly:
       return "said too early: not drilled";
+    case JournalKind::MarkerOut:
+      return entry.text.empty() ? "world marker out" : "world marker not out";
     case JournalKind::Note:
       return "note";
   }

@@ -1,5 +1,6 @@
 #include "navigation/theatre/operation_run.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "navigation/pipeline/prefetched_source.h"
@@ -29,6 +30,12 @@ bool is_touch(const operation::Command& command) {
 }
 bool is_of_this_moment(const operation::Command& command) {
   return begins_to_draw(command) || is_touch(command);
+}
+
+// What ends an operation, or takes its end back.
+bool is_of_the_end(const operation::JournalEntry& entry) {
+  return entry.kind == operation::JournalKind::MarkerOut ||
+         entry.kind == operation::JournalKind::SaidTooEarly;
 }
 
 }  // namespace
@@ -114,12 +121,18 @@ void OperationRun::pass_on(std::int64_t since_picture_ns) {
   }
   if (record_ != nullptr) return write([&](recording::OperationRecord& record) { record.add(journal); });
   // Before the first source: it goes to the record of that one.
-  if (make_session_folder_ && session_folder_.empty() && record_trouble_.empty())
-    return void(early_.insert(early_.end(), journal.begin(), journal.end()));
+  const bool is_early = session_folder_.empty();
+  const std::filesystem::path& folder = is_early ? left_folder_ : session_folder_;
+  if (make_session_folder_ && is_early && record_trouble_.empty()) {
+    const auto early = std::ranges::stable_partition(
+        journal, [&](const auto& entry) { return !folder.empty() && is_of_the_end(entry); });
+    early_.insert(early_.end(), early.begin(), early.end());
+    journal.erase(early.begin(), early.end());
+  }
   // After the end of a source: the decision belongs to its record.
-  if (session_folder_.empty() || !record_trouble_.empty()) return;
+  if (folder.empty() || !record_trouble_.empty()) return;
   try {
-    recording::append_entries(session_folder_, journal);
+    recording::append_entries(folder, journal);
   } catch (const std::runtime_error& error) {
     record_trouble_ = error.what();
   }
@@ -147,7 +160,8 @@ OperationRun::Step OperationRun::step() {
   const std::int64_t taken_ns = sources::steady_now_ns();
   (void)follow_registration();
   if (next.frame == nullptr) {
-    if (is_live && !next.has_ended && live_.watch.silence(source_->trouble(), taken_ns))
+    if (is_live && !next.has_ended &&
+        live_.watch.silence(source_->trouble(), taken_ns, source_->changed_to_px()))
       note_trouble(silence_ns());
     return {nullptr, next.has_ended};
   }

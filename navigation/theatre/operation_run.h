@@ -73,6 +73,9 @@ class OperationRun {
   // is. That is recorded, and told by refusal(). What is given while no picture of a live source comes, or
   // after it, is recorded with its own time, on the pictures' clock.
   void apply(const operation::Command& command);
+  // The record of the operation on this bone that another program left. What is said here of its end, that
+  // the marker is out or that a tunnel is not drilled after all, is written there until a source begins.
+  void goes_on_after(const std::filesystem::path& session_folder) { left_folder_ = session_folder; }
   // Takes in what the registration has found and what was seen of the medium meanwhile; true when the first
   // is something new. step() does it too.
   bool follow_registration();
@@ -146,6 +149,7 @@ class OperationRun {
   worker::LettingGo ending_;  // records that failed: guidance does not wait for their end
   std::unique_ptr<recording::OperationRecord> record_;
   std::filesystem::path session_folder_;
+  std::filesystem::path left_folder_;           // by another program; empty: nothing was
   std::vector<operation::JournalEntry> early_;  // from before the first source
   std::string continues_, record_trouble_, video_trouble_;
   recording::PicturesAs pictures_as_ = recording::PicturesAs::AsTheyCame;

@@ -76,7 +76,9 @@ std::int64_t SourceWatch::silence_ns() const {
   return std::clamp(static_cast<std::int64_t>(3e6 * gap_ms_), kSilence_ns, kLongestSilence_ns);
 }
 
-bool SourceWatch::silence(const std::string& why, std::int64_t now_ns) {
+bool SourceWatch::silence(const std::string& why, std::int64_t now_ns,
+                          const std::optional<Eigen::Vector2i>& changed_to_px) {
+  changed_to_px_ = changed_to_px;
   if (!has_begun_) {  // counted from the first time that somebody waited
     has_begun_ = true;
     last_picture_ns_ = now_ns;
@@ -95,6 +97,7 @@ bool SourceWatch::silence(const std::string& why, std::int64_t now_ns) {
 
 bool SourceWatch::picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns,
                           const std::string& remark) {
+  changed_to_px_.reset();
   if (has_begun_) {
     const std::int64_t gap_ns = now_ns - last_picture_ns_;
     // A pause is no pace.

@@ -6,8 +6,10 @@
 // Pure: told of pictures and of their absence, with the time; one thread at a time.
 #pragma once
 
+#include <Eigen/Core>
 #include <bitset>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "navigation/pipeline/view_tracker.h"
@@ -49,13 +51,16 @@ class SourceWatch {
   // next picture whether the source is too slow: half of six were drawn when they were too old. For as long
   // as that goes on what guides would come and go with every picture. Over once none was for two seconds.
   void shown_until(double age_ms, std::int64_t now_ns);
-  // None came since the last call; why, as the source says it. True: it is silent now, or for another reason,
-  // which is said once a second.
-  bool silence(const std::string& why, std::int64_t now_ns);
+  // None came since the last call; why, as the source says it, and in which size they come that it does not
+  // give. True: it is silent now, or for another reason, which is said once a second.
+  bool silence(const std::string& why, std::int64_t now_ns,
+               const std::optional<Eigen::Vector2i>& changed_to_px = std::nullopt);
 
   [[nodiscard]] SourceTrouble trouble() const { return trouble_; }
   // "No picture comes: rtsp://tower/scope: broke off; connecting again"; empty while all is well.
   [[nodiscard]] const std::string& words() const { return words_; }
+  // With NoPicture: they come in that size, and no waiting ends it. Empty: nobody says so.
+  [[nodiscard]] const std::optional<Eigen::Vector2i>& changed_to_px() const { return changed_to_px_; }
 
  private:
   bool set(SourceTrouble trouble, const std::string& words);
@@ -65,6 +70,7 @@ class SourceWatch {
   double late_after_ms_ = 1000 * kLateAfter_s;
   SourceTrouble trouble_ = SourceTrouble::None;
   std::string words_, silence_said_;
+  std::optional<Eigen::Vector2i> changed_to_px_;
   std::int64_t silence_said_ns_ = 0;
   std::int64_t last_picture_ns_ = 0, torn_ns_ = 0, late_ns_ = 0, late_said_ns_ = 0, slow_ns_ = 0;
   double late_ms_ = 0, gap_ms_ = 0;  // between pictures, lately

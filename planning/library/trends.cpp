@@ -68,11 +68,11 @@ void add_comparisons(const CaseRecord& record, Trend trend, const TrendOptions& 
 std::string_view to_text(Trend trend) {
   switch (trend) {
     case Trend::EntryOffset:
-      return "Entry from the planned one";
+      return "Offset of the entry";
     case Trend::Angle:
       return "Angle to the planned axis";
     case Trend::AchievedOffset:
-      return "Entry from the planned one, by CT";
+      return "Offset of the entry, by CT";
     case Trend::AchievedAngle:
       return "Angle to the planned axis, by CT";
     case Trend::PredictedError:

@@ -173,6 +173,12 @@ TEST(NavigateDisplay, TheLayoutIsOfTheToolThatTheStepTakes) {
     EXPECT_EQ(after(NextAction::BringGuide, Step::Verify), NavigateLayout::Register) << "gone back to";
     EXPECT_EQ(after(NextAction::VerifyByTouch, Step::Guide), NavigateLayout::Guide);
   }
+  // What came of the last touch is read, and then the way to the plan is shown, whether a guide is seen or
+  // not.
+  shown.operation.next_action = NextAction::BringGuide;
+  EXPECT_EQ(layout_of(shown.whole(), kLongAgo, std::nullopt, 1), NavigateLayout::Register);
+  EXPECT_EQ(layout_of(shown.whole(), kLongAgo, std::nullopt, 8), NavigateLayout::Guide);
+  EXPECT_EQ(layout_of(shown.whole(), 0.5, std::nullopt, 1), NavigateLayout::Guide) << "it guides";
   shown.operation.guided_lately = true;
   EXPECT_EQ(after(NextAction::CheckControlPoint), NavigateLayout::Guide) << "the guide is in the hand";
 }

@@ -72,7 +72,7 @@ std::vector<std::string> all_words() {
       words_of(operation::NextAction::VerifyByTouch) + ", 3 to go",
       words_of(operation::NextAction::VerifyByTouch) + ", 3 to go. Wait: the probe moves",
       words_without_pictures(theatre::SourceTrouble::NoPicture, operation::NextAction::VerifyByTouch,
-                             "the source's format changed to 1280 x 720: set"),
+                             Eigen::Vector2i(1280, 720)),
       "calibrate camera and tools in Set up",
       "wait: the case's last operation is looked for"};
   for (const auto way_out : {operation::WayOut::StrokesAnew, operation::WayOut::MarkerPlacedAnew})

@@ -270,8 +270,9 @@ TEST_F(Report, SaysHowItWasVerifiedConfirmedAndDoubted) {
   expect_contains(good, "verified by touches");
   expect_contains(good, "The control point has moved; over");
   EXPECT_EQ(good.find("not confirmed in this session"), std::string::npos);
-  const std::string skipped = text_of_session("simulation", {{"verification skipped", "guidance began"}});
-  expect_contains(skipped, "SKIPPED; guidance began without it");
+  const std::string skipped =
+      text_of_session("simulation", {{"verification skipped", "guidance began after two"}});
+  expect_contains(skipped, "SKIPPED: guidance began after two");
   expect_contains(skipped, "not asked: no live source");
 }
 

@@ -32,7 +32,7 @@ postop::Comparison found() {
 }
 
 TEST(CtBeside, SaysWhatTheCtShowsOfThisPlanAlone) {
-  EXPECT_EQ(ct_in_words(found(), planned()).text, "entry 3.0 mm, angle 4.0\u00B0");
+  EXPECT_EQ(ct_in_words(found(), planned()).text, "offset of the entry 3.0 mm, angle 4.0\u00B0");
   EXPECT_EQ(ct_in_words(found(), planned()).severity, Severity::Quiet);
   tunnels::Tunnel another = planned();
   another.entry_mm.x() += 1;
@@ -44,7 +44,7 @@ TEST(CtBeside, IsNeverSurerThanTheComparison) {
   doubted.tunnel.reliable = false;
   doubted.tunnel.reasons = {"metal fills it"};
   EXPECT_EQ(ct_in_words(doubted, planned()).text,
-            "entry 3.0 mm, angle 4.0\u00B0; not reliable: metal fills it");
+            "offset of the entry 3.0 mm, angle 4.0\u00B0; not reliable: metal fills it");
   EXPECT_EQ(ct_in_words(doubted, planned()).severity, Severity::Caution);
   doubted.tunnel.is_found = false;
   EXPECT_EQ(ct_in_words(doubted, planned()).text, "the tunnel was not found: metal fills it");

@@ -105,6 +105,21 @@ TEST_F(Looking, TellsWhatHappenedAndJumpsToIt) {
   EXPECT_FALSE(moment_after(frames, 90) || moment_before(frames, 30));
 }
 
+// What is said after the last picture stands at its own time, as in the report; what has none, at its
+// frame's.
+TEST_F(Looking, TellsWhatComesAfterThePicturesByTheRecordsClock) {
+  const std::size_t last = timeline_->frames().size() - 1;
+  const recording::FrameGlance &first = timeline_->frames().front(), &end = timeline_->frames()[last];
+  const auto moments =
+      moments_of({{end.timestamp_ns + 6'000'000'000, std::string(recording::kDrilledEvent), "", end.index},
+                  {0, "note", "", end.index}},
+                 *timeline_, {});
+  ASSERT_EQ(moments.size(), 2U);
+  EXPECT_EQ(moments[0].frame, last);
+  EXPECT_NEAR(moments[0].time_s, static_cast<double>(end.timestamp_ns - first.timestamp_ns) * 1e-9 + 6, 1e-9);
+  EXPECT_EQ(moments[1].time_s, timeline_->time_s(last));
+}
+
 // What was asked for is told in words, and not as a program has it.
 TEST_F(Looking, TellsDrawingInWords) {
   const auto moments = moments_of({{0, "command", operation::to_text(operation::Draw{true}), 10},

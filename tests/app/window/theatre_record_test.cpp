@@ -7,6 +7,10 @@
 #include <optional>
 #include <random>
 
+#include "app/case/plan_model.h"
+#include "navigation/operation/operation.h"
+#include "navigation/recording/drilled_before.h"
+#include "navigation/recording/operation_record.h"
 #include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session.h"
 #include "tests/app/window/theatre.h"
@@ -201,6 +205,54 @@ TEST_F(Theatre, Hazard12AnOperationThatIsHeldByADyingProgramIsOfferedOnceItLetsG
   record_held.reset();
   EXPECT_TRUE(app.wait_for_state("mode", "navigate", 120));
   EXPECT_TRUE(app.wait_for_state("resume", left, 60));
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
+// Closed or killed between the bones, the case knows which tunnel is drilled and whose marker is out: the
+// pedal goes on with what is left to be done, and never offers the same tunnel again.
+TEST_F(Theatre, Hazard12AfterARestartBetweenTheBonesThePedalGoesOnWithTheOtherOne) {
+  const std::string surface = [&] {  // said to be drilled, and killed before the marker was out
+    const open_case::PlanModel model(cases::load_case(case_folder()));
+    operation::OperationSetup setup;
+    setup.mesh_sha256 = model.mesh_sha256(setup.bone);
+    setup.plan = {*model.tunnel(setup.bone), model.drawn_length_mm(setup.bone)};
+    operation::SourceSetup source;
+    source.kind = sources::SourceKind::Live;
+    source.pipeline.calibration = simulator::standard_camera();
+    source.pipeline.tools = tools::standard_tools();
+    operation::Operation femur(setup);
+    femur.start_source(source);
+    femur.apply(operation::TunnelDrilled{});
+    recording::OperationRecord record(cases::create_session_folder(case_folder()), setup, source, {}, "");
+    record.add(femur.take_journal());
+    record.finish({});
+    return setup.mesh_sha256;
+  }();
+  const VirtualDisplay display(1280, 720);
+  {
+    RunningWorkstation app(display, folder_.path());
+    show_navigate(app);
+    ASSERT_TRUE(app.wait_for_state("next", "take the femur's marker out, then say so", 60));
+    EXPECT_EQ(app.state("drilled"), "1");
+    std::this_thread::sleep_for(std::chrono::seconds(2));  // as long as it takes to read it
+    app.press("space");
+    ASSERT_TRUE(app.wait_for_state("next", "go on to the tibia"));
+    ASSERT_TRUE(becomes(
+        [&] {
+          return recording::drilled_before(case_folder(), {{bones::BoneKind::Femur, surface}})
+              .tunnels.marker_is_out(bones::BoneKind::Femur);
+        },
+        60));
+    app.kill();
+  }
+  RunningWorkstation app(display, folder_.path());
+  show_navigate(app);
+  ASSERT_TRUE(app.wait_for_state("next", "go on to the tibia", 60));
+  EXPECT_EQ(app.state("markers_out"), "1");
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  app.press("space");
+  EXPECT_TRUE(app.wait_for_state("bone", "tibia"));
+  EXPECT_TRUE(app.wait_for_state("finish", "open"));
   EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
 }
 

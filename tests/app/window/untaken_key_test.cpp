@@ -26,6 +26,22 @@ TEST_F(UntakenKeys, AreSaidWithTheirReason) {
   EXPECT_EQ(after(GLFW_KEY_N, true), "N did nothing: the case is still being opened. Press it again then");
 }
 
+// Of an action that knows why it is not possible, that too.
+TEST_F(UntakenKeys, SayWhyWhereItIsKnown) {
+  actions_.add({"app.cases",
+                "Cases",
+                "",
+                GLFW_KEY_F5,
+                0,
+                false,
+                [] { return false; },
+                {},
+                {},
+                {},
+                [] { return "end what runs here first"; }});
+  EXPECT_EQ(after(GLFW_KEY_F5), "F5 did nothing: Cases is not possible now: end what runs here first");
+}
+
 // Enter opens, makes the bones, makes the case: "Open is not possible" of a series that cannot be imported
 // was about a button that was not there.
 TEST_F(UntakenKeys, OfSeveralThingsNoneIsNamed) {

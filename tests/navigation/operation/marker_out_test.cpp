@@ -52,7 +52,7 @@ TEST_F(MarkerOutTest, EndsWhereItIsSeenAgain) {
   run_.show(run_.frame());
   run_.apply(Draw{false});  // any command: the journal is taken
   EXPECT_FALSE(run_.state()->marker_is_out);
-  EXPECT_EQ(run_.last_text(JournalKind::Note), "the world marker is seen again: it is not out");
+  EXPECT_EQ(run_.last_text(JournalKind::MarkerOut), "the world marker is seen again: it is not out");
   show_without_marker(40);
   run_.apply(MarkerOut{});
   ASSERT_TRUE(run_.state()->marker_is_out);

@@ -26,6 +26,23 @@ TEST_F(OperationRules, VerificationIsAskedForAndSkippingItIsRecorded) {
   EXPECT_EQ(run_.count(JournalKind::Verified), 1);
 }
 
+// What was touched before is told with it.
+TEST_F(OperationRules, ASkippedVerificationSaysWhichTouchesHadBeenTaken) {
+  const auto skipped_after = [&](std::initializer_list<double> lifted_mm) {
+    give();
+    run_.apply(Draw{false});
+    run_.apply(ForgetTouches{});
+    double dx_mm = -8;
+    for (const double lifted : lifted_mm) run_.touch(on_bone(dx_mm += 4, lifted));
+    for (int i = 0; i < 3; ++i) run_.show_guide(-5);
+    return run_.last_text(JournalKind::VerificationSkipped);
+  };
+  EXPECT_EQ(skipped_after({}), "guidance began without one");
+  EXPECT_EQ(skipped_after({0, 0}), "guidance began without one; 2 of 3 touches had been taken");
+  EXPECT_EQ(skipped_after({0, 0, 1.2}),
+            "guidance began without one; 3 of 3 touches had been taken, too far off to verify");
+}
+
 // A drill with a marker of its own that stands at the plan guides as well: the hand follows its numbers,
 // whatever keeps the guide's away.
 TEST_F(OperationRules, ADrillAtThePlanSkipsTheVerificationToo) {

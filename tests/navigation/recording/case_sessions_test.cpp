@@ -76,6 +76,15 @@ TEST_F(CaseSessions, Hazard16AnOlderRegistrationIsNotTakenAfterAnAlarm) {
   EXPECT_THAT(found()->refusal, HasSubstr("the world marker was moved"));
 }
 
+// As when an operation is resumed: that an alarm is over is no registration that guides again.
+TEST_F(CaseSessions, Hazard16AnAlarmIsOverOnceSomethingGuidesAgain) {
+  const auto session = add_session(0.2, true, "the world marker was moved");
+  append_event(session, {0, std::string(kAlarmEvent), ""});
+  EXPECT_FALSE(found()->is_usable());
+  append_event(session, {0, std::string(kRegistrationEvent), "registration_1.json"});
+  EXPECT_TRUE(found()->is_usable());
+}
+
 // Hazard 40: what was known in an exercise is no registration of the case.
 TEST_F(CaseSessions, Hazard40AnExercisesRegistrationIsNotFound) {
   SessionHeader header = test::session_header();

@@ -4,8 +4,6 @@
 
 #include <initializer_list>
 
-#include "navigation/operation/command.h"
-
 namespace arthronaut::recording {
 namespace {
 
@@ -51,7 +49,7 @@ TEST(CountingRegistrationTest, ATunnelThatIsDrilledAfterAllCountsByWhatStoodThen
 // That the marker is out is the end of what guided, and no verdict on it: also where the tunnel is drilled by
 // word alone, or nothing was said of it.
 TEST(CountingRegistrationTest, TheMarkerThatIsSaidToBeOutTakesNothingAway) {
-  const SessionEvent says_out = event(kCommandEvent, operation::to_text(operation::MarkerOut{}));
+  const SessionEvent says_out = event(kMarkerOutEvent);
   const SessionEvent by_word = event(kDrilledByWordEvent, "femur: nothing was seen");
   for (const auto& registration : {after({kFirst, kVerified, says_out, kMarkerOut}),
                                    after({kFirst, kVerified, by_word, says_out, kMarkerOut})}) {

@@ -163,9 +163,11 @@ TEST(Stream, AnotherSizeIsToldAndPassedOver) {
   sender = std::make_unique<Sender>(address, "640x480");
   EXPECT_TRUE(waits_for([&] { return line->trouble().find("changed to 640 x 480") != std::string::npos; }))
       << line->trouble();
+  EXPECT_EQ(line->changed_to_px(), Eigen::Vector2i(640, 480));
   sender.reset();
   sender = std::make_unique<Sender>(address, "320x240");
   EXPECT_TRUE(waits_for([&] { return line->trouble().empty(); })) << line->trouble();
+  EXPECT_FALSE(line->changed_to_px());
   line->end();
   reader.join();
   EXPECT_EQ(wrong_size, 0);

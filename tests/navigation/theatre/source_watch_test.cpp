@@ -43,6 +43,20 @@ TEST_F(SourceWatchTest, SilenceIsToldWithinHalfASecond) {
   EXPECT_EQ(watch_.words(), "");
 }
 
+// That the pictures come in another size is a state, whatever words it is told in, and over with the silence.
+TEST_F(SourceWatchTest, PicturesOfAnotherSizeAreAStateOfTheSilence) {
+  pictures(well_, 1000);
+  const Eigen::Vector2i now_px(1280, 720);
+  (void)watch_.silence("tower: anything", now_ns_, now_px);
+  EXPECT_EQ(watch_.trouble(), SourceTrouble::NoPicture);
+  EXPECT_EQ(watch_.changed_to_px(), now_px);
+  silence(100, "tower: broke off");
+  EXPECT_FALSE(watch_.changed_to_px()) << "of another silence nobody says so";
+  (void)watch_.silence("tower: anything", now_ns_, now_px);
+  (void)watch_.picture(well_, 5, now_ns_);
+  EXPECT_FALSE(watch_.changed_to_px());
+}
+
 // What the record is told of a silence goes with its reason, and not with every attempt to connect again.
 TEST_F(SourceWatchTest, AReasonOfASilenceThatChangesIsNews) {
   pictures(well_, 1000);
