@@ -236,7 +236,7 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
     lateral_.draw(ui, area, {state_.key.bone, on_landmarks, on_landmarks ? landmark() : ""});
     widgets::Rect rest = area;
     rest.cut_top(ui.theme.px(130));  // below its caption, which has a line for each bundle
-    return draw_hint(ui, rest);
+    return draw_hint(ui, rest, {});
   }
   if (auto survey = wanted_survey(); survey != state_.survey) {
     state_.survey = std::move(survey);
@@ -249,8 +249,7 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   if (state_.placing != Placing::Nothing || history_.is_read_only())
     for (PaneMark& mark : shown) mark.can_be_dragged = false;
   follow(bones_.draw(ui, area, shown));
-  draw_survey_legend(ui, area);
-  draw_hint(ui, area);
+  draw_hint(ui, draw_survey_legend(ui, area), bones_.handles_on_screen(area, shown));
 }
 
 // What is said of a norm where the mouse stands on it.
