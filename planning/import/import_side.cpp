@@ -83,9 +83,8 @@ std::vector<cases::BoneDoubt> doubts_with(const BoneImport& import, const Import
     tells(Fibula, *import.side_by_fibula);
     return doubts;
   }
-  const auto judged = std::ranges::find(import.bones, true, &ImportedBone::shape_was_judged);
   const auto shape = side_by_shapes(import);
-  if (!shape || judged->bone.kind != bone.bone.kind) return doubts;
+  if (!shape || !bone.shape_was_judged) return doubts;
   if (*shape != *side)
     tells(judged_count(import) > 1 ? BothShapes : OneShape, *shape);
   else if (import.side_source == SideSource::Shapes && !is_said_by_person)
