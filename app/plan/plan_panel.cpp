@@ -138,6 +138,8 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
                      "No tunnel yet. Press P and click on the bone where it is to begin.");
     return;
   }
+  if (const std::string entry = plan_review::entry_doubt(*tunnel, panel.doubts); !entry.empty())
+    widgets::status_row(ui, widgets::Severity::Bad, "Entry", entry);
   const tunnels::TunnelGeometry& geometry = panel.model.measured(panel.key);
   draw_numbers(ui, *tunnel, geometry);
   if (geometry.enters_bone)

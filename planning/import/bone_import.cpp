@@ -85,8 +85,7 @@ ImportedBone finished(BoneKind kind, const std::string& source, const geometry::
   // Of a mesh that is no bone at all there is enough to say already.
   if (!imported.doubts.empty()) return imported;
   imported.doubts = shape_doubts(imported.bone.mesh, kind, image_ends);
-  for (std::string& doubt : filled_doubts(repair.filled, imported.bone.mesh, kind))
-    imported.doubts.push_back(std::move(doubt));
+  imported.filled_holes = wide_holes(std::move(repair.filled), imported.bone.mesh, kind);
   return imported;
 }
 

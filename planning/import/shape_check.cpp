@@ -61,7 +61,7 @@ void check_shapes(BoneImport& import, bool fibula_was_seen) {
   // Seconds each, and they have nothing to do with each other.
   std::vector<std::pair<ImportedBone*, std::future<landmarks::Proposal>>> looked_at;
   for (ImportedBone& bone : import.bones) {
-    if (bone.doubts.empty())
+    if (bone.doubts.empty() && bone.filled_holes.empty())
       looked_at.emplace_back(&bone,
                              std::async(std::launch::async, [mesh = &bone.bone.mesh, kind = bone.bone.kind] {
                                return landmarks::propose(*mesh, kind);
