@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "planning/files/format.h"
+#include "planning/files/pipe.h"
 #include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 
@@ -144,11 +145,6 @@ void write_atomically(const fs::path& target, std::string_view contents) {
   const mode_t mode = is_private(folder_of(target)) ? kOwnerAlone : kAsTheUserHasIt;
   write_atomically(target,
                    [contents, mode](const fs::path& temporary) { write_whole(temporary, contents, mode); });
-}
-
-void refuse_pipe(const fs::path& file) {
-  if (std::error_code ignored; fs::is_fifo(file, ignored) && !file.string().starts_with("/dev/"))
-    throw IoError(file, "is a pipe, not a file");
 }
 
 std::string read_text(const fs::path& file) {

@@ -22,10 +22,6 @@ void write_atomically(const std::filesystem::path& target, std::string_view cont
 void write_atomically(const std::filesystem::path& target,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
-// Throws IoError for a pipe in a file's place, into which nobody may ever write: a reader would wait without
-// end. What a shell puts in a file's place, under /dev, has its writer.
-void refuse_pipe(const std::filesystem::path& file);
-
 // The whole file. Throws IoError.
 [[nodiscard]] std::string read_text(const std::filesystem::path& file);
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <fstream>
 
-#include "planning/files/atomic_file.h"
+#include "planning/files/pipe.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::files {
