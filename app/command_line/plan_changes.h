@@ -1,5 +1,5 @@
-// What the command `plan` makes of a case's plan: a tunnel that is placed by hand or by default or removed, or
-// those of markups or of a version that was kept.
+// What the command `plan` makes of a case's plan: a tunnel that is placed by hand or by default or removed,
+// or those of markups or of a version that was kept.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,9 +24,7 @@ struct PlanArguments {
   VersionArguments versions;
 
   [[nodiscard]] bool places() const { return names_direction || by_default; }
-  [[nodiscard]] bool changes() const {
-    return places() || removes || !markups.empty() || versions.taken > 0;
-  }
+  [[nodiscard]] bool changes() const { return places() || removes || !markups.empty() || versions.taken > 0; }
 };
 
 // The tunnel that is placed or removed.

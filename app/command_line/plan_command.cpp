@@ -108,8 +108,9 @@ void save_changed(const PlanArguments& arguments, const cases::Plan& before, Cha
   knee.plan_version = cases::save_plan_over(arguments.case_folder, knee.plan, knee.plan_version);
 }
 
-// The case with what it lacks proposed, as the window and the report have it, and not kept. `by_shape`: what was
-// proposed. Seconds a bone: only of those that are shown or lack a grid, and not again of the one just proposed.
+// The case with what it lacks proposed, as the window and the report have it, and not kept. `by_shape`: what
+// was proposed. Seconds a bone: only of those that are shown or lack a grid, and not again of the one just
+// proposed.
 cases::Case with_proposals(const PlanArguments& arguments, const ChangedPlan& changed,
                            std::map<bones::BoneKind, plan_review::ProposedBone>& by_shape) {
   cases::Case shown = changed.knee;
@@ -150,8 +151,8 @@ void run_plan(PlanArguments& arguments, Context& context) {
   if (arguments.by_default) verdict = judged(shown, review, key_of(arguments), doubts, verdict);
   show(arguments, context, shown, review, doubts, verdict);
   if (versions.keeps) {
-    const auto kept = cases::keep_plan_version(arguments.case_folder, changed.knee.plan, changed.knee.side,
-                                               versions.words);
+    const auto kept =
+        cases::keep_plan_version(arguments.case_folder, changed.knee.plan, changed.knee.side, versions.words);
     if (!arguments.as_json) context.say("Kept as version " + std::to_string(kept.number) + ".");
   }
   if (!arguments.export_folder.empty())
@@ -220,10 +221,8 @@ void add_plan_command(CLI::App& app, Context& context) {
           ->check(a_file());
   auto* json =
       sub->add_flag("--json", arguments->as_json, "Print the tunnel as JSON, without --bone every tunnel");
-  auto* list = sub->add_flag("--list", "Show the plan")
-                   ->excludes(direction)
-                   ->excludes(by_default)
-                   ->excludes(markups);
+  auto* list =
+      sub->add_flag("--list", "Show the plan")->excludes(direction)->excludes(by_default)->excludes(markups);
   const auto [take, keep, versions, name_version] = add_version_options(*sub, arguments->versions);
   for (CLI::Option* other : {by_default, markups, direction, type, remove}) take->excludes(other);
   for (CLI::Option* looks : {versions, name_version})

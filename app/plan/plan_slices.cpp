@@ -113,16 +113,16 @@ void PlanView::add_slice_actions(widgets::Actions& actions) {
                [this, has_slices] { return has_slices() && model_->tunnel(state_.key).has_value(); },
                {},
                [this] { slices_.set_cross(model_->tunnel(state_.key)->entry_mm); }});
-  actions.add(
-      {"plan.cross_to_thinnest",
-       "To thin wall",
-       "The cross-hair goes where the tunnel's wall is thinnest; slices along the tunnel turn to show that place",
-       GLFW_KEY_E,
-       GLFW_MOD_SHIFT,
-       false,
-       [this, has_slices] { return has_slices() && thinnest_wall().has_value(); },
-       {},
-       [this] { slices_.show_point(thinnest_wall()->point_mm); }});
+  actions.add({"plan.cross_to_thinnest",
+               "To thin wall",
+               "The cross-hair goes where the tunnel's wall is thinnest; slices along the tunnel turn to "
+               "show that place",
+               GLFW_KEY_E,
+               GLFW_MOD_SHIFT,
+               false,
+               [this, has_slices] { return has_slices() && thinnest_wall().has_value(); },
+               {},
+               [this] { slices_.show_point(thinnest_wall()->point_mm); }});
   const auto can_follow = [this, has_slices] {
     return has_slices() && model_->tunnel(state_.key).has_value();
   };

@@ -19,8 +19,8 @@ namespace {
 // axes.
 constexpr double kMostTurned_deg = 120;
 
-// No knee is imaged with its bones further from upright: the shaft tells by its axis, which a proposal finds to
-// 25 degrees where all goes wrong.
+// No knee is imaged with its bones further from upright: the shaft tells by its axis, which a proposal finds
+// to 25 degrees where all goes wrong.
 constexpr double kMostLeaning_deg = 60;
 
 // That the file's axes are not the patient's; empty where the bone stands, or where its shape does not tell:

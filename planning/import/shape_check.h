@@ -13,8 +13,8 @@
 namespace arthronaut::importing {
 
 // What speaks against it as that bone (segmentation/anatomy_check.h). Where it lies in the file in a way in
-// which no knee lies in a scanner, and is that bone all the same once it is put upright by its own shape, this
-// is said in its place.
+// which no knee lies in a scanner, and is that bone all the same once it is put upright by its own shape,
+// this is said in its place.
 [[nodiscard]] std::vector<std::string> shape_doubts(const geometry::TriangleMesh& mesh, bones::BoneKind kind,
                                                     std::span<const Eigen::Vector3d> image_ends);
 

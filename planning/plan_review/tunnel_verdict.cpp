@@ -29,7 +29,8 @@ TunnelVerdict verdict_but_side(const tunnels::Tunnel& tunnel, const std::vector<
   TunnelVerdict verdict{.wrong = tunnels::wrong_in_words(checks)};
   if (const std::string entry = entry_doubt(tunnel, doubts); !entry.empty())
     verdict.wrong.insert(verdict.wrong.begin(), "Entry: " + entry);
-  for (const std::string& doubt : doubts_but_side(doubts, tunnel.bone)) verdict.look.push_back("Bone: " + doubt);
+  for (const std::string& doubt : doubts_but_side(doubts, tunnel.bone))
+    verdict.look.push_back("Bone: " + doubt);
   if (!grid_doubt.empty()) verdict.look.push_back("Grid: " + grid_doubt);
   for (const tunnels::PlanCheck& check : checks)
     if (check.verdict == Verdict::Look) verdict.look.push_back(check.name + ": " + check.text);

@@ -126,8 +126,7 @@ TEST(ShapeCheck, ABoneThatLiesIsSaidToLieHoweverItIsTurned) {
     for (int i = 0; i < 3; ++i) {
       const Eigen::Vector3d axis = any().cross(Eigen::Vector3d::UnitZ()).normalized();
       EXPECT_THAT(
-          said_of(turned(bone,
-                         Eigen::AngleAxisd(kMayLean_deg * EIGEN_PI / 180, axis).toRotationMatrix())),
+          said_of(turned(bone, Eigen::AngleAxisd(kMayLean_deg * EIGEN_PI / 180, axis).toRotationMatrix())),
           IsEmpty())
           << bones::to_text(bone.kind) << " about " << axis.transpose();
     }
@@ -156,9 +155,8 @@ TEST(ShapeCheck, WhatABoneAloneTellsIsHeldAgainstTheSideThatIsSaidLater) {
   ASSERT_EQ(side_by_shapes(import), Side::Left) << "else nothing is held against anything";
   say_side(import, Side::Right);
   EXPECT_TRUE(side_is_contradicted(import));
-  EXPECT_THAT(doubts_of(import),
-              ElementsAre(AllOf(HasSubstr("by the shape of the bone it is a left knee"),
-                                           HasSubstr("the side is right"))));
+  EXPECT_THAT(doubts_of(import), ElementsAre(AllOf(HasSubstr("by the shape of the bone it is a left knee"),
+                                                   HasSubstr("the side is right"))));
   say_side(import, Side::Left);
   EXPECT_FALSE(side_is_contradicted(import));
   EXPECT_THAT(doubts_of(import), IsEmpty());

@@ -39,18 +39,18 @@ const cases::SideDoubt kOtherSide{.told = bones::Side::Left};
 // A plan of the other knee is as wrong in the bone that nothing is known of as in the one that witnesses it.
 TEST(TunnelVerdict, ASideInDoubtIsWrongForBothBones) {
   const cases::BoneDoubts doubts{{kTibia, {"the images end within it", kOtherSide}}};
-  const TunnelVerdict femur = verdict_of(kOfFemur, {}, doubts, ""), tibia = verdict_of(kOfTibia, {}, doubts, "");
+  const TunnelVerdict femur = verdict_of(kOfFemur, {}, doubts, ""),
+                      tibia = verdict_of(kOfTibia, {}, doubts, "");
   EXPECT_EQ(femur.wrong, std::vector<std::string>{"Side: " + kOtherSide.words()});
   EXPECT_TRUE(femur.look.empty());
   EXPECT_EQ(tibia.wrong, femur.wrong);
   EXPECT_EQ(tibia.look, std::vector<std::string>{"Bone: the images end within it"}) << "and not twice";
 }
 
-// Where a hole was filled in nobody has seen bone: an entry there is wrong, one beside it is not, and the hole is
-// to be looked at either way. Its mouth counts, not only its middle.
+// Where a hole was filled in nobody has seen bone: an entry there is wrong, one beside it is not, and the
+// hole is to be looked at either way. Its mouth counts, not only its middle.
 TEST(TunnelVerdict, AnEntryOnAHoleThatWasFilledIsToldFromOneBesideIt) {
-  const cases::BoneDoubts doubts{
-      {kFemur, {cases::FilledHoles{{{.at_mm = {10, 0, 0}, .across_mm = 12}}}}}};
+  const cases::BoneDoubts doubts{{kFemur, {cases::FilledHoles{{{.at_mm = {10, 0, 0}, .across_mm = 12}}}}}};
   const auto verdict_at = [&](double x_mm) {
     tunnels::Tunnel tunnel = kOfFemur;
     tunnel.entry_mm = {x_mm, 0, 0};
