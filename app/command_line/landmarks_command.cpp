@@ -87,7 +87,7 @@ NamedPlaces places_of(const LandmarkArguments& arguments, const cases::Case& kne
       places.confirmed.push_back(place_from(text));
       continue;
     }
-    for (const auto& [kind, bone] : knee.bones) places.confirmed.push_back({.bone = kind});
+    for (const auto& [kind, bone] : knee.bones) places.confirmed.push_back({.bone = kind, .name = ""});
   }
   return places;
 }

@@ -221,8 +221,11 @@ void add_plan_command(CLI::App& app, Context& context) {
           ->check(a_file());
   auto* json =
       sub->add_flag("--json", arguments->as_json, "Print the tunnel as JSON, without --bone every tunnel");
-  auto* list =
-      sub->add_flag("--list", "Show the plan")->excludes(direction)->excludes(by_default)->excludes(markups);
+  auto* list = sub->add_flag("--list")
+                   ->description("Show the plan")
+                   ->excludes(direction)
+                   ->excludes(by_default)
+                   ->excludes(markups);
   const auto [take, keep, versions, name_version] = add_version_options(*sub, arguments->versions);
   for (CLI::Option* other : {by_default, markups, direction, type, remove}) take->excludes(other);
   for (CLI::Option* looks : {versions, name_version})
