@@ -49,8 +49,12 @@ void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folde
 void PlanHistory::take_up_steps() {
   try {  // a file of the case, of which nothing but the steps is lost
     cases::StepHistory kept = cases::load_step_history(case_folder_);
+    if (kept.steps.empty()) return;
     const auto position = kept.position_of(state());
-    if (!position || kept.side != model_->knee().side) return;
+    if (!position || kept.side != model_->knee().side) {
+      status_.text = "saved; the case was changed elsewhere since: what was done before cannot be taken back";
+      return;
+    }
     steps_ = std::move(kept.steps);
     position_ = *position;
     describe();

@@ -27,8 +27,8 @@ class PlanHistory {
  public:
   // Another case. Its steps are kept with it (cases/step_history.h): they are there again whenever it is
   // opened as it was left, also after the program was killed; where anything of it was changed elsewhere,
-  // they are forgotten. The model outlives this history's use of it; null closes. read_only: why nothing may
-  // be changed; empty where it may.
+  // or they cannot be read, there are none, and the status says so. The model outlives this history's use of
+  // it; null closes. read_only: why nothing may be changed; empty where it may.
   void open(PlanModel* model, const std::filesystem::path& case_folder, const std::string& read_only = {});
   [[nodiscard]] const PlanModel* model() const { return model_; }  // null while no case is open
   [[nodiscard]] bool is_read_only() const { return is_read_only_; }

@@ -167,7 +167,9 @@ void list_cases(const Context& context, const CasesArguments& arguments) {
   if (!added.empty() && !arguments.as_json && !arguments.as_csv)
     std::erase_if(records, [&](const CaseRecord& record) { return !added.contains(record.folder); });
   if (named != nullptr && query.words.empty()) identities = library::read_identities(records);
-  const library::PlanVerdicts verdicts = verdicts_of(records, arguments.checks);
+  library::PlanVerdicts verdicts;
+  if (!arguments.as_csv || arguments.checks)  // the cohort's rows name none
+    verdicts = verdicts_of(records, arguments.checks);
   if (arguments.as_json)
     library::write_cases_json("-", records, named, verdicts);
   else if (arguments.as_csv)

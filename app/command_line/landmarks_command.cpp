@@ -72,6 +72,26 @@ NamedPlace placed_from(const std::string& text) {
   return place;
 }
 
+// What somebody placed, and what he looked at and calls right.
+struct NamedPlaces {
+  std::vector<NamedPlace> placed, confirmed;
+};
+
+constexpr std::string_view kAll = "all";  // that the case holds
+
+NamedPlaces places_of(const LandmarkArguments& arguments, const cases::Case& knee) {
+  NamedPlaces places;
+  for (const std::string& text : arguments.set) places.placed.push_back(placed_from(text));
+  for (const std::string& text : arguments.confirm) {
+    if (text != kAll) {
+      places.confirmed.push_back(place_from(text));
+      continue;
+    }
+    for (const auto& [kind, bone] : knee.bones) places.confirmed.push_back({.bone = kind, .name = ""});
+  }
+  return places;
+}
+
 const bones::Bone& bone_of(const cases::Case& knee, BoneKind kind, const std::string& folder) {
   const auto found = knee.bones.find(kind);
   if (found == knee.bones.end())
@@ -148,12 +168,9 @@ void list(const Context& context, const cases::Case& knee) {
 }
 
 // True when something was changed.
-bool change(const LandmarkArguments& arguments, cases::Case& knee,
+bool change(const LandmarkArguments& arguments, const NamedPlaces& places, cases::Case& knee,
             std::map<BoneKind, landmarks::Proposal>& proposals) {
-  std::vector<NamedPlace> placed, confirmed;
-  for (const std::string& text : arguments.set) placed.push_back(placed_from(text));
-  for (const std::string& text : arguments.confirm) confirmed.push_back(place_from(text));
-  for (const NamedPlace& place : placed)
+  for (const NamedPlace& place : places.placed)
     refuse_far_off(bone_of(knee, place.bone, arguments.case_folder), place, arguments.case_folder);
   if (arguments.propose) {
     const Progress progress("Looking for landmarks", 0);
@@ -167,11 +184,11 @@ bool change(const LandmarkArguments& arguments, cases::Case& knee,
         landmarks::take_proposal(proposals[kind], knee.landmarks[kind], knee.landmark_states[kind]);
     }
   }
-  for (const NamedPlace& place : placed) {
+  for (const NamedPlace& place : places.placed) {
     knee.landmarks[place.bone][place.name] = place.at_mm;
     knee.landmark_states[place.bone][place.name] = LandmarkState::Confirmed;
   }
-  for (const NamedPlace& place : confirmed) {
+  for (const NamedPlace& place : places.confirmed) {
     const auto marks = knee.landmarks.find(place.bone);
     if (marks == knee.landmarks.end() || (!place.name.empty() && !marks->second.contains(place.name)))
       throw InvalidInput(arguments.case_folder, "case.json",
@@ -181,15 +198,15 @@ bool change(const LandmarkArguments& arguments, cases::Case& knee,
         knee.landmark_states[place.bone][name] = LandmarkState::Confirmed;
     }
   }
-  return arguments.propose || !placed.empty() || !confirmed.empty();
+  return arguments.propose || !places.placed.empty() || !places.confirmed.empty();
 }
 
 // Of the bones on which somebody placed or confirmed something: a slip is as confirmed as what is right.
-void say_far_from_shape(const Context& context, const LandmarkArguments& arguments, const cases::Case& knee,
+void say_far_from_shape(const Context& context, const NamedPlaces& places, const cases::Case& knee,
                         const std::map<BoneKind, landmarks::Proposal>& proposals) {
   std::set<BoneKind> touched;
-  for (const std::string& text : arguments.set) touched.insert(placed_from(text).bone);
-  for (const std::string& text : arguments.confirm) touched.insert(place_from(text).bone);
+  for (const auto& named : {places.placed, places.confirmed})
+    for (const NamedPlace& place : named) touched.insert(place.bone);
   for (const BoneKind kind : touched) {
     const auto made = proposals.find(kind);
     const landmarks::Proposal proposal =
@@ -219,10 +236,13 @@ void add_landmarks_command(CLI::App& app, Context& context) {
       ->allow_extra_args(false)  // one each: the case may follow
       ->check(read_by([](const std::string& text) { (void)placed_from(text); }));
   sub->add_option("--confirm", arguments->confirm,
-                  "Of a bone one landmark, or all of them: looked at and right. One each time it is given")
-      ->option_text("BONE[.NAME]")
+                  "Looked at and right: landmarks, all those of a bone, or all")
+      ->option_text("BONE[.NAME],... or all")
+      ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(read_by([](const std::string& text) { (void)place_from(text); }));
+      ->check(read_by([](const std::string& text) {
+        if (text != kAll) (void)place_from(text);
+      }));
   sub->add_option("--roof", arguments->roof,
                   "How Blumensaat's line is proposed: flat (through the roof without its hill) or ends "
                   "(joins its ends)")
@@ -237,12 +257,13 @@ void add_landmarks_command(CLI::App& app, Context& context) {
     if (!lock.notice().empty() && !arguments->as_json) context.say(lock.notice() + ".");
     auto knee = cases::load_case(arguments->case_folder);
     std::map<BoneKind, landmarks::Proposal> proposals;
-    if (change(*arguments, knee, proposals)) cases::save_case(arguments->case_folder, knee);
+    const NamedPlaces places = places_of(*arguments, knee);
+    if (change(*arguments, places, knee, proposals)) cases::save_case(arguments->case_folder, knee);
     if (arguments->as_json) {
       files::write_atomically("-", to_json(knee, proposals).dump(2) + "\n");
     } else {
       list(context, knee);
-      say_far_from_shape(context, *arguments, knee, proposals);
+      say_far_from_shape(context, places, knee, proposals);
     }
     std::vector<std::string> reasons;
     for (const auto& [kind, proposal] : proposals) {

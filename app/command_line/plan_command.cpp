@@ -1,170 +1,24 @@
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "app/command_line/command.h"
-#include "app/command_line/kept_versions.h"
 #include "app/command_line/option_checks.h"
-#include "app/command_line/plan_report.h"
-#include "planning/bones/mesh_hash.h"
+#include "app/command_line/plan_changes.h"
 #include "planning/cases/bone_doubts.h"
-#include "planning/cases/case.h"
 #include "planning/cases/case_lock.h"
 #include "planning/cases/own_files.h"
 #include "planning/cases/plan_versions.h"
-#include "planning/default_plan/default_plan.h"
-#include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
-#include "planning/geometry/surface.h"
-#include "planning/landmarks/grid_landmarks.h"
-#include "planning/landmarks/insertion_grids.h"
-#include "planning/landmarks/propose.h"
-#include "planning/plan_export/markups_file.h"
 #include "planning/plan_export/plan_export.h"
 #include "planning/plan_review/proposed_landmarks.h"
 #include "planning/plan_review/tunnel_verdict.h"
 #include "planning/tunnels/diameter_range.h"
-#include "planning/tunnels/tunnel.h"
 
 namespace arthronaut::command_line {
 
 namespace {
-
-// An entry that lies further off the bone is a slip, not a rounding.
-constexpr double kSnapMm = 5.0;
-constexpr double kToldMm = 0.02;  // a move that is more than the rounding of what is typed
-
-struct PlanArguments {
-  std::string case_folder, bone;
-  Eigen::Vector3d entry_mm = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
-  double diameter_mm = 9.0;
-  std::string type = "single", export_folder, markups;
-  bool at_footprint = false, by_default = false, list = false, as_json = false, removes = false;
-  bool names_type = false, names_diameter = false;  // whether the user said so
-  VersionArguments versions;
-};
-
-// The tunnel that is placed or removed.
-tunnels::TunnelKey key_of(const PlanArguments& arguments) {
-  return {bones::bone_kind_from_text(arguments.bone), norms::bundle_from_text(arguments.type)};
-}
-
-double diameter_mm_of(const PlanArguments& arguments) {
-  return arguments.names_diameter ? arguments.diameter_mm
-                                  : tunnels::usual_diameter_mm(norms::bundle_from_text(arguments.type));
-}
-
-// moved_mm: how far the entry was, to lie on the bone.
-tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case& knee,
-                               const geometry::Surface& surface, double& moved_mm,
-                               std::vector<std::string>& notes) {
-  const tunnels::TunnelKey key = key_of(arguments);
-  const bones::BoneKind kind = key.bone;
-  tunnels::Tunnel tunnel{.bone = kind,
-                         .entry_mm = arguments.entry_mm,
-                         .direction = arguments.direction.normalized(),
-                         .diameter_mm = diameter_mm_of(arguments),
-                         .bundle = key.bundle};
-  if (arguments.at_footprint) {
-    const auto marks = knee.landmarks.find(kind);
-    if (marks == knee.landmarks.end() || !marks->second.contains("native_footprint")) {
-      throw InvalidInput(arguments.case_folder, std::string(bones::to_text(kind)),
-                         "has no landmark native_footprint: give --entry");
-    }
-    tunnel.entry_mm = marks->second.at("native_footprint");
-  }
-  const auto nearest = surface.closest_point(tunnel.entry_mm);
-  const Eigen::Vector3d moved = nearest.point_mm - tunnel.entry_mm;
-  moved_mm = moved.norm();
-  if (moved_mm > kSnapMm) {
-    throw InvalidInput(arguments.case_folder, arguments.bone,
-                       files::format("--entry lies %.1f mm off it, more than %.0f mm", moved_mm, kSnapMm));
-  }
-  if (moved_mm > kToldMm)
-    notes.push_back(files::format(
-        "The entry lay %.2f mm off the bone and was moved to its nearest point; the axis is %.2f mm beside "
-        "the one that was asked for.",
-        moved_mm, (moved - moved.dot(tunnel.direction) * tunnel.direction).norm()));
-  tunnel.entry_mm = nearest.point_mm;
-  if (!tunnels::measure(tunnel, surface).enters_bone) {
-    throw InvalidInput(arguments.case_folder, arguments.bone, "--direction leads out of it at this entry");
-  }
-  return tunnel;
-}
-
-// By norms and landmarks. Where those of the case give no grid, the proposed ones become the case's: whoever
-// reads it, as a report, has the grid that was planned by. Throws InvalidInput where there is no default;
-// `verdict` says how far it may be relied on, `by_shape` what the shape gave where it was asked.
-tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee, bones::BoneKind kind,
-                               const std::shared_ptr<const geometry::Surface>& surface, PlanVerdict& verdict,
-                               plan_review::ProposedBone& by_shape) {
-  const Progress progress("Making the default plan", 0);
-  landmarks::Landmarks& marks = knee.landmarks[kind];
-  landmarks::LandmarkStates& states = knee.landmark_states[kind];
-  const bones::Bone& bone = knee.bones.at(kind);
-  if (!landmarks::is_grid_confirmed(kind, marks, states)) {
-    by_shape.surface = surface;
-    by_shape.proposal = landmarks::propose(bone.mesh, kind, {.side = knee.side, .surface = surface.get()});
-    if (!landmarks::has_grid(bone.mesh, kind, knee.side, marks))
-      take_proposal(by_shape.proposal, marks, states);
-  }
-  default_plan::BoneInput input{
-      .bone = &bone, .surface = surface.get(), .landmarks = marks, .states = states};
-  if (by_shape.surface) input.proposal = &by_shape.proposal;
-  const norms::Bundle bundle = norms::bundle_from_text(arguments.type);
-  input.beside = default_plan::beside({kind, bundle}, knee.plan.tunnels);
-  const auto planned =
-      default_plan::plan_bone(input, knee.side, {.bundle = bundle, .diameter_mm = diameter_mm_of(arguments)});
-  if (!planned.is_usable())
-    throw InvalidInput(arguments.case_folder, "", "has no default plan: " + planned.message);
-  verdict = {.is_reliable = planned.doubts.empty(),
-             .reasons = planned.doubts,
-             .source = planned.source,
-             .place = planned.place,
-             .off_norm_mm = planned.off_norm_mm,
-             .passing_entry_mm = planned.passing_entry_mm};
-  for (const tunnels::PlanCheck& check : planned.failed) {
-    verdict.is_reliable = false;
-    verdict.reasons.push_back("no direction that a drill can follow from there passes the check \"" +
-                              check.name + "\": " + check.text);
-  }
-  return planned.tunnel;
-}
-
-// Tunnels as another program moved them; only those of bones that the case holds.
-void put(const tunnels::Tunnel& tunnel, const std::string& mesh_sha256, cases::Case& knee,
-         std::vector<std::string>& notes) {
-  const auto before = knee.plan.of(tunnel.bone);
-  knee.plan.put(tunnel, mesh_sha256);
-  for (const tunnels::TunnelKey& key : before) {
-    if (!knee.plan.tunnels.contains(key))
-      notes.push_back("The tunnel " + tunnels::name_of(key) +
-                      " is no longer planned: a bone has a single tunnel, or those of bundles.");
-  }
-}
-
-bool is_asked_for(const PlanArguments& arguments, bones::BoneKind bone) {
-  return arguments.bone.empty() || arguments.bone == bones::to_text(bone);
-}
-
-void take_markups(const PlanArguments& arguments, cases::Case& knee, std::vector<std::string>& notes) {
-  // Of a file that is moved and taken more than once it is so, too: a question, and no failure.
-  const std::string doubt =
-      plan_export::origin_doubt(arguments.markups, knee, cases::load_plan_versions(arguments.case_folder));
-  if (!doubt.empty()) notes.push_back("Look: " + doubt);
-  std::map<bones::BoneKind, geometry::Surface> surfaces;
-  const auto surface_of = [&](bones::BoneKind kind) -> const geometry::Surface* {
-    const auto bone = knee.bones.find(kind);
-    return bone == knee.bones.end() ? nullptr : &surfaces.try_emplace(kind, bone->second.mesh).first->second;
-  };
-  const plan_export::TakenTunnels taken = plan_export::read_tunnels(arguments.markups, knee.plan, surface_of);
-  if (!taken.note.empty()) notes.push_back("The " + taken.note + ".");
-  for (const auto& [key, tunnel] : taken.tunnels)
-    if (is_asked_for(arguments, key.bone))
-      put(tunnel, bones::mesh_sha256(knee.bones.at(key.bone).mesh), knee, notes);
-}
 
 // The tunnels of what was asked for.
 std::vector<tunnels::TunnelKey> asked_for(const PlanArguments& arguments, const cases::Plan& plan) {
@@ -193,6 +47,9 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
       describe_tunnel(context, knee, review, key, verdict);
       const std::string side = plan_review::side_doubt(doubts);
       if (!side.empty()) context.say("  x Side: " + side);
+      if (const std::string entry = plan_review::entry_doubt(knee.plan.tunnels.at(key), doubts);
+          !entry.empty())
+        context.say("  x Entry: " + entry);
       for (const std::string& doubt : plan_review::doubts_but_side(doubts, key.bone))
         context.say("  ! Bone: " + doubt);
     }
@@ -212,19 +69,6 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
   else
     document["tunnels"] = std::move(tunnels_json);
   files::write_json("-", document);
-}
-
-// Throws InvalidInput where there is no such tunnel, or two of which none is named.
-void remove_tunnel(const PlanArguments& arguments, cases::Case& knee) {
-  const auto keys = knee.plan.of(bones::bone_kind_from_text(arguments.bone));
-  if (keys.size() == 1 && !arguments.names_type) return knee.plan.remove(keys.front());
-  if (keys.size() > 1 && !arguments.names_type)
-    throw InvalidInput(arguments.case_folder, "plan.json",
-                       "plans two tunnels in the " + arguments.bone + ": say by --type which, am or pl");
-  const tunnels::TunnelKey key = key_of(arguments);
-  if (!knee.plan.tunnels.contains(key))
-    throw InvalidInput(arguments.case_folder, "plan.json", "holds no tunnel " + tunnels::name_of(key));
-  knee.plan.remove(key);
 }
 
 // An earlier export may be written over, a case's plan not.
@@ -253,6 +97,69 @@ void export_to(const PlanArguments& arguments, Context& context, const cases::Ca
   if (!arguments.as_json)
     for (const std::string& one : wrong) context.say("Wrong, and exported all the same: " + one);
   if (!summary.doubts.empty()) context.say_unreliable("The exported plan", summary.doubts);
+}
+
+// The plan that was there is kept before it goes.
+void save_changed(const PlanArguments& arguments, const cases::Plan& before, ChangedPlan& changed) {
+  cases::Case& knee = changed.knee;
+  changed.verdict.kept_version = keep_replaced(arguments.case_folder, before, knee, changed.notes);
+  cases::name_meshes(knee);
+  if (arguments.by_default) cases::save_landmarks(arguments.case_folder, knee);
+  knee.plan_version = cases::save_plan_over(arguments.case_folder, knee.plan, knee.plan_version);
+}
+
+// The case with what it lacks proposed, as the window and the report have it, and not kept. `by_shape`: what
+// was proposed. Seconds a bone: only of those that are shown or lack a grid, and not again of the one just
+// proposed.
+cases::Case with_proposals(const PlanArguments& arguments, const ChangedPlan& changed,
+                           std::map<bones::BoneKind, plan_review::ProposedBone>& by_shape) {
+  cases::Case shown = changed.knee;
+  const bool is_proposed = changed.proposed.surface != nullptr;
+  std::erase_if(shown.plan.tunnels, [&](const auto& one) {
+    return !is_asked_for(arguments, one.first.bone) ||
+           (is_proposed && one.first.bone == key_of(arguments).bone);
+  });
+  by_shape = plan_review::propose_landmarks(shown, plan_review::Proposing::Planned);
+  shown.plan = changed.knee.plan;
+  if (is_proposed) by_shape.try_emplace(key_of(arguments).bone, changed.proposed);
+  return shown;
+}
+
+void run_plan(PlanArguments& arguments, Context& context) {
+  const VersionArguments& versions = arguments.versions;
+  if (!arguments.export_folder.empty()) refuse_export(arguments.export_folder);
+  cases::CaseLock lock;
+  if (arguments.changes() || versions.writes()) lock = cases::lock_or_refuse(arguments.case_folder);
+  if (!lock.notice().empty() && !arguments.as_json) context.say(lock.notice() + ".");
+  cases::Case knee = cases::load_case(arguments.case_folder);
+  const cases::Plan before = knee.plan;
+  // Before anything is written: a file that cannot be read leaves the plan as it was.
+  const cases::BoneDoubts doubts = cases::load_bone_doubts(arguments.case_folder);
+  ChangedPlan changed = changed_plan(arguments, std::move(knee));
+  if (arguments.places()) arguments.names_type = true;  // what was placed is shown
+  if (arguments.changes()) save_changed(arguments, before, changed);
+  if (!arguments.as_json)
+    for (const std::string& note : changed.notes) context.say(note);
+  if (versions.named > 0) cases::say_of_version(arguments.case_folder, versions.named, versions.words);
+  if (versions.lists || versions.named > 0)
+    return list_versions(arguments.case_folder, context, changed.knee.plan);
+  std::map<bones::BoneKind, plan_review::ProposedBone> by_shape;
+  const cases::Case shown = with_proposals(arguments, changed, by_shape);
+  const std::string side_doubt = plan_review::side_doubt(doubts);
+  const plan_review::CaseReview review(shown, by_shape, side_doubt);
+  PlanVerdict& verdict = changed.verdict;
+  if (arguments.by_default) verdict = judged(shown, review, key_of(arguments), doubts, verdict);
+  show(arguments, context, shown, review, doubts, verdict);
+  if (versions.keeps) {
+    const auto kept =
+        cases::keep_plan_version(arguments.case_folder, changed.knee.plan, changed.knee.side, versions.words);
+    if (!arguments.as_json) context.say("Kept as version " + std::to_string(kept.number) + ".");
+  }
+  if (!arguments.export_folder.empty())
+    export_to(arguments, context, changed.knee,
+              plan_review::verdict_of_plan(shown, plan_review::checks_of_plan(review), doubts).wrong,
+              side_doubt);
+  if (!verdict.is_reliable) context.say_unreliable("The default plan", verdict.reasons);
 }
 
 }  // namespace
@@ -314,7 +221,8 @@ void add_plan_command(CLI::App& app, Context& context) {
           ->check(a_file());
   auto* json =
       sub->add_flag("--json", arguments->as_json, "Print the tunnel as JSON, without --bone every tunnel");
-  auto* list = sub->add_flag("--list", arguments->list, "Show the plan")
+  auto* list = sub->add_flag("--list")
+                   ->description("Show the plan")
                    ->excludes(direction)
                    ->excludes(by_default)
                    ->excludes(markups);
@@ -326,85 +234,18 @@ void add_plan_command(CLI::App& app, Context& context) {
   entry->needs(direction);
   footprint->needs(direction);
   sub->callback([arguments, entry, direction, type, diameter, &context] {
+    arguments->names_direction = direction->count() > 0;
     arguments->names_type = type->count() > 0;
     arguments->names_diameter = diameter->count() > 0;
-    const bool writes = direction->count() > 0 || arguments->by_default || !arguments->markups.empty() ||
-                        arguments->versions.taken > 0 || arguments->removes;
     // What the parser cannot ask for.
-    if (direction->count() > 0 && entry->count() == 0 && !arguments->at_footprint)
+    if (arguments->names_direction && entry->count() == 0 && !arguments->at_footprint)
       throw CLI::RequiredError("beside --direction, --entry or --at-footprint");
-    if (direction->count() > 0 && arguments->direction.norm() < 1e-9)
+    if (arguments->names_direction && arguments->direction.norm() < 1e-9)
       throw CLI::ValidationError("--direction", "must not be zero");
-    if (arguments->names_diameter && direction->count() == 0 && !arguments->by_default)
+    if (arguments->names_diameter && !arguments->places())
       throw CLI::RequiredError("beside --diameter-mm, --default or --direction");
-    if (!arguments->export_folder.empty()) refuse_export(arguments->export_folder);
-    cases::CaseLock lock;
     refuse_words_of_nothing(arguments->versions);
-    if (writes || arguments->versions.writes()) lock = cases::lock_or_refuse(arguments->case_folder);
-    if (!lock.notice().empty() && !arguments->as_json) context.say(lock.notice() + ".");
-    auto knee = cases::load_case(arguments->case_folder);
-    // Before anything is written: a file that cannot be read leaves the plan as it was.
-    cases::BoneDoubts doubts = cases::load_bone_doubts(arguments->case_folder);
-    PlanVerdict verdict;
-    plan_review::ProposedBone proposed;  // of the bone that a default plan was made of
-    std::vector<std::string> notes;      // said once it is so on the disk
-    const cases::Plan before = knee.plan;
-    if (!arguments->markups.empty()) {
-      take_markups(*arguments, knee, notes);
-    } else if (arguments->versions.taken > 0) {
-      std::vector<bones::BoneKind> asked_for{bones::BoneKind::Femur, bones::BoneKind::Tibia};
-      std::erase_if(asked_for, [&](bones::BoneKind kind) { return !is_asked_for(*arguments, kind); });
-      take_version(arguments->case_folder, arguments->versions.taken, asked_for, knee);
-    } else if (arguments->removes) {
-      remove_tunnel(*arguments, knee);
-    } else if (writes) {
-      const auto kind = bones::bone_kind_from_text(arguments->bone);
-      const auto bone_of_case = knee.bones.find(kind);
-      if (bone_of_case == knee.bones.end()) {
-        throw InvalidInput(arguments->case_folder, "case.json", "holds no " + arguments->bone);
-      }
-      const auto surface = std::make_shared<const geometry::Surface>(bone_of_case->second.mesh);
-      put(arguments->by_default ? default_tunnel(*arguments, knee, kind, surface, verdict, proposed)
-                                : planned_tunnel(*arguments, knee, *surface, verdict.entry_moved_mm, notes),
-          bones::mesh_sha256(bone_of_case->second.mesh), knee, notes);
-      arguments->names_type = true;  // what was placed is shown
-    }
-    if (writes) {
-      verdict.kept_version = keep_replaced(arguments->case_folder, before, knee, notes);
-      cases::name_meshes(knee);
-      if (arguments->by_default) cases::save_landmarks(arguments->case_folder, knee);
-      knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
-    }
-    if (!arguments->as_json)
-      for (const std::string& note : notes) context.say(note);
-    if (arguments->versions.named > 0)
-      cases::say_of_version(arguments->case_folder, arguments->versions.named, arguments->versions.words);
-    if (arguments->versions.lists || arguments->versions.named > 0)
-      return list_versions(arguments->case_folder, context, knee.plan);
-    // What the case lacks is proposed, as the window and the report have it, and not kept.
-    // Seconds each: only of bones that are shown or lack a grid, and not again of the one just proposed.
-    cases::Case shown = knee;
-    const bool is_proposed = proposed.surface != nullptr;
-    std::erase_if(shown.plan.tunnels, [&](const auto& one) {
-      return !is_asked_for(*arguments, one.first.bone) ||
-             (is_proposed && one.first.bone == key_of(*arguments).bone);
-    });
-    auto by_shape = plan_review::propose_landmarks(shown, plan_review::Proposing::Planned);
-    shown.plan = knee.plan;
-    if (is_proposed) by_shape.try_emplace(key_of(*arguments).bone, std::move(proposed));
-    const plan_review::CaseReview review(shown, by_shape, plan_review::side_doubt(doubts));
-    if (arguments->by_default) verdict = judged(shown, review, key_of(*arguments), doubts, verdict);
-    show(*arguments, context, shown, review, doubts, verdict);
-    if (arguments->versions.keeps) {
-      const auto kept =
-          cases::keep_plan_version(arguments->case_folder, knee.plan, knee.side, arguments->versions.words);
-      if (!arguments->as_json) context.say("Kept as version " + std::to_string(kept.number) + ".");
-    }
-    if (!arguments->export_folder.empty())
-      export_to(*arguments, context, knee,
-                plan_review::verdict_of_plan(shown, plan_review::checks_of_plan(review), doubts).wrong,
-                plan_review::side_doubt(doubts));
-    if (!verdict.is_reliable) context.say_unreliable("The default plan", verdict.reasons);
+    run_plan(*arguments, context);
   });
 }
 

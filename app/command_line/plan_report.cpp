@@ -67,6 +67,8 @@ const char* state_of_grid(const cases::Case& knee, const plan_review::CaseReview
 PlanVerdict judged(const cases::Case& knee, const plan_review::CaseReview& review,
                    const tunnels::TunnelKey& key, const cases::BoneDoubts& doubts, PlanVerdict verdict) {
   std::vector<std::string>& reasons = verdict.reasons;
+  if (const std::string entry = plan_review::entry_doubt(knee.plan.tunnels.at(key), doubts); !entry.empty())
+    reasons.push_back("the entry: " + entry);
   for (std::string& wrong : tunnels::wrong_in_words(review.checks(key))) reasons.push_back(std::move(wrong));
   if (auto doubt = plan_review::landmark_doubt(review.landmark_check(key.bone)))
     reasons.push_back(*std::move(doubt));

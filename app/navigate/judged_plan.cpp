@@ -36,7 +36,7 @@ void JudgedPlan::judge(const open_case::PlanModel& model,
   const auto checks = plan_review::checks_of(key, measured, model.surroundings(bone),
                                              model.knee_surroundings(), model.landmark_check(bone));
   verdict_ = plan_review::verdict_of(
-      bone, checks, doubts_,
+      plan->tunnel, checks, doubts_,
       model.surroundings(bone).has_grid()
           ? landmarks::grid_doubt(bone, model.landmarks(bone), model.landmark_states(bone))
           : "");

@@ -209,6 +209,16 @@ PaneEvent BonePane::draw(const widgets::Ui& ui, const widgets::Rect& area,
   return event;
 }
 
+std::vector<ImVec2> BonePane::handles_on_screen(const widgets::Rect& area,
+                                                const std::vector<PaneMark>& marks) const {
+  std::vector<ImVec2> handles;
+  for (const PaneMark& mark : marks)
+    if (const auto at = scene::project(pane_.camera(), mark.point_mm, {area.width, area.height});
+        mark.can_be_dragged && at)
+      handles.emplace_back(area.x + static_cast<float>(at->x()), area.y + static_cast<float>(at->y()));
+  return handles;
+}
+
 std::vector<Eigen::Vector2d> BonePane::outline_on_screen(const std::vector<Eigen::Vector3d>& outline_mm,
                                                          const Eigen::Vector2d& size_px) const {
   std::vector<Eigen::Vector2d> outline;

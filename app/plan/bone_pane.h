@@ -71,6 +71,9 @@ class BonePane {
   void set_content(scene::SceneContent beside_the_bones);
 
   PaneEvent draw(const widgets::Ui& ui, const widgets::Rect& area, const std::vector<PaneMark>& marks);
+  // Where those of them stand that can be dragged.
+  [[nodiscard]] std::vector<ImVec2> handles_on_screen(const widgets::Rect& area,
+                                                      const std::vector<PaneMark>& marks) const;
   // What the eye sees of the bones, for picking.
   [[nodiscard]] VisibleBones visible() const;
 

@@ -84,8 +84,9 @@ void LateralView::draw(const widgets::Ui& ui, const widgets::Rect& area, const S
   draw.PushClipRect(area.min(), area.max(), true);
   draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.texture())), area.min(),
                 area.max());
-  bone == BoneKind::Femur ? draw_femoral_grid(ui, area) : draw_tibial_line(ui, area);
+  if (bone == BoneKind::Femur) draw_femoral_grid(ui, area);
   std::string text = caption_of(*model_, bone) + draw_tunnels(ui, area, bone);
+  if (bone == BoneKind::Tibia) draw_tibial_line(ui, area);  // its numbers over the tunnels
   if (model_->surroundings(bone).quadrant) text += "\n" + roof_line_in_words(*model_);
   if (const auto doubt = plan_review::landmark_doubt(model_->landmark_check(bone)))
     text += "\nLook: " + *doubt;
@@ -95,7 +96,8 @@ void LateralView::draw(const widgets::Ui& ui, const widgets::Rect& area, const S
   const float beside = ui.theme.px(28), size_pt = ui.theme.strong->FontSize;
   below.cut_top(ui.theme.strong->CalcTextSizeA(size_pt, 1e9F, area.width - beside, text.c_str()).y +
                 ui.theme.px(18));
-  draw_edge_words(ui, below, edge_words(plane_.right, -plane_.down, model_->axes(bone)));
+  draw_edge_words(ui, below, edge_words(plane_.right, -plane_.down, model_->axes(bone)),
+                  entries_on_screen(area, bone));
   widgets::caption(ui, area, widgets::kText, text);
   draw.PopClipRect();
   ui.log.note("plan.lateral_view", area.min(), area.max());
@@ -169,7 +171,12 @@ void LateralView::draw_tibial_line(const widgets::Ui& ui, const widgets::Rect& a
     draw.AddLine({on.x, on.y - tick}, {on.x, on.y + tick}, grid, ui.theme.px(1.5F));
     const std::string words = widgets::fixed(percent, 0) + " %";
     const float wide = ui.theme.body->CalcTextSizeA(font, 1e9F, 0, words.c_str()).x;
-    draw.AddText(ui.theme.body, font, {on.x - wide / 2, on.y - tick - font}, grid, words.c_str());
+    // Below the line, above which the entries lie; read over the bright bone.
+    const ImVec2 corner{on.x - wide / 2, on.y + tick};
+    const float pad = ui.theme.px(4);
+    draw.AddRectFilled({corner.x - pad, corner.y}, {corner.x + wide + pad, corner.y + font},
+                       IM_COL32(12, 16, 20, 170), pad);
+    draw.AddText(ui.theme.body, font, corner, grid, words.c_str());
   }
   // The ellipse edge-on: as far as the norm reaches along the line.
   for (const scene::NormEllipse& of : norms_of(*model_, BoneKind::Tibia, *plateau)) {
@@ -197,6 +204,17 @@ void LateralView::draw_landmarks(const widgets::Ui& ui, const widgets::Rect& are
     draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, {center.x + 2 * arm, center.y + arm}, color,
                  kind == nullptr ? name.c_str() : std::string(kind->title).c_str());
   }
+}
+
+std::vector<ImVec4> LateralView::entries_on_screen(const widgets::Rect& area, BoneKind bone) const {
+  std::vector<ImVec4> entries;
+  for (const tunnels::TunnelKey& key : model_->knee().plan.of(bone)) {
+    const auto tunnel = model_->tunnel(key);
+    const ImVec2 entry = at(area, tunnels::entry_on_bone(*tunnel, model_->measured(key)));
+    const auto radius = static_cast<float>(tunnel->diameter_mm / 2 / plane_.mm_per_px);
+    entries.emplace_back(entry.x - radius, entry.y - radius, entry.x + radius, entry.y + radius);
+  }
+  return entries;
 }
 
 std::string LateralView::draw_tunnels(const widgets::Ui& ui, const widgets::Rect& area, BoneKind bone) const {

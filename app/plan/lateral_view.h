@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/case/plan_model.h"
 #include "app/scene/reslice.h"
@@ -28,6 +29,8 @@ class LateralView {
   void draw_femoral_grid(const widgets::Ui& ui, const widgets::Rect& area) const;
   void draw_tibial_line(const widgets::Ui& ui, const widgets::Rect& area) const;
   void draw_landmarks(const widgets::Ui& ui, const widgets::Rect& area, const Shown& shown) const;
+  // The circles of the tunnels' entries, as corners.
+  [[nodiscard]] std::vector<ImVec4> entries_on_screen(const widgets::Rect& area, bones::BoneKind bone) const;
   // Returns what is said of their entries.
   std::string draw_tunnels(const widgets::Ui& ui, const widgets::Rect& area, bones::BoneKind bone) const;
   void show_percents(const widgets::Ui& ui, const widgets::Rect& area, bones::BoneKind bone) const;

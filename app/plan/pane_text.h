@@ -64,4 +64,14 @@ namespace arthronaut::plan {
   return beside(corner, text, 0, picture);
 }
 
+// Where a box over a picture stands: in the one place, unless it would cover one of the points there and none
+// in the other.
+[[nodiscard]] inline widgets::Rect clear_place(const widgets::Rect& usual, const widgets::Rect& other,
+                                               const std::vector<ImVec2>& points) {
+  const auto covers = [&](const widgets::Rect& box) {
+    return std::ranges::any_of(points, [&](const ImVec2& point) { return box.contains(point); });
+  };
+  return covers(usual) && !covers(other) ? other : usual;
+}
+
 }  // namespace arthronaut::plan

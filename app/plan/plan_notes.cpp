@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "app/plan/pane_text.h"
 #include "app/plan/plan_view.h"
 #include "app/widgets/wrapped_text.h"
 
@@ -32,7 +33,8 @@ void PlanView::draw_conflict(const widgets::Ui& ui, const widgets::Rect& area) c
   widgets::action_button(ui, "plan.keep_ours", width, height);
 }
 
-void PlanView::draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const {
+void PlanView::draw_hint(const widgets::Ui& ui, const widgets::Rect& area,
+                         const std::vector<ImVec2>& handles) const {
   const std::string bone(bones::to_text(state_.key.bone));
   const Hint& hint = state_.hint;
   std::string text = hint.text;
@@ -49,8 +51,6 @@ void PlanView::draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   ImFont* font = hint.of ? ui.theme.body : text.size() > 90 ? ui.theme.strong : ui.theme.title;
   const float wrap = area.width - ui.theme.px(40), pad = ui.theme.px(6);
-  // Below the word at the picture's upper edge, which says where that is.
-  const ImVec2 at{area.x + ui.theme.px(20), area.y + ui.theme.px(20) + ui.theme.body->FontSize};
   // What came of something stands there until somebody has read it, and hides the bone: a third of the
   // picture at the most. What is longer is scrolled.
   const float way_out = hint.is_news || hint.of ? ui.theme.body->FontSize : 0,
@@ -69,9 +69,16 @@ void PlanView::draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const
   const char* const way_out_words =
       is_long ? "Esc takes this away, the wheel shows the rest" : "Esc takes this away";
   if (way_out > 0) size.x = std::max(size.x, ui.theme.body->CalcTextSizeA(way_out, 1e9F, 0, way_out_words).x);
+  // Clear of the words at the picture's upper and lower edges, which say where these are.
+  const float edge = ui.theme.px(20) + ui.theme.body->FontSize - pad;
+  const widgets::Rect upper{area.x + ui.theme.px(20) - pad, area.y + edge, size.x + 2 * pad,
+                            size.y + way_out + 2 * pad};
+  widgets::Rect lower = upper;
+  lower.y = area.y + area.height - edge - lower.height;
+  const widgets::Rect box = clear_place(upper, lower, handles);
+  const ImVec2 at{box.x + pad, box.y + pad};
   // Read over a bright bone or a brighter MR, too.
-  draw.AddRectFilled({at.x - pad, at.y - pad}, {at.x + size.x + pad, at.y + size.y + way_out + pad},
-                     IM_COL32(12, 16, 20, 210), pad);
+  draw.AddRectFilled(box.min(), box.max(), IM_COL32(12, 16, 20, 210), pad);
   if (way_out > 0)
     draw.AddText(ui.theme.body, way_out, {at.x, at.y + size.y}, widgets::kQuietText, way_out_words);
   const ImU32 color = hint.text.empty() ? widgets::kAccent

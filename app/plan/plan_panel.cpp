@@ -138,6 +138,8 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
                      "No tunnel yet. Press P and click on the bone where it is to begin.");
     return;
   }
+  if (const std::string entry = plan_review::entry_doubt(*tunnel, panel.doubts); !entry.empty())
+    widgets::status_row(ui, widgets::Severity::Bad, "Entry", entry);
   const tunnels::TunnelGeometry& geometry = panel.model.measured(panel.key);
   draw_numbers(ui, *tunnel, geometry);
   if (geometry.enters_bone)
@@ -203,13 +205,13 @@ bool draw_row(const widgets::Ui& ui, const ListRow& row) {
     draw.AddRectFilled(at, {at.x + width, at.y + height},
                        row.is_here ? IM_COL32(28, 74, 104, 255) : IM_COL32(38, 47, 57, 255), ui.theme.px(6));
   ImFont* font = ui.theme.body;
-  draw.AddText(font, font->FontSize, {at.x + ui.theme.px(10), at.y + (height - font->FontSize) / 2},
-               row.is_faint  ? widgets::kPanelEdge
-               : row.is_here ? widgets::kText
-                             : widgets::kQuietText,
-               row.text.c_str());
-  const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, row.text.c_str()).x;
-  if (ImGui::IsItemHovered() && wide > width - ui.theme.px(20)) widgets::tooltip(ui, row.text);
+  const std::string fitting = widgets::fitting(font, row.text, width - ui.theme.px(20));
+  widgets::draw_text(draw, font, at.x + ui.theme.px(10), at.y + (height - font->FontSize) / 2,
+                     row.is_faint  ? widgets::kPanelEdge
+                     : row.is_here ? widgets::kText
+                                   : widgets::kQuietText,
+                     fitting);
+  if (ImGui::IsItemHovered() && fitting != row.text) widgets::tooltip(ui, row.text);
   if (ImGui::IsRectVisible(at, {at.x + width, at.y + height}))
     ui.log.note_button("plan." + row.id, at, {at.x + width, at.y + height});
   return is_clicked;
@@ -270,13 +272,13 @@ void draw_versions(const widgets::Ui& ui, const PlanPanel& panel, float room_bel
     const bool is_same = std::ranges::all_of(differences, [](const cases::TunnelDifference& difference) {
       return difference.kind == cases::TunnelDifference::Kind::Same;
     });
-    if (draw_row(ui, {"version." + std::to_string(version.number),
-                      version.title() + ", " + files::local_time_in_words(version.kept_utc) +
-                          (cases::side_refusal(version, panel.model.knee().side).empty()
-                               ? ""
-                               : ", of a " + std::string(bones::to_text(*version.side)) + " knee"),
-                      is_same, false}))
+    if (draw_row(ui, {"version." + std::to_string(version.number), version.title(), is_same, false}))
       clicked.version = i;
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     "Kept " + files::local_time_in_words(version.kept_utc) +
+                         (cases::side_refusal(version, panel.model.knee().side).empty()
+                              ? ""
+                              : ", of a " + std::string(bones::to_text(*version.side)) + " knee"));
     draw_version_words(ui, panel, i, clicked);
     for (const std::string& line : against_the_plan(panel.model, panel.versions[i]))
       widgets::text_in(ui.theme.body, widgets::kQuietText, line);

@@ -43,6 +43,10 @@ void PlanView::draw_slices(const widgets::Ui& ui, const std::array<widgets::Rect
           {entry_label(key), model_->tunnel(key)->entry_mm, widgets::color_of(scene::kPlanColor)});
     }
   }
+  if (auto wall = thinnest_wall()) {
+    wall->word = "Wall " + wall->word;
+    content.marks.push_back(*std::move(wall));
+  }
   for (const cases::Measurement& measurement : model_->measurements())
     content.lines.push_back({measurement.points_mm, measurement.in_words()});
   slices_.draw(ui, areas, std::move(content));
@@ -109,6 +113,16 @@ void PlanView::add_slice_actions(widgets::Actions& actions) {
                [this, has_slices] { return has_slices() && model_->tunnel(state_.key).has_value(); },
                {},
                [this] { slices_.set_cross(model_->tunnel(state_.key)->entry_mm); }});
+  actions.add({"plan.cross_to_thinnest",
+               "To thin wall",
+               "The cross-hair goes where the tunnel's wall is thinnest; slices along the tunnel turn to "
+               "show that place",
+               GLFW_KEY_E,
+               GLFW_MOD_SHIFT,
+               false,
+               [this, has_slices] { return has_slices() && thinnest_wall().has_value(); },
+               {},
+               [this] { slices_.show_point(thinnest_wall()->point_mm); }});
   const auto can_follow = [this, has_slices] {
     return has_slices() && model_->tunnel(state_.key).has_value();
   };

@@ -128,8 +128,8 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (state_.shows_slices) {
     // A row of their own: beside the others they would run under the panel.
     ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(44), ui.theme.px(10)).min());
-    row({"plan.along", "plan.window", "plan.fit", "plan.cross_to_entry", "plan.distance", "plan.angle",
-         "plan.unmeasure"});
+    row({"plan.along", "plan.window", "plan.fit", "plan.cross_to_entry", "plan.cross_to_thinnest",
+         "plan.distance", "plan.angle", "plan.unmeasure"});
   }
   if (volume_.is_on()) row({"plan.volume_less", "plan.volume_more"});
   follow_tour();
@@ -236,7 +236,7 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
     lateral_.draw(ui, area, {state_.key.bone, on_landmarks, on_landmarks ? landmark() : ""});
     widgets::Rect rest = area;
     rest.cut_top(ui.theme.px(130));  // below its caption, which has a line for each bundle
-    return draw_hint(ui, rest);
+    return draw_hint(ui, rest, {});
   }
   if (auto survey = wanted_survey(); survey != state_.survey) {
     state_.survey = std::move(survey);
@@ -249,8 +249,7 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   if (state_.placing != Placing::Nothing || history_.is_read_only())
     for (PaneMark& mark : shown) mark.can_be_dragged = false;
   follow(bones_.draw(ui, area, shown));
-  draw_survey_legend(ui, area);
-  draw_hint(ui, area);
+  draw_hint(ui, draw_survey_legend(ui, area), bones_.handles_on_screen(area, shown));
 }
 
 // What is said of a norm where the mouse stands on it.
@@ -283,6 +282,16 @@ std::optional<Eigen::Vector3d> PlanView::aim_handle() const {
   return tunnel->entry_mm + (model_->drawn_length_mm(state_.key) + kAimHandleBeyond_mm) * tunnel->direction;
 }
 
+std::optional<SliceMark> PlanView::thinnest_wall() const {
+  if (!model_->tunnel(state_.key)) return std::nullopt;
+  const tunnels::TunnelGeometry& measured = model_->measured(state_.key);
+  const auto& checks = model_->checks(state_.key);
+  const auto wall = std::ranges::find(checks, "Wall", &tunnels::PlanCheck::name);
+  if (!measured.enters_bone || wall == checks.end()) return std::nullopt;
+  return SliceMark{widgets::fixed(measured.wall_mm, 1) + " mm", measured.thinnest_mm,
+                   widgets::color_of(severity_of(wall->verdict))};
+}
+
 std::vector<PaneMark> PlanView::marks() const {
   std::vector<PaneMark> marks;
   if (!bones_.shows(state_.key.bone) || !model_->has_bone(state_.key.bone)) return marks;
@@ -296,10 +305,8 @@ std::vector<PaneMark> PlanView::marks() const {
   if (!tunnel) return marks;
   const tunnels::TunnelGeometry& measured = model_->measured(state_.key);
   if (measured.enters_bone) {
-    const auto& checks = model_->checks(state_.key);
-    if (const auto wall = std::ranges::find(checks, "Wall", &tunnels::PlanCheck::name); wall != checks.end())
-      marks.push_back({PaneMark::Shape::Pin, "thinnest", widgets::fixed(measured.wall_mm, 1) + " mm",
-                       measured.thinnest_mm, widgets::color_of(severity_of(wall->verdict)), false,
+    if (const auto wall = thinnest_wall())
+      marks.push_back({PaneMark::Shape::Pin, "thinnest", wall->word, wall->point_mm, wall->color, false,
                        "Here the wall of the tunnel is thinnest"});
     marks.push_back({PaneMark::Shape::Pin, "exit", "Exit", measured.exit_mm, widgets::kText, false,
                      "Here the drill leaves the bone"});

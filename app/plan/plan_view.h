@@ -128,7 +128,8 @@ class PlanView : public mode::Mode {
   [[nodiscard]] std::shared_ptr<const Survey> wanted_survey();
   [[nodiscard]] bool is_entry_hidden() const;  // by bone, from where one looks
   void add_map_marks(std::vector<PaneMark>& marks) const;
-  void draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const;
+  // At the picture's lower edge; returns what it leaves of it.
+  widgets::Rect draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const;
 
   // The first case: tour_view.cpp.
   void add_tour_actions(widgets::Actions& actions);
@@ -158,10 +159,13 @@ class PlanView : public mode::Mode {
   void draw_slices(const widgets::Ui& ui, const std::array<widgets::Rect, 3>& areas);
   // plan_notes.cpp
   void draw_conflict(const widgets::Ui& ui, const widgets::Rect& area) const;
-  void draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const;
+  // handles: that it is not to cover, where there is room for both.
+  void draw_hint(const widgets::Ui& ui, const widgets::Rect& area, const std::vector<ImVec2>& handles) const;
 
   void show_content();
   [[nodiscard]] std::vector<PaneMark> marks() const;
+  // Where the wall of the tunnel that is worked on is thinnest, and how thin: "3.1 mm".
+  [[nodiscard]] std::optional<SliceMark> thinnest_wall() const;
   void add_norm_marks(std::vector<PaneMark>& marks) const;
   [[nodiscard]] std::vector<norms::Bundle> bundles_shown(bones::BoneKind kind) const;
   void follow(const PaneEvent& event);

@@ -144,6 +144,11 @@ void SlicePanes::set_cross_in(std::size_t pane, const Eigen::Vector3d& point_mm)
   cross_mm_ = on_axis(*tunnel_, point_mm);
 }
 
+void SlicePanes::show_point(const Eigen::Vector3d& point_mm) {
+  cross_mm_ = tunnel_ ? on_axis(*tunnel_, point_mm) : point_mm;
+  if (tunnel_) turned_deg_ = geometry::deg_from_rad(turned_to_hold_rad(*tunnel_, point_mm));
+}
+
 void SlicePanes::fit() {
   if (volume_ == nullptr) return;
   for (SlicePane& pane : panes_) pane.fit(*volume_);

@@ -45,6 +45,9 @@ class SlicePanes {
   void go_to_next_window();
   void set_cross(const Eigen::Vector3d& point_mm) { cross_mm_ = point_mm; }
   [[nodiscard]] const Eigen::Vector3d& cross_mm() const { return cross_mm_; }
+  // The cross-hair goes there; of slices along a tunnel to its depth, and they turn so that the first along
+  // it holds the point.
+  void show_point(const Eigen::Vector3d& point_mm);
   void fit();
 
   // In place of axial, coronal and sagittal: across the tunnel at the cross-hair, which stays on its axis,

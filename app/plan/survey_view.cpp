@@ -63,7 +63,7 @@ void PlanView::add_map_marks(std::vector<PaneMark>& marks) const {
   }
 }
 
-void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const {
+widgets::Rect PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const {
   const bool is_shown = state_.shows_map || state_.shows_aims;
   const bool waits = state_.survey == nullptr || (state_.shows_aims && !state_.survey->has_aims);
   ui.log.note_state("survey", !is_shown ? "none" : waits ? "working" : "shown");
@@ -103,20 +103,23 @@ void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& ar
   // Above the word at the picture's lower edge, which says where that is.
   const float bottom = area.y + area.height - ui.theme.px(14) - step;
   float y = bottom - step * static_cast<float>(lines.size());
+  widgets::Rect rest = area;
+  if (lines.empty()) return rest;
+  rest.height = y - area.y;
   // Read over the bone and the lines of aims, too.
   float wide = 0;
   for (const std::string& line : lines)
     wide = std::max(wide, ui.theme.body->CalcTextSizeA(font, 1e9F, 0, line.c_str()).x);
-  if (!lines.empty())
-    draw.AddRectFilled({area.x + ui.theme.px(10), y - ui.theme.px(4)},
-                       {area.x + ui.theme.px(22) + wide, bottom + ui.theme.px(4)}, IM_COL32(12, 16, 20, 210),
-                       ui.theme.px(6));
+  draw.AddRectFilled({area.x + ui.theme.px(10), y - ui.theme.px(4)},
+                     {area.x + ui.theme.px(22) + wide, bottom + ui.theme.px(4)}, IM_COL32(12, 16, 20, 210),
+                     ui.theme.px(6));
   for (const std::string& line : lines) {
     const ImVec2 at{area.x + ui.theme.px(16), y};
     draw.AddText(ui.theme.body, font, {at.x + 1, at.y + 1}, widgets::kBackground, line.c_str());
     draw.AddText(ui.theme.body, font, at, widgets::kText, line.c_str());
     y += step;
   }
+  return rest;
 }
 
 }  // namespace arthronaut::plan

@@ -28,6 +28,9 @@ struct TunnelAxis {
 
 // At 0 the first holds as much of `up` as one along the axis can; it turns about the axis.
 [[nodiscard]] TunnelPlanes tunnel_planes(const TunnelAxis& axis, double turned_rad);
+// How far they are turned where the first along the axis holds the point: in (-pi/2, pi/2]. Of a point of
+// the axis, which each of them holds: 0.
+[[nodiscard]] double turned_to_hold_rad(const TunnelAxis& axis, const Eigen::Vector3d& point_mm);
 // The nearest point of the axis.
 [[nodiscard]] Eigen::Vector3d on_axis(const TunnelAxis& axis, const Eigen::Vector3d& point_mm);
 

@@ -87,7 +87,7 @@ void draw_plan_verdicts(FlowingPages& pages, const Content& content) {
   for (const auto& [key, measured] : content.review->tunnels()) {
     const auto checks = content.review->checks(key);
     const plan_review::TunnelVerdict verdict =
-        plan_review::verdict_of(key.bone, checks, content.bone_doubts, grid_doubt(content, key.bone));
+        plan_review::verdict_of(measured.tunnel, checks, content.bone_doubts, grid_doubt(content, key.bone));
     const auto unmade =
         std::ranges::count(checks, tunnels::PlanCheck::Verdict::NotChecked, &tunnels::PlanCheck::verdict);
     const std::string name = "Checks of the " + tunnels::name_of(key) + ": ";

@@ -8,12 +8,11 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "planning/files/atomic_file.h"
 #include "planning/files/private_folder.h"
 #include "planning/files/sha256.h"
 #include "planning/geometry/error.h"
@@ -61,11 +60,7 @@ std::filesystem::path chain_file(const std::filesystem::path& session_folder) {
 }
 
 ReadChain read_chain(const std::filesystem::path& session_folder) {
-  const std::filesystem::path file = chain_file(session_folder);
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw IoError(file, "cannot be read");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) throw IoError(file, "cannot be read to its end");
+  const std::string text = files::read_text(chain_file(session_folder));
   ReadChain read;
   if (!text.starts_with(kColumns)) {
     read.problem = "line 1: is not the heading of a chain of hashes";

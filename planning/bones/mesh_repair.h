@@ -39,6 +39,7 @@ struct FilledHole {
   double across_mm = 0;                             // of a circle about it that holds its edge
   // Of its edge's plane, away from the rest of the mesh; zero where the edge has none.
   Eigen::Vector3d out = Eigen::Vector3d::Zero();
+  bool operator==(const FilledHole&) const = default;
 };
 
 struct MeshRepair {

@@ -25,8 +25,9 @@ SideDoubt side_doubt_from(const files::JsonObject& node) {
 }  // namespace
 
 std::string words_of(const BoneDoubt& doubt) {
-  const auto* side = std::get_if<SideDoubt>(&doubt);
-  return side != nullptr ? side->words() : std::get<std::string>(doubt);
+  if (const auto* sentence = std::get_if<std::string>(&doubt)) return *sentence;
+  if (const auto* filled = std::get_if<FilledHoles>(&doubt)) return filled->words();
+  return std::get<SideDoubt>(doubt).words();
 }
 
 std::vector<std::string> words_of(const std::vector<BoneDoubt>& doubts) {
@@ -38,19 +39,21 @@ std::vector<std::string> words_of(const std::vector<BoneDoubt>& doubts) {
 fs::path bone_doubts_file(const fs::path& case_folder) { return case_folder / "bone_doubts.json"; }
 
 void put_doubts(nlohmann::ordered_json& bone, const std::vector<BoneDoubt>& doubts) {
-  auto sentences = nlohmann::ordered_json::array(), sides = sentences;
+  auto sentences = nlohmann::ordered_json::array(), sides = sentences, holes = sentences;
   for (const BoneDoubt& doubt : doubts) {
+    if (const auto* sentence = std::get_if<std::string>(&doubt)) sentences.push_back(*sentence);
+    if (const auto* filled = std::get_if<FilledHoles>(&doubt))
+      for (const bones::FilledHole& hole : filled->holes)
+        holes.push_back({{"at_mm", files::to_json(hole.at_mm)}, {"across_mm", hole.across_mm}});
     const auto* side = std::get_if<SideDoubt>(&doubt);
-    if (side == nullptr) {
-      sentences.push_back(std::get<std::string>(doubt));
-      continue;
-    }
+    if (side == nullptr) continue;
     sides.push_back({{"witness", to_text(side->witness)},
                      {"told", bones::to_text(side->told)},
                      {"said", bones::to_text(side->said)}});
     if (!side->looked_on.empty()) sides.back()["looked_on"] = side->looked_on;
   }
   bone["doubts"] = std::move(sentences);
+  if (!holes.empty()) bone["filled_holes"] = std::move(holes);
   bone["side_doubts"] = std::move(sides);
 }
 
@@ -60,6 +63,13 @@ std::vector<BoneDoubt> doubts_from(const files::JsonObject& bone) {
   for (std::string& sentence : bone.texts("doubts")) {
     const auto side = is_of_version_1 ? side_doubt_from_words(sentence) : std::nullopt;
     doubts.push_back(side ? BoneDoubt(*side) : BoneDoubt(std::move(sentence)));
+  }
+  if (bone.has("filled_holes")) {
+    FilledHoles filled;
+    for (const files::JsonObject& hole : bone.objects("filled_holes"))
+      filled.holes.push_back(
+          {.at_mm = hole.vector3("at_mm"), .across_mm = hole.positive_number("across_mm")});
+    if (!filled.holes.empty()) doubts.emplace_back(std::move(filled));
   }
   if (is_of_version_1) return doubts;
   for (const files::JsonObject& side : bone.objects("side_doubts"))

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "planning/cases/filled_holes.h"
 #include "planning/cases/side_doubt.h"
 
 namespace arthronaut::files {
@@ -19,8 +20,8 @@ class JsonObject;
 
 namespace arthronaut::cases {
 
-// A sentence for a person, or what is asked about the side.
-using BoneDoubt = std::variant<std::string, SideDoubt>;
+// A sentence for a person, what is asked about the side, or where its surface is made up.
+using BoneDoubt = std::variant<std::string, SideDoubt, FilledHoles>;
 // By bone; only bones with any.
 using BoneDoubts = std::map<bones::BoneKind, std::vector<BoneDoubt>>;
 
@@ -31,10 +32,11 @@ using BoneDoubts = std::map<bones::BoneKind, std::vector<BoneDoubt>>;
 // Empty where there is no file. Throws IoError or InvalidInput (file, place, reason).
 [[nodiscard]] BoneDoubts load_bone_doubts(const std::filesystem::path& case_folder);
 // Atomic; without any the file goes. Throws IoError; what was there is then as before. Sentences come back
-// before what is asked about the side.
+// first, what is asked about the side last.
 void save_bone_doubts(const std::filesystem::path& case_folder, const BoneDoubts& doubts);
 
-// A bone's doubts in this file, and wherever else a file of the case holds some: "doubts" and "side_doubts".
+// A bone's doubts in this file, and wherever else a file of the case holds some: "doubts",
+// "filled_holes" and "side_doubts".
 void put_doubts(nlohmann::ordered_json& bone, const std::vector<BoneDoubt>& doubts);
 // Also of version 1, where all were sentences. Throws InvalidInput (file, place, reason).
 [[nodiscard]] std::vector<BoneDoubt> doubts_from(const files::JsonObject& bone);

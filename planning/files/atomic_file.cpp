@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "planning/files/format.h"
+#include "planning/files/pipe.h"
 #include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 
@@ -149,9 +150,7 @@ void write_atomically(const fs::path& target, std::string_view contents) {
 std::string read_text(const fs::path& file) {
   if (std::error_code ignored; fs::is_directory(file, ignored))
     throw IoError(file, "is a folder, not a file");
-  // Nobody may ever write into it. What a shell puts in a file's place, under /dev, has its writer.
-  if (std::error_code ignored; fs::is_fifo(file, ignored) && !file.string().starts_with("/dev/"))
-    throw IoError(file, "is a pipe, not a file");
+  refuse_pipe(file);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw IoError(file, std::string("cannot open: ") + std::strerror(errno));
   std::string text;

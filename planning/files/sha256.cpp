@@ -5,6 +5,7 @@
 #include <array>
 #include <fstream>
 
+#include "planning/files/pipe.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::files {
@@ -45,13 +46,14 @@ std::string sha256_of(std::string_view text) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {
+  refuse_pipe(file);
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw IoError(file.string() + ": cannot be read");
+  if (!stream) throw IoError(file, "cannot be read");
   Sha256 hash;
   std::array<char, 65536> buffer{};
   while (stream.read(buffer.data(), buffer.size()), stream.gcount() > 0)
     hash.add(std::as_bytes(std::span(buffer.data(), static_cast<std::size_t>(stream.gcount()))));
-  if (stream.bad()) throw IoError(file.string() + ": cannot be read to its end");
+  if (stream.bad()) throw IoError(file, "cannot be read to its end");
   return hash.hex();
 }
 

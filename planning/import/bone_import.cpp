@@ -17,7 +17,6 @@
 #include "planning/import/import_side.h"
 #include "planning/import/shape_check.h"
 #include "planning/import/slice_check.h"
-#include "planning/segmentation/anatomy_check.h"
 #include "planning/segmentation/ct_bones.h"
 #include "planning/segmentation/label_surface.h"
 
@@ -85,9 +84,8 @@ ImportedBone finished(BoneKind kind, const std::string& source, const geometry::
   }
   // Of a mesh that is no bone at all there is enough to say already.
   if (!imported.doubts.empty()) return imported;
-  imported.doubts = segmentation::anatomy_doubts(imported.bone.mesh, kind, image_ends);
-  for (std::string& doubt : filled_doubts(repair.filled, imported.bone.mesh, kind))
-    imported.doubts.push_back(std::move(doubt));
+  imported.doubts = shape_doubts(imported.bone.mesh, kind, image_ends);
+  imported.filled_holes = wide_holes(std::move(repair.filled), imported.bone.mesh, kind);
   return imported;
 }
 

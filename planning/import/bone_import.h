@@ -48,8 +48,9 @@ struct ImportedBone {
   std::vector<std::string> lines;  // what was found, chosen and mended, for a person
   // Why a person should look before relying on it; what is to be said of its side, import_side.h says.
   std::vector<std::string> doubts;
-  std::optional<bones::Space> read_in = {};  // of a mesh: the axes that the file was taken to be in
-  bool looks_backwards = false;              // to the patient's back, which is among the doubts
+  std::vector<bones::FilledHole> filled_holes = {};  // wide ones (filled_check.h): a doubt, too
+  std::optional<bones::Space> read_in = {};          // of a mesh: the axes that the file was taken to be in
+  bool looks_backwards = false;                      // to the patient's back, which is among the doubts
   // Of which knee its shape is, where that was looked at and it tells; import_side.h holds it against the
   // side.
   bool shape_was_judged = false;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "planning/files/format.h"
-
 namespace arthronaut::importing {
 
 namespace {
@@ -25,22 +23,12 @@ bool is_end_of_shaft(const bones::FilledHole& hole, const geometry::TriangleMesh
 
 }  // namespace
 
-std::vector<std::string> filled_doubts(const std::vector<bones::FilledHole>& filled,
-                                       const geometry::TriangleMesh& mesh, bones::BoneKind kind) {
-  const bones::FilledHole* widest = nullptr;
-  std::size_t count = 0;
-  for (const bones::FilledHole& hole : filled) {
-    if (hole.across_mm <= kMostAcross_mm || is_end_of_shaft(hole, mesh, kind)) continue;
-    ++count;
-    if (widest == nullptr || hole.across_mm > widest->across_mm) widest = &hole;
-  }
-  if (widest == nullptr) return {};
-  std::string doubt = files::format(
-      "a hole of its surface about %.0f mm across, at %.0f, %.0f, %.0f mm, was filled in: the surface there "
-      "is made up, and no entry on it can be relied on",
-      widest->across_mm, widest->at_mm.x(), widest->at_mm.y(), widest->at_mm.z());
-  if (count > 1) doubt += files::format("; %zu such holes in all", count);
-  return {std::move(doubt)};
+std::vector<bones::FilledHole> wide_holes(std::vector<bones::FilledHole> filled,
+                                          const geometry::TriangleMesh& mesh, bones::BoneKind kind) {
+  std::erase_if(filled, [&](const bones::FilledHole& hole) {
+    return hole.across_mm <= kMostAcross_mm || is_end_of_shaft(hole, mesh, kind);
+  });
+  return filled;
 }
 
 }  // namespace arthronaut::importing

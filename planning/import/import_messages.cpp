@@ -66,6 +66,8 @@ constexpr std::size_t kLeastBytes<images::ImageSeries> = 8 * sizeof(std::size_t)
 template <>
 constexpr std::size_t kLeastBytes<ImportedBone> = sizeof(bones::MeshRepairReport);
 template <>
+constexpr std::size_t kLeastBytes<bones::FilledHole> = 7 * sizeof(double);
+template <>
 constexpr std::size_t kLeastBytes<bones::LengthUnit> = sizeof(bones::LengthUnit);
 template <>
 constexpr std::size_t kLeastBytes<FoundLabel> = sizeof(std::int32_t) + 7 * sizeof(double);
@@ -126,6 +128,13 @@ void describe(Archive& archive, ImportProgress& progress) {
 }
 
 template <typename Archive>
+void describe(Archive& archive, bones::FilledHole& hole) {
+  archive.bytes(hole.at_mm.data(), 3 * sizeof(double));
+  describe(archive, hole.across_mm);
+  archive.bytes(hole.out.data(), 3 * sizeof(double));
+}
+
+template <typename Archive>
 void describe(Archive& archive, ImportedBone& imported) {
   describe(archive, imported.bone.kind);
   describe(archive, imported.bone.mesh);
@@ -133,6 +142,7 @@ void describe(Archive& archive, ImportedBone& imported) {
   describe(archive, imported.repair);
   describe(archive, imported.lines);
   describe(archive, imported.doubts);
+  describe(archive, imported.filled_holes);
   describe(archive, imported.read_in);
   describe(archive, imported.looks_backwards);
   describe(archive, imported.shape_was_judged);
@@ -340,6 +350,8 @@ void refuse_unsound(const BoneImport& import) {
         (!imported.read_in || *imported.read_in == bones::Space::LPS ||
          *imported.read_in == bones::Space::RAS);
     for (const Eigen::Vector3d& p : mesh.vertices_mm) is_sound = is_sound && p.allFinite();
+    for (const bones::FilledHole& hole : imported.filled_holes)
+      is_sound = is_sound && hole.at_mm.allFinite() && std::isfinite(hole.across_mm) && hole.across_mm > 0;
     for (const auto& triangle : mesh.triangles) {
       for (const std::int32_t corner : triangle) is_sound = is_sound && corner >= 0 && corner < count;
     }

@@ -74,6 +74,7 @@ std::vector<cases::BoneDoubt> doubts_with(const BoneImport& import, const Import
                                           std::optional<bones::Side> side, bool is_said_by_person) {
   using enum cases::SideWitness;
   std::vector<cases::BoneDoubt> doubts(bone.doubts.begin(), bone.doubts.end());
+  if (!bone.filled_holes.empty()) doubts.emplace_back(cases::FilledHoles{bone.filled_holes});
   if (!side) return doubts;
   const auto tells = [&](cases::SideWitness witness, bones::Side told) {
     doubts.emplace_back(cases::SideDoubt{witness, told, *side});
@@ -83,9 +84,8 @@ std::vector<cases::BoneDoubt> doubts_with(const BoneImport& import, const Import
     tells(Fibula, *import.side_by_fibula);
     return doubts;
   }
-  const auto judged = std::ranges::find(import.bones, true, &ImportedBone::shape_was_judged);
   const auto shape = side_by_shapes(import);
-  if (!shape || judged->bone.kind != bone.bone.kind) return doubts;
+  if (!shape || !bone.shape_was_judged) return doubts;
   if (*shape != *side)
     tells(judged_count(import) > 1 ? BothShapes : OneShape, *shape);
   else if (import.side_source == SideSource::Shapes && !is_said_by_person)

@@ -23,8 +23,8 @@ void take_side_of_images(BoneImport& import, std::optional<bones::Side> marked, 
 [[nodiscard]] bool side_is_contradicted(const BoneImport& import);
 
 // The doubts of one of its bones in a knee of that side, those of the side last: as a person says it, as the
-// case has it that the bone is added to, or as the import has it. Those of shapes stay with the first bone
-// whose shape was judged. nullopt: of no side yet.
+// case has it that the bone is added to, or as the import has it. Those of shapes are of each bone whose
+// shape was judged. nullopt: of no side yet.
 [[nodiscard]] std::vector<cases::BoneDoubt> doubts_with(const BoneImport& import, const ImportedBone& bone,
                                                         std::optional<bones::Side> side,
                                                         bool is_said_by_person = false);

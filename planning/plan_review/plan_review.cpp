@@ -1,8 +1,6 @@
 #include "planning/plan_review/plan_review.h"
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 #include <utility>
 
 #include "planning/norms/insertion_norms.h"
@@ -91,13 +89,9 @@ std::vector<tunnels::PlanCheck> checks_of(const tunnels::TunnelKey& key, const M
 
 std::vector<tunnels::PlanCheck> as_side_is_doubted(std::vector<tunnels::PlanCheck> checks,
                                                    const std::string& side_doubt) {
-  // What no axis that tells lateral from medial, and no landmark proposed by the side, has a part in.
-  constexpr std::array<std::string_view, 5> kOfNoSide = {"Length", "Wall", "Diameter", "Opening",
-                                                         "Between the tunnels"};
   if (side_doubt.empty()) return checks;
   for (tunnels::PlanCheck& check : checks)
-    if (check.verdict == tunnels::PlanCheck::Verdict::Fine &&
-        std::ranges::find(kOfNoSide, check.name) == kOfNoSide.end())
+    if (check.verdict == tunnels::PlanCheck::Verdict::Fine && check.rests_on_side)
       check = {.verdict = tunnels::PlanCheck::Verdict::NotChecked,
                .name = check.name,
                .text = "not checked: the side is in doubt"};

@@ -1,5 +1,7 @@
 #include "planning/plan_review/tunnel_verdict.h"
 
+#include "planning/files/format.h"
+
 namespace arthronaut::plan_review {
 
 using Verdict = tunnels::PlanCheck::Verdict;
@@ -22,10 +24,13 @@ bool contradicts_side(const cases::BoneDoubt& doubt) {
   return side != nullptr && side->is_open();
 }
 
-TunnelVerdict verdict_but_side(bones::BoneKind bone, const std::vector<tunnels::PlanCheck>& checks,
+TunnelVerdict verdict_but_side(const tunnels::Tunnel& tunnel, const std::vector<tunnels::PlanCheck>& checks,
                                const cases::BoneDoubts& doubts, const std::string& grid_doubt) {
   TunnelVerdict verdict{.wrong = tunnels::wrong_in_words(checks)};
-  for (const std::string& doubt : doubts_but_side(doubts, bone)) verdict.look.push_back("Bone: " + doubt);
+  if (const std::string entry = entry_doubt(tunnel, doubts); !entry.empty())
+    verdict.wrong.insert(verdict.wrong.begin(), "Entry: " + entry);
+  for (const std::string& doubt : doubts_but_side(doubts, tunnel.bone))
+    verdict.look.push_back("Bone: " + doubt);
   if (!grid_doubt.empty()) verdict.look.push_back("Grid: " + grid_doubt);
   for (const tunnels::PlanCheck& check : checks)
     if (check.verdict == Verdict::Look) verdict.look.push_back(check.name + ": " + check.text);
@@ -47,9 +52,9 @@ std::string TunnelVerdict::in_short() const {
   return (is_wrong() ? wrong : look).front() + (others.empty() ? "" : " (and " + others + ")");
 }
 
-TunnelVerdict verdict_of(bones::BoneKind bone, const std::vector<tunnels::PlanCheck>& checks,
+TunnelVerdict verdict_of(const tunnels::Tunnel& tunnel, const std::vector<tunnels::PlanCheck>& checks,
                          const cases::BoneDoubts& doubts, const std::string& grid_doubt) {
-  TunnelVerdict verdict = verdict_but_side(bone, checks, doubts, grid_doubt);
+  TunnelVerdict verdict = verdict_but_side(tunnel, checks, doubts, grid_doubt);
   if (const std::string side = side_doubt(doubts); !side.empty())
     verdict.wrong.insert(verdict.wrong.begin(), "Side: " + side);
   return verdict;
@@ -73,7 +78,7 @@ TunnelVerdict verdict_of_plan(const cases::Case& knee, const CheckedPlan& checks
     const auto checked = checks.find(key);
     if (checked == checks.end()) continue;
     const TunnelVerdict tunnel =
-        verdict_but_side(key.bone, checked->second, doubts, grid_doubt(knee, key.bone));
+        verdict_but_side(planned, checked->second, doubts, grid_doubt(knee, key.bone));
     for (const std::string& wrong : tunnel.wrong) plan.wrong.push_back(name + wrong);
     for (const std::string& look : tunnel.look) plan.look.push_back(name + look);
   }
@@ -94,6 +99,21 @@ std::string side_doubt(const cases::BoneDoubts& doubts) {
   for (const auto& [bone, of_bone] : doubts)
     for (const cases::BoneDoubt& doubt : of_bone)
       if (contradicts_side(doubt)) return words_of(doubt);
+  return "";
+}
+
+std::string entry_doubt(const tunnels::Tunnel& tunnel, const cases::BoneDoubts& doubts) {
+  const auto of_bone = doubts.find(tunnel.bone);
+  if (of_bone == doubts.end()) return "";
+  for (const cases::BoneDoubt& doubt : of_bone->second) {
+    const auto* filled = std::get_if<cases::FilledHoles>(&doubt);
+    if (filled == nullptr) continue;
+    if (const auto* hole = filled->reached(tunnel.entry_mm, tunnel.diameter_mm / 2))
+      return files::format(
+          "it reaches a hole about %.0f mm across that was filled in when the bone was made: nobody has seen "
+          "bone there",
+          hole->across_mm);
+  }
   return "";
 }
 

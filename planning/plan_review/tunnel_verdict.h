@@ -27,9 +27,10 @@ struct TunnelVerdict {
   [[nodiscard]] std::string in_short() const;
 };
 
-// Of a tunnel of that bone: a side in doubt, whichever bone witnesses it, is wrong for both; what else is
-// doubted of the bone is to be looked at. grid_doubt: see below.
-[[nodiscard]] TunnelVerdict verdict_of(bones::BoneKind bone, const std::vector<tunnels::PlanCheck>& checks,
+// A side in doubt, whichever bone witnesses it, is wrong for both, and so is an entry where nobody has seen
+// bone; what else is doubted of the bone is to be looked at. grid_doubt: see below.
+[[nodiscard]] TunnelVerdict verdict_of(const tunnels::Tunnel& tunnel,
+                                       const std::vector<tunnels::PlanCheck>& checks,
                                        const cases::BoneDoubts& doubts, const std::string& grid_doubt);
 
 // Of every planned tunnel on a bone that is there, the checks.
@@ -47,7 +48,10 @@ using CheckedPlan = std::map<tunnels::TunnelKey, std::vector<tunnels::PlanCheck>
 [[nodiscard]] std::string grid_doubt(const cases::Case& knee, bones::BoneKind kind);
 // The first of the doubts by which the bones are of the other knee than their case; empty where none is.
 [[nodiscard]] std::string side_doubt(const cases::BoneDoubts& doubts);
-// What else is doubted of that bone, a sentence each.
+// That the tunnel's mouth reaches a hole that was filled in when the bone was made; empty where it reaches
+// none.
+[[nodiscard]] std::string entry_doubt(const tunnels::Tunnel& tunnel, const cases::BoneDoubts& doubts);
+// What is doubted of that bone but for the side, a sentence each.
 [[nodiscard]] std::vector<std::string> doubts_but_side(const cases::BoneDoubts& doubts, bones::BoneKind bone);
 
 }  // namespace arthronaut::plan_review

@@ -211,6 +211,15 @@ std::string wrong_axes(BoneKind kind, const char* name) {
 
 }  // namespace
 
+std::string wrong_axes_doubt(BoneKind kind, const Vector3d& shaft) {
+  Direction nearest{Vector3d::UnitZ(), "up"};
+  const auto is_nearer = [&](const Direction& way) { return shaft.dot(way.axis) > shaft.dot(nearest.axis); };
+  if (const Direction down{-Vector3d::UnitZ(), "down"}; is_nearer(down)) nearest = down;
+  for (const Direction& side : sideways())
+    if (is_nearer(side)) nearest = side;
+  return wrong_axes(kind, nearest.name);
+}
+
 std::vector<std::string> anatomy_doubts(const geometry::TriangleMesh& mesh, BoneKind kind,
                                         std::span<const Vector3d> image_ends) {
   if (mesh.empty()) return {"it has no surface"};
@@ -246,7 +255,7 @@ std::vector<std::string> anatomy_doubts(const geometry::TriangleMesh& mesh, Bone
   for (const Direction& side : sideways()) {
     if (is_cut_at(side) &&
         (amiss_along(mesh, kind, sign * side.axis).empty() || fits_about(mesh, kind, sign * side.axis)))
-      return {wrong_axes(kind, side.name)};
+      return {wrong_axes_doubt(kind, side.axis)};
   }
   if (fits_about(mesh, kind, Vector3d::UnitZ())) return {};
   return {"it does not look like a " + std::string(bones::to_text(kind)) + ": " + amiss};

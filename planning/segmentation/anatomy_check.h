@@ -20,4 +20,8 @@ namespace arthronaut::segmentation {
                                                       bones::BoneKind kind,
                                                       std::span<const Eigen::Vector3d> image_ends = {});
 
+// "its shaft points forwards, not up: the axes of the file are not the patient's (LPS); ...". shaft: from the
+// joint along the bone, LPS, named by the nearest of the patient's axes.
+[[nodiscard]] std::string wrong_axes_doubt(bones::BoneKind kind, const Eigen::Vector3d& shaft);
+
 }  // namespace arthronaut::segmentation

@@ -346,7 +346,8 @@ PlanCheck check_pair(const Tunnel& first, const TunnelGeometry& first_measured, 
                   .value = gap.bone_mm,
                   .unit = "mm",
                   .least = norms.thin_bone_between_tunnels_mm,
-                  .at_mm = gap.at_mm};
+                  .at_mm = gap.at_mm,
+                  .rests_on_side = false};
   if (gap.bone_mm <= 0) {
     check.verdict = Verdict::Wrong;
     check.text = "they run into each other";

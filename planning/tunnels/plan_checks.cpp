@@ -20,7 +20,8 @@ PlanCheck check_length(const Tunnel& tunnel, const TunnelGeometry& geometry, con
                   .text = number_text(geometry.length_mm, "mm"),
                   .value = geometry.length_mm,
                   .unit = "mm",
-                  .at_mm = geometry.exit_mm};
+                  .at_mm = geometry.exit_mm,
+                  .rests_on_side = false};
   if (tunnel.bone == bones::BoneKind::Femur) {
     check.source = "studies find 34 to 39 mm (Tompkins 2013, Sim 2017), 29.6 to 50.5 mm (Hodel 2021); " +
                    limit_text(norms.too_short_femoral_tunnel_mm, "") + "to " +
@@ -104,7 +105,8 @@ PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const
       .value = geometry.wall_mm,
       .unit = "mm",
       .least = tunnel.bone == bones::BoneKind::Femur ? norms.thin_wall_mm : norms.breaking_wall_mm,
-      .at_mm = geometry.thinnest_mm};
+      .at_mm = geometry.thinnest_mm,
+      .rests_on_side = false};
   if (tunnel.bone == bones::BoneKind::Tibia) {
     check.source = "no published limit for the tibia";
     if (geometry.wall_mm < norms.breaking_wall_mm) {
@@ -144,7 +146,8 @@ PlanCheck check_diameter(const Tunnel& tunnel, const PlanNorms& norms) {
       .value = tunnel.diameter_mm,
       .unit = "mm",
       .least = norms.small_diameter_mm,
-      .greatest = norms.wide_diameter_mm};
+      .greatest = norms.wide_diameter_mm,
+      .rests_on_side = false};
   const bool is_small =
       tunnel.diameter_mm<norms.small_diameter_mm, is_wide = tunnel.diameter_mm> norms.wide_diameter_mm;
   if (is_small || is_wide) {

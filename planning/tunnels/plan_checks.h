@@ -30,6 +30,8 @@ struct PlanCheck {
   std::string unit = {};                            // of the value and its limits: "mm", "deg", "%", "mm2"
   std::optional<double> least = {}, greatest = {};  // the limits that it was held against
   std::optional<Eigen::Vector3d> at_mm = {};  // the place that it speaks of, bone frame: to be shown there
+  // On axes that tell lateral from medial, or on landmarks that were proposed by the side.
+  bool rests_on_side = true;
 };
 // "fine", "look", "wrong", "note", "not checked": the sign beside the number, for files and for those who see
 // no colour.

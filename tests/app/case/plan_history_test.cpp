@@ -74,6 +74,7 @@ TEST_F(PlanHistoryTest, TheStepsAreThereAgainAfterAnotherCase) {
   history_.open(&other, elsewhere.path());
   EXPECT_FALSE(history_.can_undo());
   EXPECT_FALSE(history_.can_redo());
+  EXPECT_EQ(history_.status().text, "saved") << "nothing was done there that could be lost";
   PlanModel again(cases::load_case(folder_));
   history_.open(&again, folder_);
   ASSERT_TRUE(history_.can_undo());
@@ -96,7 +97,7 @@ TEST_F(PlanHistoryTest, TheStepsAreThereAgainAfterAnotherCase) {
 }
 
 // The program is ended and started again: the list of steps is there, with what was undone, and all of it can
-// be taken back. What another program did since is none of the steps: then nothing can.
+// be taken back. What another program did since is none of the steps: then nothing can, and that is said.
 TEST_F(PlanHistoryTest, TheStepsOutliveTheProgram) {
   history_.apply(wider(1, false), 1.0);
   history_.settle(2.0);
@@ -126,6 +127,7 @@ TEST_F(PlanHistoryTest, TheStepsOutliveTheProgram) {
   PlanHistory after_another;
   after_another.open(&other, folder_);
   EXPECT_EQ(after_another.step_count(), 0U);
+  EXPECT_NE(after_another.status().text.find("changed elsewhere since"), std::string::npos);
 }
 
 // A broken file costs the steps, not the case.

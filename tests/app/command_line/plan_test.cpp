@@ -504,6 +504,24 @@ TEST_F(PlanCommand, LandmarksAreProposedSetAndKept) {
                          folder_ / "knee.arthro", "--json"})
                 .exit_code,
             0);
+  EXPECT_EQ(run({"landmarks", "--propose"}).exit_code, 0);
+  const auto proposed_count = [&] {
+    std::size_t count = 0;
+    const cases::Case now = cases::load_case(folder_ / "knee.arthro");
+    for (const auto& [bone, states] : now.landmark_states)
+      for (const auto& [name, state] : states) count += state == landmarks::LandmarkState::Proposed ? 1 : 0;
+    return count;
+  };
+  const std::size_t before = proposed_count();
+  ASSERT_GT(before, 2U) << "the tibia's";
+  EXPECT_EQ(run_program({"landmarks", "--confirm", "tibia.plateau_medial,tibia.plateau_lateral",
+                         folder_ / "knee.arthro"})
+                .exit_code,
+            0);
+  EXPECT_EQ(proposed_count(), before - 2);
+  EXPECT_EQ(run({"landmarks", "--confirm", "all"}).exit_code, 0);
+  EXPECT_EQ(proposed_count(), 0U);
+  EXPECT_THAT(run({"landmarks", "--confirm", "femur,no_such_bone"}).errors, HasSubstr("no_such_bone"));
   const auto unknown = run({"landmarks", "--set", "femur.no_such_point=1,2,3"});
   EXPECT_NE(unknown.exit_code, 0);
   EXPECT_THAT(unknown.errors, HasSubstr("no_such_point"));

@@ -25,6 +25,20 @@ TEST(EdgeWords, FollowTheBonesAxes) {
             (EdgeWords{"medial", "lateral", "anterior", "posterior"}));
 }
 
+// The entry's circle at the upper edge of a tibia's radiograph stood under "proximal".
+TEST(EdgeWords, StandInTheMiddleOrBesideWhatIsDrawnThere) {
+  constexpr widgets::Rect kLine{100, 50, 400, 300};
+  const ImVec2 size{60, 20};
+  EXPECT_EQ(middle_place(size, kLine, {}).x, 270);
+  EXPECT_EQ(middle_place(size, kLine, {{250, 100, 350, 140}}).x, 270) << "below it";
+  const ImVec4 circle{280, 40, 320, 80};
+  const ImVec2 beside = middle_place(size, kLine, {circle});
+  EXPECT_EQ(beside.y, 50);
+  EXPECT_TRUE(beside.x >= circle.z || beside.x + size.x <= circle.x);
+  EXPECT_LT(std::abs(beside.x - 270), 60) << "as near to the middle as it can";
+  EXPECT_EQ(middle_place(size, kLine, {{100, 40, 500, 80}}).x, 270) << "nothing is free";
+}
+
 // Half way between two sides it is neither.
 TEST(EdgeWords, NameNoEdgeThatLooksBetweenTwoSides) {
   const auto axes = landmarks::scanner_axes(bones::Side::Right);

@@ -24,6 +24,15 @@ TEST(PaneText, IsNeverCutOffByTheEdge) {
   expect_at(beside({20, 10}, kText, 9, kPicture), 100, 50);
 }
 
+// What stands in the picture until somebody has read it covers no handle, as long as it can stand elsewhere.
+TEST(PaneText, ABoxStandsClearOfTheHandles) {
+  constexpr widgets::Rect kUpper{100, 70, 300, 80}, kLower{100, 250, 300, 80};
+  EXPECT_EQ(clear_place(kUpper, kLower, {}).y, kUpper.y);
+  EXPECT_EQ(clear_place(kUpper, kLower, {{250, 200}, {50, 100}}).y, kUpper.y) << "beside and below it";
+  EXPECT_EQ(clear_place(kUpper, kLower, {{250, 100}}).y, kLower.y);
+  EXPECT_EQ(clear_place(kUpper, kLower, {{250, 100}, {250, 300}}).y, kUpper.y) << "one is covered anyway";
+}
+
 bool covers(const ImVec2& corner, const ImVec2& p) {
   return p.x > corner.x && p.x < corner.x + kText.x && p.y > corner.y && p.y < corner.y + kText.y;
 }

@@ -64,6 +64,22 @@ TEST(TunnelPlanes, OfATunnelThatRunsStraightUpAreThere) {
   EXPECT_NEAR(planes.across.normal().z(), 1, kRounding);
 }
 
+// Where the wall is thinnest lies anywhere about the tunnel: the planes turn until the first holds it.
+TEST(TunnelPlanes, TurnToHoldAPoint) {
+  std::mt19937 random(13);
+  std::normal_distribution<double> normal(0, 10);
+  for (int i = 0; i < 200; ++i) {
+    const TunnelAxis axis = random_axis(random);
+    const Vector3d point = axis.entry_mm + Vector3d(normal(random), normal(random), normal(random));
+    const double turned_rad = turned_to_hold_rad(axis, point);
+    EXPECT_LE(std::abs(turned_rad), EIGEN_PI / 2 + kRounding);
+    const Vector3d across = tunnel_planes(axis, turned_rad).along.normal();
+    EXPECT_NEAR(across.dot(point - axis.entry_mm), 0, 1e-9);
+  }
+  const TunnelAxis axis = random_axis(random);
+  EXPECT_EQ(turned_to_hold_rad(axis, axis.entry_mm), 0);
+}
+
 TEST(TunnelPlanes, ThePointOnTheAxisIsTheNearest) {
   const TunnelAxis axis{.name = "", .entry_mm = {1, 2, 3}, .direction = Vector3d::UnitX()};
   EXPECT_TRUE(on_axis(axis, {9, 5, -4}).isApprox(Vector3d(9, 2, 3)));

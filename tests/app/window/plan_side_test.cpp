@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <sstream>
 #include <thread>
 
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/case_image.h"
 #include "planning/cases/plan_versions.h"
+#include "planning/geometry/surface.h"
+#include "planning/tunnels/tunnel.h"
 #include "tests/app/window/plan_window.h"
 
 namespace arthronaut::test {
@@ -132,6 +135,22 @@ TEST_F(PlanWindow, SlicesFollowTheTunnel) {
   for (int i = 0; i < 100 && app.state("cross") == at_entry; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_NE(app.state("cross"), at_entry) << "across it the wheel goes along it";
+  // To where the wall is thinnest, on the axis; the slices turn there.
+  const tunnels::Tunnel tunnel = knee.plan.tunnels.at(bones::BoneKind::Femur);
+  const geometry::Surface femur(knee.bones.at(bones::BoneKind::Femur).mesh);
+  const double depth_mm =
+      (tunnels::measure(tunnel, femur).thinnest_mm - tunnel.entry_mm).dot(tunnel.direction);
+  const auto depth_of_cross_mm = [&] {
+    std::istringstream words(app.state("cross"));
+    Eigen::Vector3d cross_mm;
+    words >> cross_mm.x() >> cross_mm.y() >> cross_mm.z();
+    return (cross_mm - tunnel.entry_mm).dot(tunnel.direction);
+  };
+  constexpr double kAsPrinted_mm = 0.1;
+  app.press("shift+e");
+  for (int i = 0; i < 100 && std::abs(depth_of_cross_mm() - depth_mm) > kAsPrinted_mm; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_NEAR(depth_of_cross_mm(), depth_mm, kAsPrinted_mm);
   app.press("0");
   EXPECT_TRUE(app.wait_for_state("along", ""));
 }

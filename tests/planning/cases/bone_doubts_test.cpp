@@ -21,11 +21,14 @@ using ::testing::HasSubstr;
 TEST(BoneDoubts, ComeBackAndWithoutAnyTheFileGoes) {
   const test::TemporaryFolder folder;
   EXPECT_TRUE(load_bone_doubts(folder.path()).empty());
-  const BoneDoubts doubts{{BoneKind::Femur, {"12 cm2 are missing", "no \"condyles\""}},
-                          {BoneKind::Tibia,
-                           {"too short", SideDoubt{SideWitness::Fibula, Side::Left, Side::Right},
-                            SideDoubt{SideWitness::ShapesAlone, Side::Left, Side::Left},
-                            SideDoubt{SideWitness::ImageMark, Side::Right, Side::Left, "2026-01-31"}}}};
+  const BoneDoubts doubts{
+      {BoneKind::Femur, {"12 cm2 are missing", "no \"condyles\""}},
+      {BoneKind::Tibia,
+       {"too short",
+        FilledHoles{{{.at_mm = {1.0 / 3, -2, 3}, .across_mm = 12.25}, {.at_mm = {4, 5, 6}, .across_mm = 9}}},
+        SideDoubt{SideWitness::Fibula, Side::Left, Side::Right},
+        SideDoubt{SideWitness::ShapesAlone, Side::Left, Side::Left},
+        SideDoubt{SideWitness::ImageMark, Side::Right, Side::Left, "2026-01-31"}}}};
   save_bone_doubts(folder.path(), doubts);
   EXPECT_EQ(load_bone_doubts(folder.path()), doubts);
   save_bone_doubts(folder.path(), {{BoneKind::Femur, {}}});
@@ -54,7 +57,8 @@ TEST(BoneDoubts, OfVersionOneTheSentencesOfTheSideAreRead) {
                 SideDoubt{SideWitness::ShapesAlone, Side::Left, Side::Left},
                 "by the shape of the bone it is a left knee, but the side is unclear: check the side"}));
   const auto today = put(2, R"(, "side_doubts": [])");
-  EXPECT_TRUE(std::ranges::none_of(today, std::holds_alternative<SideDoubt, std::string, SideDoubt>));
+  EXPECT_TRUE(
+      std::ranges::none_of(today, std::holds_alternative<SideDoubt, std::string, SideDoubt, FilledHoles>));
 }
 
 TEST(BoneDoubts, AFileThatIsNoneIsRefusedByPlace) {

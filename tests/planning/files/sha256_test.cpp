@@ -1,10 +1,12 @@
 #include "planning/files/sha256.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
 #include "planning/geometry/error.h"
+#include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::files {
@@ -30,6 +32,15 @@ TEST(Sha256, AFileIsItsBytes) {
   std::ofstream(file, std::ios::binary) << bytes;
   EXPECT_EQ(sha256_of_file(file), sha256_of(bytes));
   EXPECT_THROW((void)sha256_of_file(folder.path() / "absent"), IoError);
+}
+
+// One into which nobody writes would be waited for without end.
+TEST(Sha256, APipeInAFilesPlaceIsRefusedByName) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path pipe = folder.path() / "camera.json";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(test::message_of<IoError>([&] { (void)sha256_of_file(pipe); }),
+            pipe.string() + ": is a pipe, not a file");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "planning/bones/mesh_file.h"
 #include "planning/files/atomic_file.h"
 #include "planning/import/bone_import.h"
+#include "planning/import/import_side.h"
 #include "planning/phantom/phantom_knee.h"
 #include "tests/temporary_folder.h"
 
@@ -34,7 +35,8 @@ std::vector<std::string> doubts_without(const std::string& name, geometry::Trian
   const test::TemporaryFolder folder;
   const std::string stl = bones::mesh_as_stl("bone", mesh);
   files::write_atomically(folder / name, std::string_view(stl));
-  return import_bones(folder / name).bones.at(0).doubts;
+  const BoneImport import = import_bones(folder / name);
+  return cases::words_of(doubts_with(import, import.bones.at(0), import.side));
 }
 
 // The wall of the notch about the planned entry was cut away and filled with what no scanner saw: without a

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "planning/phantom/phantom_case.h"
 
 namespace arthronaut::plan_review {
@@ -9,26 +11,27 @@ namespace {
 
 using Verdict = tunnels::PlanCheck::Verdict;
 constexpr bones::BoneKind kFemur = bones::BoneKind::Femur, kTibia = bones::BoneKind::Tibia;
+const tunnels::Tunnel kOfFemur{.bone = kFemur, .diameter_mm = 9}, kOfTibia{.bone = kTibia, .diameter_mm = 9};
 
 TEST(TunnelVerdict, IsThatOfTheWorstCheck) {
   const tunnels::PlanCheck fine{.verdict = Verdict::Fine, .name = "Length", .text = "35.0 mm"},
       note{.verdict = Verdict::NotChecked, .name = "Roof", .text = "not checked"},
       look{.verdict = Verdict::Look, .name = "Diameter", .text = "7.0 mm: small"},
       wrong{.verdict = Verdict::Wrong, .name = "Wall", .text = "-3.5 mm"};
-  EXPECT_TRUE(verdict_of(kFemur, {fine, note}, {}, "").is_fine());
-  EXPECT_EQ(verdict_of(kFemur, {fine, note}, {}, "").in_short(), "");
-  EXPECT_EQ(verdict_of(kFemur, {fine, look}, {}, "").worst(), Verdict::Look);
-  EXPECT_EQ(verdict_of(kFemur, {fine, look}, {}, "").in_short(), "Diameter: 7.0 mm: small");
+  EXPECT_TRUE(verdict_of(kOfFemur, {fine, note}, {}, "").is_fine());
+  EXPECT_EQ(verdict_of(kOfFemur, {fine, note}, {}, "").in_short(), "");
+  EXPECT_EQ(verdict_of(kOfFemur, {fine, look}, {}, "").worst(), Verdict::Look);
+  EXPECT_EQ(verdict_of(kOfFemur, {fine, look}, {}, "").in_short(), "Diameter: 7.0 mm: small");
   const TunnelVerdict both =
-      verdict_of(kFemur, {look, fine, wrong}, {{kFemur, {"the images end within it"}}}, "");
+      verdict_of(kOfFemur, {look, fine, wrong}, {{kFemur, {"the images end within it"}}}, "");
   EXPECT_EQ(both.worst(), Verdict::Wrong);
   EXPECT_EQ(both.in_short(), "Wall: -3.5 mm (and 2 to look at)") << "none of them is as bad";
-  EXPECT_EQ(verdict_of(kFemur, {look, wrong, wrong}, {}, "").in_short(),
+  EXPECT_EQ(verdict_of(kOfFemur, {look, wrong, wrong}, {}, "").in_short(),
             "Wall: -3.5 mm (and 1 more wrong, 1 to look at)");
-  EXPECT_EQ(verdict_of(kFemur, {wrong, wrong}, {}, "").in_short(), "Wall: -3.5 mm (and 1 more wrong)");
-  EXPECT_EQ(verdict_of(kFemur, {look, look}, {}, "").in_short(), "Diameter: 7.0 mm: small (and 1 more)");
+  EXPECT_EQ(verdict_of(kOfFemur, {wrong, wrong}, {}, "").in_short(), "Wall: -3.5 mm (and 1 more wrong)");
+  EXPECT_EQ(verdict_of(kOfFemur, {look, look}, {}, "").in_short(), "Diameter: 7.0 mm: small (and 1 more)");
   EXPECT_EQ(both.look.front(), "Bone: the images end within it");
-  EXPECT_EQ(verdict_of(kFemur, {}, {}, "landmarks missing: a").in_short(), "Grid: landmarks missing: a");
+  EXPECT_EQ(verdict_of(kOfFemur, {}, {}, "landmarks missing: a").in_short(), "Grid: landmarks missing: a");
 }
 
 const cases::SideDoubt kOtherSide{.told = bones::Side::Left};
@@ -36,11 +39,32 @@ const cases::SideDoubt kOtherSide{.told = bones::Side::Left};
 // A plan of the other knee is as wrong in the bone that nothing is known of as in the one that witnesses it.
 TEST(TunnelVerdict, ASideInDoubtIsWrongForBothBones) {
   const cases::BoneDoubts doubts{{kTibia, {"the images end within it", kOtherSide}}};
-  const TunnelVerdict femur = verdict_of(kFemur, {}, doubts, ""), tibia = verdict_of(kTibia, {}, doubts, "");
+  const TunnelVerdict femur = verdict_of(kOfFemur, {}, doubts, ""),
+                      tibia = verdict_of(kOfTibia, {}, doubts, "");
   EXPECT_EQ(femur.wrong, std::vector<std::string>{"Side: " + kOtherSide.words()});
   EXPECT_TRUE(femur.look.empty());
   EXPECT_EQ(tibia.wrong, femur.wrong);
   EXPECT_EQ(tibia.look, std::vector<std::string>{"Bone: the images end within it"}) << "and not twice";
+}
+
+// Where a hole was filled in nobody has seen bone: an entry there is wrong, one beside it is not, and the
+// hole is to be looked at either way. Its mouth counts, not only its middle.
+TEST(TunnelVerdict, AnEntryOnAHoleThatWasFilledIsToldFromOneBesideIt) {
+  const cases::BoneDoubts doubts{{kFemur, {cases::FilledHoles{{{.at_mm = {10, 0, 0}, .across_mm = 12}}}}}};
+  const auto verdict_at = [&](double x_mm) {
+    tunnels::Tunnel tunnel = kOfFemur;
+    tunnel.entry_mm = {x_mm, 0, 0};
+    return verdict_of(tunnel, {}, doubts, "");
+  };
+  for (const double x_mm : {10.0, 15.0, 20.0}) {  // up to 6 mm of hole and 4.5 mm of mouth from its middle
+    ASSERT_EQ(verdict_at(x_mm).wrong.size(), 1U) << x_mm;
+    EXPECT_TRUE(verdict_at(x_mm).wrong.front().starts_with("Entry: it reaches a hole about 12 mm across"));
+  }
+  EXPECT_TRUE(verdict_at(20.6).wrong.empty());
+  EXPECT_EQ(verdict_at(20.6).look.size(), 1U);
+  tunnels::Tunnel of_tibia = kOfTibia;
+  of_tibia.entry_mm = {10, 0, 0};
+  EXPECT_TRUE(verdict_of(of_tibia, {}, doubts, "").is_fine()) << "the hole is the femur's";
 }
 
 // A tick that rests on the side is none while the side is in doubt; what is wrong stays wrong.
@@ -48,13 +72,34 @@ TEST(TunnelVerdict, WhileTheSideIsInDoubtNothingThatRestsOnItIsFine) {
   const std::vector<tunnels::PlanCheck> checks = {
       {.verdict = Verdict::Fine, .name = "Entry", .text = "on the lateral wall of the notch"},
       {.verdict = Verdict::Wrong, .name = "Exit", .text = "into the notch"},
-      {.verdict = Verdict::Fine, .name = "Wall", .text = "4.0 mm"}};
+      {.verdict = Verdict::Fine, .name = "Wall", .text = "4.0 mm", .rests_on_side = false}};
   const auto doubted = as_side_is_doubted(checks, kOtherSide.words());
   EXPECT_EQ(doubted[0].verdict, Verdict::NotChecked);
   EXPECT_EQ(doubted[0].text, "not checked: the side is in doubt");
   EXPECT_EQ(doubted[1].verdict, Verdict::Wrong);
   EXPECT_EQ(doubted[2].verdict, Verdict::Fine) << "of no side";
   EXPECT_EQ(as_side_is_doubted(checks, "")[0].verdict, Verdict::Fine);
+}
+
+// What is said to rest on no side is the same whichever the knee is said to be; and there is such.
+TEST(TunnelVerdict, WhatRestsOnNoSideIsTheSameOfEither) {
+  cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Knee");
+  const CaseReview right(knee);
+  knee.side = bones::Side::Left;
+  const CaseReview left(knee);
+  for (const bones::BoneKind bone : {kFemur, kTibia}) {
+    const auto of_right = right.checks(bone), of_left = left.checks(bone);
+    std::size_t count = 0;
+    for (const tunnels::PlanCheck& check : of_right) {
+      if (check.rests_on_side) continue;
+      ++count;
+      const auto same = std::ranges::find(of_left, check.name, &tunnels::PlanCheck::name);
+      ASSERT_NE(same, of_left.end()) << check.name;
+      EXPECT_EQ(same->text, check.text);
+      EXPECT_EQ(same->verdict, check.verdict) << check.name;
+    }
+    EXPECT_EQ(count, 3U) << "length, wall and diameter";
+  }
 }
 
 // What is of the knee is said once, what is of a tunnel with its name; landmarks that nobody confirmed, and
