@@ -2,13 +2,16 @@
 
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
+#include "app/library/plan_verdict.h"
 #include "app/report/report.h"
 #include "app/scene/plan_picture.h"
 #include "app/screen_copy/screen_copies.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/sources/frame_source.h"
+#include "planning/cases/bone_doubts.h"
 #include "planning/dicom_out/dicom_export.h"
 #include "planning/files/whole_folder.h"
+#include "planning/plan_review/tunnel_verdict.h"
 
 namespace arthronaut::command_line {
 
@@ -116,7 +119,15 @@ void export_dicom(Context& context, const DicomArguments& arguments) {
   const auto summary = dicom_out::export_dicom(contents, arguments.output);
   for (const std::string& note : summary.notes) context.say(note);
   for (const fs::path& file : summary.files) context.say("Wrote " + file.string());
-  if (!summary.doubts.empty()) context.say_unreliable(arguments.output, summary.doubts);
+  // As `plan --export` has it: what speaks against the plan is told and no doubt about what was written,
+  // unless it is of the other knee.
+  const cases::BoneDoubts bone_doubts = cases::load_bone_doubts(arguments.case_folder);
+  for (const std::string& wrong : workstation_library::judge_plan(contents.knee, bone_doubts).wrong)
+    context.say("Wrong, and written all the same: " + wrong);
+  std::vector<std::string> doubts = summary.doubts;
+  if (const std::string side = plan_review::side_doubt(bone_doubts); !side.empty())
+    doubts.insert(doubts.begin(), side);
+  if (!doubts.empty()) context.say_unreliable(arguments.output, doubts);
 }
 
 }  // namespace

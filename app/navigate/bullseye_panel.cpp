@@ -86,8 +86,9 @@ void draw_directions(ImDrawList& draw, const widgets::Rect& area, const ImVec2& 
 }
 
 // The axis of the guide as a dot with a tail that leans as the guide does: 1 degree as long as 1 mm.
-void draw_guide(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, float radius,
+void draw_guide(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rect& area, float radius,
                 const BullseyePoint& point, widgets::Severity severity) {
+  const ImVec2 center = area.center();
   const float per_mm = radius / static_cast<float>(kShown_mm);
   ImVec2 at{center.x + static_cast<float>(point.right_mm) * per_mm,
             center.y - static_cast<float>(point.up_mm) * per_mm};
@@ -103,14 +104,10 @@ void draw_guide(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, f
                            {at.x + out.y * size * 0.7F, at.y - out.x * size * 0.7F}, color);
     return;
   }
-  // A lean that would leave the bullseye ends at its rim.
-  const float lean = static_cast<float>(std::hypot(point.lean_right_deg, point.lean_up_deg)) * per_mm;
-  const float shown =
-      lean > 0 ? std::min(1.F, std::max(radius - std::hypot(at.x - center.x, at.y - center.y), 0.F) / lean)
-               : 0;
-  const ImVec2 tail{at.x + static_cast<float>(point.lean_right_deg) * per_mm * shown,
-                    at.y - static_cast<float>(point.lean_up_deg) * per_mm * shown};
-  draw.AddLine(at, tail, color, ui.theme.px(5));
+  const ImVec2 lean{static_cast<float>(point.lean_right_deg) * per_mm,
+                    -static_cast<float>(point.lean_up_deg) * per_mm};
+  const ImVec2 end = tail_end({dx, dy}, lean, {area.width / 2, area.height / 2});
+  draw.AddLine(at, {center.x + end.x, center.y + end.y}, color, ui.theme.px(5));
   draw.AddCircle(at, ui.theme.px(15), color, 32, ui.theme.px(4));
   widgets::draw_sign(draw, at, ui.theme.px(9), severity);
 }
@@ -166,7 +163,7 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   }
   ui.log.note_state("reached", screen.reached_for_s ? "yes" : "no");
   draw_directions(draw, area, center, layout, point);
-  draw_guide(ui, draw, center, radius, point,
+  draw_guide(ui, draw, area, radius, point,
              worse(guidance_severity::severity_of(screen.display.grades.offset),
                    guidance_severity::severity_of(screen.display.grades.angle)));
 }

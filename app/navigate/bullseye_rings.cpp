@@ -1,5 +1,6 @@
 #include "app/navigate/bullseye_rings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <ranges>
 
@@ -23,6 +24,16 @@ std::vector<RingLabel> ring_labels(float radius_px, float line_px, float gap_px,
     end = right - width - gap_px;
   }
   return labels;
+}
+
+ImVec2 tail_end(const ImVec2& from, const ImVec2& lean, const ImVec2& half) {
+  float share = 1;
+  const auto keep = [&](float at, float by, float end) {
+    if (by != 0) share = std::min(share, std::max((std::copysign(end, by) - at) / by, 0.F));
+  };
+  keep(from.x, lean.x, half.x);
+  keep(from.y, lean.y, half.y);
+  return {from.x + share * lean.x, from.y + share * lean.y};
 }
 
 }  // namespace arthronaut::navigate

@@ -1,5 +1,5 @@
 // Where the rings of the bullseye bear their numbers: inside of each, right under the line to the right, so
-// that what is drawn along the rim covers none of them. Pure.
+// that what is drawn along the rim covers none of them; and where the guide's tail ends. Pure.
 #pragma once
 
 #include <array>
@@ -22,5 +22,10 @@ struct RingLabel {
 // named; where one does not fit inside its ring, it is not.
 [[nodiscard]] std::vector<RingLabel> ring_labels(float radius_px, float line_px, float gap_px,
                                                  const std::function<float(const std::string&)>& width_of);
+
+// Where the tail ends of a guide at `from` that leans by `lean`, all from the bullseye's middle. It may leave
+// the rim, since a tail cut there would look like less tilt, but not what is drawn on, which reaches as far
+// as `half` to either side.
+[[nodiscard]] ImVec2 tail_end(const ImVec2& from, const ImVec2& lean, const ImVec2& half);
 
 }  // namespace arthronaut::navigate

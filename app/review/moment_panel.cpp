@@ -138,8 +138,7 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewS
     const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(104);
     widgets::Rect row{cursor.x, cursor.y, width, height};
     const widgets::Rect left = row.cut_left(width / 2);
-    widgets::number_block(ui, left, "Offset of the axis",
-                          widgets::fixed(at.guidance.offset_mm, 1), "mm",
+    widgets::number_block(ui, left, "Offset of the axis", widgets::fixed(at.guidance.offset_mm, 1), "mm",
                           guidance_severity::severity_of_offset(at.guidance));
     widgets::number_block(ui, row, "Angle", widgets::fixed(at.guidance.angle_deg, 1) + "\u00B0", "",
                           guidance_severity::severity_of_angle(at.guidance));

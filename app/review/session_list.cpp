@@ -38,13 +38,11 @@ SessionLine session_line(const library::SessionFacts& facts, std::optional<bones
   line.words = facts.what();
   line.words += (line.words.empty() ? "" : "; ") + facts.outcome();
   for (const std::string& doubt : doubts) line.words += "; " + doubt;
-  const bool is_unreliable = !facts.registration_is_reliable.value_or(true);
   line.is_being_recorded = facts.is_being_recorded && !facts.was_finished;
-  const bool was_cut_off = !facts.was_finished && !facts.is_being_recorded;
-  line.severity = !facts.problem.empty()                            ? widgets::Severity::Bad
-                  : !doubts.empty() || is_unreliable || was_cut_off ? widgets::Severity::Caution
-                  : facts.is_drilled()                              ? widgets::Severity::Good
-                                                                    : widgets::Severity::Quiet;
+  line.severity = !facts.problem.empty()                   ? widgets::Severity::Bad
+                  : facts.is_in_doubt() || !doubts.empty() ? widgets::Severity::Caution
+                  : facts.is_drilled()                     ? widgets::Severity::Good
+                                                           : widgets::Severity::Quiet;
   return line;
 }
 

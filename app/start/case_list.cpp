@@ -129,7 +129,8 @@ void CaseList::accept() {
 SendableCase CaseList::sendable() const {
   const CaseRecord* record = selected();
   if (record == nullptr || !record->is_there || !record->problem.empty()) return {};
-  return {record->folder, record->name};
+  const plan_review::TunnelVerdict* const plan = pictures_.verdict_of(record->folder);
+  return {record->folder, record->name, plan != nullptr ? std::optional(*plan) : std::nullopt};
 }
 
 bool CaseList::go_back() { return std::exchange(view_.shows_trends, false); }

@@ -48,11 +48,12 @@ Severity severity_of(const CaseRecord& record, const TunnelVerdict* verdict) {
     case CaseState::Drilled:
       break;
   }
-  // A tick says that nothing of the last operation is in doubt, not that it went as planned: its numbers
-  // stand beside it. What a CT alone shows is neither.
+  // A tick says that a tunnel was drilled and nothing of the last operation is in doubt, not that it went as
+  // planned: its numbers stand beside it. What a CT alone shows is neither.
   const library::SessionFacts* const last = record.last_session();
   if (last == nullptr || last->is_simulated()) return Severity::Quiet;
-  return last->problem.empty() && last->doubts().empty() ? Severity::Good : Severity::Caution;
+  if (last->is_in_doubt()) return Severity::Caution;
+  return last->is_drilled() ? Severity::Good : Severity::Quiet;
 }
 
 std::string doubts_in_words(const CaseRecord& record) {
@@ -307,9 +308,9 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
       if (!part.empty()) words += (words.empty() ? "" : "; ") + part;
     for (const std::string& doubt : last->doubts()) words += "; " + doubt;
     widgets::status_row(ui,
-                        !last->problem.empty()    ? Severity::Bad
-                        : !last->doubts().empty() ? Severity::Caution
-                                                  : Severity::Quiet,
+                        !last->problem.empty() ? Severity::Bad
+                        : last->is_in_doubt()  ? Severity::Caution
+                                               : Severity::Quiet,
                         "Last session", words);
     const bool is_trusted = last->registration_is_reliable.value_or(false) && last->was_verified;
     if (last->predicted_error_mm)

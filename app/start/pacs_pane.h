@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/library/plan_verdict.h"
 #include "app/start/pacs_work.h"
 #include "app/widgets/controls.h"
 
@@ -18,6 +20,8 @@ namespace arthronaut::start {
 struct SendableCase {
   std::filesystem::path folder;
   std::string name;
+  // What speaks against its plan, and what is to be looked at; empty where nobody has looked at it yet.
+  std::optional<plan_review::TunnelVerdict> plan;
 };
 
 [[nodiscard]] widgets::Severity severity_of(PacsNews::State state);

@@ -34,6 +34,10 @@ void PacsPane::draw_send(const widgets::Ui& ui, const widgets::Rect& area) {
                         view_.sendable.name + ", which is selected in the list of cases");
   else
     widgets::status_row(ui, Severity::Quiet, "Case", view_.sendable.name);
+  if (view_.sendable.plan && !view_.sendable.plan->is_fine())
+    widgets::status_row(ui, view_.sendable.plan->is_wrong() ? Severity::Bad : Severity::Caution,
+                        view_.sendable.plan->is_wrong() ? "Plan, wrong" : "Plan, look",
+                        view_.sendable.plan->in_short());
   if (peer() != nullptr)
     widgets::status_row(ui, Severity::Quiet, "To",
                         peer()->name + ", " + peer()->address() +

@@ -279,12 +279,18 @@ void CaseList::draw_trends(const widgets::Ui& ui, const widgets::Rect& area) {
                         {"start.trends", "start.trend_bone", "start.simulated", "start.back"});
   draw_chart_list(ui, rest.cut_left(ui.theme.px(420), ui.theme.px(12)));
   widgets::begin_panel(ui, "start.trend_plot", rest);
+  const bool is_any_compared =
+      std::ranges::any_of(listed, [](const auto& record) { return !record.postoperative.empty(); });
   if (charted.points.empty())
-    widgets::text_in(ui.theme.strong, widgets::kQuietText,
-                     left_out > 0 ? "Only simulated sessions say this number: Space counts them."
-                     : !is_accuracy && is_of_comparisons(static_cast<Trend>(view_.chart))
-                         ? "None of the listed cases was compared with a CT after the operation: P in Review."
-                         : "No session of the listed cases says this number.");
+    widgets::text_in(
+        ui.theme.strong, widgets::kQuietText,
+        left_out > 0 ? "Only simulated sessions say this number: Space counts them."
+        : is_accuracy || !is_of_comparisons(static_cast<Trend>(view_.chart))
+            ? "No session of the listed cases says this number."
+        : is_any_compared
+            ? "No tunnel in the CTs after the operation of the listed cases is reliable: none is "
+              "counted."
+            : "None of the listed cases was compared with a CT after the operation: P in Review.");
   else
     draw_chart(ui, rest, charted);
   widgets::end_panel();

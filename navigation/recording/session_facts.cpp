@@ -7,6 +7,7 @@
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/recording/counting_registration.h"
+#include "navigation/recording/drilled_by_word.h"
 #include "navigation/recording/of_drilled.h"
 #include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session.h"
@@ -102,12 +103,17 @@ void read_record(const fs::path& folder, SessionFacts& facts) {
   Statement events =
       database.prepare("SELECT timestamp_ns, kind, text FROM events WHERE kind <> 'plan' ORDER BY id");
   CountingRegistration registration;
+  std::vector<SessionEvent> of_drilling;
   while (events.step()) {
     const SessionEvent event{events.integer(0), events.text(1), events.text(2)};
+    if (event.kind == kDrilledByWordEvent || event.kind == kDrilledEvent ||
+        event.kind == kSaidTooEarlyEvent || event.kind == kDrilledTakenBackEvent)
+      of_drilling.push_back(event);
     steps.follow(event);
     registration.follow(event);
     if (event.kind == kAlarmEvent && !event.text.empty()) ++facts.alarm_count;
   }
+  facts.is_drilled_by_word = facts.bone && !drilled_by_word(of_drilling, *facts.bone).empty();
   facts.was_verified = registration.counts().was_verified;
   if (registration.is_of_before()) read_registration_file(folder / registration.counts().file, facts);
   if (registration.counts().is_void && facts.registration_is_reliable) facts.registration_is_reliable = false;

@@ -55,7 +55,8 @@ class RecoveringSource final : public FrameSource {
  private:
   void tell_size(const Eigen::Vector2i& now_px) {
     tell(info_.name + ": the source's format changed to " + size_in_words(now_px) +
-             ": set the processor back to " + size_in_words(info_.image_size_px) + ", or choose the camera again",
+             ": set the processor back to " + size_in_words(info_.image_size_px) +
+             ", or choose the camera again",
          now_px);
   }
 

@@ -192,8 +192,10 @@ std::string SessionFacts::outcome() const {
                          angle_deg.value_or(0));
   if (!problem.empty()) return "cannot be read: " + problem;
   const std::string end = was_finished ? "" : is_being_recorded ? ", being recorded" : ", cut off";
-  if (!registration_is_reliable) return "not registered" + end;
-  return (*registration_is_reliable ? "registered, not drilled" : "registration not reliable") + end;
+  const std::string drilled = is_drilled_by_word ? ", drilled by word alone" : "";
+  if (!registration_is_reliable) return "not registered" + drilled + end;
+  if (!*registration_is_reliable) return "registration not reliable" + drilled + end;
+  return "registered" + (is_drilled_by_word ? drilled : ", not drilled") + end;
 }
 
 std::string SessionFacts::what() const {
@@ -220,6 +222,12 @@ std::vector<std::string> SessionFacts::doubts() const {
     doubts.emplace_back(is_being_recorded ? "being recorded" : "cut off");
   if (is_drilled() && !problem.empty()) doubts.push_back("cannot be read whole: " + problem);
   return doubts;
+}
+
+bool SessionFacts::is_in_doubt() const {
+  const bool was_cut_off = !was_finished && !is_being_recorded;
+  return !problem.empty() || !doubts().empty() || !registration_is_reliable.value_or(true) ||
+         is_drilled_by_word || was_cut_off;
 }
 
 CaseState CaseRecord::state() const {

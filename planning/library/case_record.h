@@ -38,6 +38,7 @@ struct SessionFacts {
   std::optional<double> length_min;  // from the first frame to the last
   // The tunnel as navigation measured it, against the plan: between the entries, between the axes.
   std::optional<double> entry_offset_mm, angle_deg, depth_mm;
+  bool is_drilled_by_word = false;  // of a tunnel at least: said to be, and no pose shows where it runs
   // Minutes from the first frame to the first registration, from there to the first time it was verified or
   // confirmed, and from there to the drilled tunnel.
   std::optional<double> registering_min, verifying_min, drilling_min;
@@ -45,12 +46,14 @@ struct SessionFacts {
 
   [[nodiscard]] bool is_simulated() const { return source_kind == "simulation"; }
   [[nodiscard]] bool is_drilled() const { return entry_offset_mm.has_value(); }
-  // "drilled, 1.2 mm and 0.8° from the plan", "registered, not drilled", "cut off before a registration", ...
+  // "drilled, 1.2 mm and 0.8° from the plan", "registered, drilled by word alone", "not registered, cut off"
   [[nodiscard]] std::string outcome() const;
   // "simulation, femur, 5.2 min"; what is not known is left out.
   [[nodiscard]] std::string what() const;
   // What whoever reads the outcome should know beside it: "not verified", "2 alarms", "cut off", ...
   [[nodiscard]] std::vector<std::string> doubts() const;
+  // A doubt, or an outcome that is one: no registration to rely on, cut off, cannot be read.
+  [[nodiscard]] bool is_in_doubt() const;
 };
 // Reads one session's folder. Does not throw for what it finds there: see SessionFacts::problem.
 using SessionReader = std::function<SessionFacts(const std::filesystem::path& session_folder)>;

@@ -57,6 +57,7 @@ ordered_json to_json(const SessionFacts& facts) {
   put(node, "drilling_min", facts.drilling_min);
   if (!facts.problem.empty()) node["problem"] = facts.problem;
   if (facts.is_being_recorded) node["being_recorded"] = true;
+  if (facts.is_drilled_by_word) node["drilled_by_word"] = true;
   return node;
 }
 
@@ -81,6 +82,7 @@ SessionFacts session_from(const json& node) {
   take(node, "drilling_min", facts.drilling_min);
   facts.problem = node.value("problem", std::string());
   facts.is_being_recorded = node.value("being_recorded", false);
+  facts.is_drilled_by_word = node.value("drilled_by_word", false);
   return facts;
 }
 

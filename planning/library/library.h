@@ -1,6 +1,6 @@
 // The library: all cases that this workstation knows, with what is to be said of each.
 //
-//   library-3.sqlite    what is known of them (library_index.h): a cache, made anew when damaged or gone
+//   library-4.sqlite    what is known of them (library_index.h): a cache, made anew when damaged or gone
 //   case_folders.json   which folders they are (known_folders.h)
 //   cases/              where imported cases go: whatever lies there is known without being added
 //
@@ -24,7 +24,7 @@ namespace arthronaut::library {
 
 class Library {
  public:
-  // Makes what is missing. An index that is damaged is put aside as library-3.sqlite.damaged and made anew
+  // Makes what is missing. An index that is damaged is put aside as library-4.sqlite.damaged and made anew
   // from the folders: see notices(). Throws IoError when the folder cannot be written; InvalidInput when
   // case_folders.json is broken.
   Library(std::filesystem::path data_folder, SessionReader read_session);

@@ -101,7 +101,7 @@ std::string text_of(const CaseRecord& record) {
 
 }  // namespace
 
-fs::path index_file(const fs::path& data_folder) { return data_folder / "library-3.sqlite"; }
+fs::path index_file(const fs::path& data_folder) { return data_folder / "library-4.sqlite"; }
 
 LibraryIndex::LibraryIndex(const fs::path& file) : state_(std::make_unique<State>()) {
   state_->file = file;

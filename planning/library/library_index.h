@@ -1,4 +1,4 @@
-// library-3.sqlite in the user's data: the records of all known cases, so that a list of a thousand needs no
+// library-4.sqlite in the user's data: the records of all known cases, so that a list of a thousand needs no
 // thousand folders read. A cache: nothing in it is anywhere's only copy. Inner header of library.
 //
 // The number in the name is that of its layout; another version of the program has an index of its own.

@@ -138,7 +138,7 @@ TEST_F(CasesCommand, KeepsNotesInTheCase) {
 TEST_F(CasesCommand, WritesJsonAndCsvAndSaysDamageBeside) {
   know_both();
   cases::save_identity(a_, {"Muster^Anna", "4711", "19900131"});
-  test::write_file(folder_ / "home" / "arthronaut" / "library-3.sqlite",
+  test::write_file(folder_ / "home" / "arthronaut" / "library-4.sqlite",
                    "this is no database at all, is it\n");
   const auto json = cases({"--json", "--sort", "name"});
   ASSERT_EQ(json.exit_code, 0) << json.errors;
@@ -190,7 +190,7 @@ TEST_F(CasesCommand, RefusesWithTheReason) {
   expect_refused({"--state", "lost"}, 2, "lost");
   expect_refused({"--json", "--csv"}, 2, "--csv");
   test::write_file(folder_ / "home" / "arthronaut" / "case_folders.json", "{ broken");
-  fs::remove(folder_ / "home" / "arthronaut" / "library-3.sqlite");
+  fs::remove(folder_ / "home" / "arthronaut" / "library-4.sqlite");
   expect_refused({}, 3, "case_folders.json");
 }
 

@@ -11,6 +11,7 @@
 #include "navigation/recording/session.h"
 #include "navigation/sources/exercise_source.h"
 #include "navigation/tools/tool_set.h"
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
 #include "planning/phantom/phantom_case.h"
@@ -124,6 +125,25 @@ TEST_F(DicomCommand, TheSameCaseGivesTheSameBytes) {
   const auto written = contents_of(folder_ / "a");
   EXPECT_EQ(written.size(), 9U);
   EXPECT_EQ(written, contents_of(folder_ / "b"));
+}
+
+// What goes into the archive is told as `plan --export` tells it: a tunnel that misses its bone, and bones of
+// the other knee.
+TEST_F(DicomCommand, TellsAPlanThatIsWrong) {
+  take_phantom();
+  const fs::path folder = folder_ / "knee.arthro";
+  cases::Case knee = cases::load_case(folder);
+  auto& tunnel = knee.plan.tunnels.at(bones::BoneKind::Femur);
+  tunnel.direction.x() = -tunnel.direction.x();  // across the notch
+  cases::save_case(folder, knee);
+  const auto wrong = run("wrong");
+  EXPECT_EQ(wrong.exit_code, 0) << wrong.errors;
+  EXPECT_THAT(wrong.output, HasSubstr("Wrong, and written all the same: femur: "));
+  cases::save_bone_doubts(
+      folder, {{bones::BoneKind::Femur,
+                {cases::SideDoubt{cases::SideWitness::Fibula, bones::Side::Left, bones::Side::Right}}}});
+  const auto other = run("other");
+  EXPECT_EQ(other.exit_code, 4);
 }
 
 // A case that nobody operated on yet has pictures, too: of its plan.

@@ -39,5 +39,20 @@ TEST(BullseyeRings, TheOuterOneBearsTheUnit) {
   EXPECT_EQ(labels[2].text, "1");
 }
 
+// A guide at the rim that leans 11 degrees inwards has its whole tail, and one that leans outwards what the
+// panel has room for: a tail that is gone says that there is no tilt.
+TEST(TailEnd, IsCutByThePanelAlone) {
+  const auto expect_end = [](const ImVec2& from, const ImVec2& lean, const ImVec2& expected) {
+    const ImVec2 end = tail_end(from, lean, {80, 70});
+    EXPECT_NEAR(end.x, expected.x, 1e-4);
+    EXPECT_NEAR(end.y, expected.y, 1e-4);
+  };
+  expect_end({60, 0}, {-110, 0}, {-50, 0});
+  expect_end({60, 0}, {110, 0}, {80, 0});
+  expect_end({0, -60}, {40, -40}, {10, -70});
+  expect_end({10, 20}, {0, 0}, {10, 20});
+  expect_end({90, 0}, {10, 0}, {90, 0});  // beyond it already
+}
+
 }  // namespace
 }  // namespace arthronaut::navigate

@@ -101,7 +101,7 @@ TEST_F(CaseLibraryTest, ANoteThatIsKeptDuringALookStays) {
 // What is wrong with the list is said, and stays said when the look has ended well.
 TEST_F(CaseLibraryTest, SaysThatTheListWasDamagedOrCannotBeHad) {
   workstation_library::note_case(case_, data());
-  test::write_text(data() / "library-3.sqlite",
+  test::write_text(data() / "library-4.sqlite",
                    "this is no database, and longer than a header of one would be");
   CaseLibrary damaged(data(), [] {});
   damaged.refresh({});

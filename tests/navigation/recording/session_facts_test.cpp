@@ -101,6 +101,19 @@ TEST_F(SessionFactsTest, SaysTheRegistration) {
   EXPECT_FALSE(facts.is_drilled());
 }
 
+// A tunnel that somebody said is drilled, and that no pose shows, is no tunnel that is not drilled.
+TEST_F(SessionFactsTest, SaysWhatWasDrilledByWordAlone) {
+  record({{1.0, kRegistrationEvent}, {3.0, kDrilledByWordEvent}});
+  EXPECT_TRUE(read().is_drilled_by_word);
+  EXPECT_FALSE(read().is_drilled());
+  EXPECT_EQ(read().outcome(), "registered, drilled by word alone");
+  EXPECT_TRUE(read().is_in_doubt());
+  std::filesystem::remove_all(session_);
+  std::filesystem::create_directories(session_);
+  record({{1.0, kRegistrationEvent}, {3.0, kDrilledByWordEvent}, {4.0, kSaidTooEarlyEvent}});
+  EXPECT_FALSE(read().is_drilled_by_word) << "it was taken back";
+}
+
 // By its frames, whatever the events say: half a minute between the first and the last.
 TEST_F(SessionFactsTest, SaysHowLongItWas) {
   record({{9.0, kAlarmEvent}});

@@ -174,6 +174,8 @@ TEST(SessionFactsTest, TellItsOutcomeInWords) {
   EXPECT_EQ(facts.outcome(), "registration not reliable");
   facts.registration_is_reliable = true;
   EXPECT_EQ(facts.outcome(), "registered, not drilled");
+  facts.is_drilled_by_word = true;
+  EXPECT_EQ(facts.outcome(), "registered, drilled by word alone");
   facts.entry_offset_mm = 1.24;
   facts.angle_deg = 0.8;
   EXPECT_EQ(facts.outcome(), "drilled, 1.2 mm and 0.8\u00B0 from the plan");
@@ -197,9 +199,17 @@ TEST(SessionFactsTest, TellWhatItWasAndWhatIsDoubtful) {
   EXPECT_EQ(facts.doubts(), (std::vector<std::string>{"not registered", "1 alarm", "cut off"}));
   facts.registration_is_reliable = facts.was_finished = true;
   EXPECT_EQ(facts.doubts(), (std::vector<std::string>{"not verified", "1 alarm"}));
+  EXPECT_TRUE(facts.is_in_doubt());
   facts.was_verified = true;
   facts.alarm_count = 0;
   EXPECT_TRUE(facts.doubts().empty());
+  EXPECT_FALSE(facts.is_in_doubt());
+  facts.registration_is_reliable = false;
+  facts.entry_offset_mm.reset();
+  EXPECT_TRUE(facts.doubts().empty()) << "it stands in the outcome";
+  EXPECT_TRUE(facts.is_in_doubt());
+  facts.registration_is_reliable = true;
+  facts.entry_offset_mm = 1;
   facts.problem = "/knees/a.arthro/sessions/0001/session.json: version: is 99";
   CaseRecord record;
   record.folder = "/knees/a.arthro";

@@ -145,7 +145,7 @@ class DamagedIndex : public LibraryTest, public ::testing::WithParamInterface<co
 // The index is a cache: whatever happens to it, the list is the same, and the user is told.
 TEST_P(DamagedIndex, IsMadeAnewAndThatIsSaid) {
   const std::string damage = GetParam();
-  const fs::path index = root_ / "data" / "library-3.sqlite";
+  const fs::path index = root_ / "data" / "library-4.sqlite";
   {
     const auto library = open();
     for (const char* name : {"A", "B", "C"}) add(*library, add_case(name));
@@ -165,7 +165,7 @@ TEST_P(DamagedIndex, IsMadeAnewAndThatIsSaid) {
   EXPECT_EQ(library->notices().empty(), damage == "gone");
   if (!library->notices().empty()) {
     EXPECT_THAT(library->notices().front(), HasSubstr("made anew"));
-    EXPECT_TRUE(fs::exists(root_ / "data" / "library-3.sqlite.damaged"));
+    EXPECT_TRUE(fs::exists(root_ / "data" / "library-4.sqlite.damaged"));
   }
   const auto records = library->look();
   EXPECT_THAT(names(records), ElementsAre("A", "B", "C"));
@@ -184,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(All, DamagedIndex,
 // Two that have it open when it is damaged: one makes it anew, the other takes that one's, and what both add
 // afterwards is in one list.
 TEST_F(LibraryTest, OfTwoThatFindTheIndexDamagedOneMakesItAnew) {
-  const fs::path index = root_ / "data" / "library-3.sqlite";
+  const fs::path index = root_ / "data" / "library-4.sqlite";
   const auto first = open(), second = open();
   add(*first, add_case("A"));
   EXPECT_THAT(names(second->look()), ElementsAre("A"));
@@ -219,7 +219,7 @@ TEST_F(LibraryTest, KnowsFoldersByAnyName) {
     }
     EXPECT_THAT(library->look(), SizeIs(given.size()));
   }
-  fs::remove(root_ / "data" / "library-3.sqlite");
+  fs::remove(root_ / "data" / "library-4.sqlite");
   for (const CaseRecord& record : open()->look()) EXPECT_TRUE(record.is_there) << record.folder;
   EXPECT_THAT(open()->known(), SizeIs(given.size()));
 }
@@ -231,7 +231,7 @@ TEST_F(LibraryTest, Hazard19IsPrivateAndNamesNobody) {
   const auto library = open();
   add(*library, a);
   (void)library->look();
-  for (const char* file : {"library-3.sqlite", "case_folders.json", "library.lock"}) {
+  for (const char* file : {"library-4.sqlite", "case_folders.json", "library.lock"}) {
     EXPECT_EQ(fs::status(root_ / "data" / file).permissions(), fs::perms::owner_read | fs::perms::owner_write)
         << file;
     EXPECT_THAT(files::read_text(root_ / "data" / file), ::testing::Not(HasSubstr("Muster"))) << file;
@@ -266,7 +266,7 @@ TEST_F(LibraryTest, ManyProgramsAtOnceLoseNothing) {
     EXPECT_EQ(status, 0);
   }
   EXPECT_THAT(open()->look(), SizeIs(kPrograms * kCases));
-  fs::remove(root_ / "data" / "library-3.sqlite");
+  fs::remove(root_ / "data" / "library-4.sqlite");
   EXPECT_THAT(open()->look(), SizeIs(kPrograms * kCases)) << "and the list of folders has them all";
 }
 
