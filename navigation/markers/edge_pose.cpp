@@ -241,7 +241,7 @@ RowTrend row_trend(const camera::CameraModel& camera, double size_mm, std::span<
                    const EdgePose& pose) {
   const Eigen::Matrix3d rotation = pose.camera_from_marker.matrix();
   Matrix7d normal = Matrix7d::Identity() * 1e-9;
-  Eigen::Matrix<double, 7, 2> mixed = Eigen::Matrix<double, 7, 2>::Zero();
+  Eigen::Matrix<double, 7, 4> mixed = Eigen::Matrix<double, 7, 4>::Zero();  // by delays, by motion
   Vector7d pull = Vector7d::Zero();
   RowTrend trend;
   double squares = 0, count = 0;
@@ -253,7 +253,8 @@ RowTrend row_trend(const camera::CameraModel& camera, double size_mm, std::span<
       continue;
     const double weight = 1 / (edge.sigma_px * edge.sigma_px);
     normal.noalias() += weight * row.jacobian * row.jacobian.transpose();
-    mixed.noalias() += weight * row.jacobian * edge.by_delays_px.transpose();
+    mixed.leftCols<2>().noalias() += weight * row.jacobian * edge.by_delays_px.transpose();
+    mixed.rightCols<2>().noalias() += weight * row.jacobian * (edge.row_share * edge.normal).transpose();
     trend.weight.noalias() += weight * edge.by_delays_px * edge.by_delays_px.transpose();
     trend.gain += weight * row.residual_px * edge.by_delays_px;
     pull += weight * row.residual_px * row.jacobian;
@@ -261,10 +262,11 @@ RowTrend row_trend(const camera::CameraModel& camera, double size_mm, std::span<
     count += 1;
   }
   // As far as no other pose explains the same.
-  const Eigen::Matrix<double, 7, 2> explained = normal.ldlt().solve(mixed);
-  trend.twist_by_delays = explained.topRows<6>();
-  trend.weight -= mixed.transpose() * explained;
-  trend.gain -= explained.transpose() * pull;
+  const Eigen::Matrix<double, 7, 4> explained = normal.ldlt().solve(mixed);
+  trend.twist_by_delays = explained.topLeftCorner<6, 2>();
+  trend.twist_by_motion = explained.topRightCorner<6, 2>();
+  trend.weight -= mixed.leftCols<2>().transpose() * explained.leftCols<2>();
+  trend.gain -= explained.leftCols<2>().transpose() * pull;
   const double inflation = kCorrelatedEdges * std::max(1.0, squares / std::max(1.0, count - 9));
   trend.weight /= inflation;
   trend.gain /= inflation;

@@ -23,6 +23,9 @@ constexpr double kMuchBetter = 0.5;
 constexpr double kManyEdges = 0.75, kMaxPartScale = 2;
 // Where fewer are, something hides or bends a part: one half has to hold the pose by itself.
 constexpr double kNearlyAllEdges = 0.9;
+// How well it is known how a marker moves now: by two sightings in the mean of the way between them, of which
+// a hand changes so much; by three as that changes evenly, but for so much of the change.
+constexpr double kUnknownOfMotion = 0.25, kUnknownOfChange = 0.125;
 
 }  // namespace
 
@@ -34,8 +37,12 @@ void MarkerTrack::doubt_rows(const TrackedFrame& frame, const RowTrend& trend,
   const RigidTransform& pose = observation.camera_from_marker;
   const auto change = motion_.change_to(pose, frame.timestamp_ns, frame.interval_ns);
   const double px_per_mm = cell_px(frame, pose) * cells_ / marker_.size_mm;
-  const double comb_px = rows.comb_px(px_per_mm * interval_motion(frame, pose).head<3>().norm(),
-                                      change ? px_per_mm * change->head<3>().norm() : 0);
+  const double moves_px = px_per_mm * interval_motion(frame, pose).head<3>().norm();
+  const double change_px = change ? px_per_mm * change->head<3>().norm() : 0;
+  const double motion_sigma_px = change ? kUnknownOfChange * change_px : kUnknownOfMotion * moves_px;
+  observation.covariance += rows.uncertainty()(0, 0) * motion_sigma_px * motion_sigma_px *
+                            trend.twist_by_motion * trend.twist_by_motion.transpose();
+  const double comb_px = rows.comb_px(moves_px, change_px);
   if (!(comb_px > 0)) return;
   if (const auto square = refine_square_pose(frame.camera, observation.corners_px, marker_.size_mm, pose))
     observation.covariance += square_covariance(*square, comb_px);
