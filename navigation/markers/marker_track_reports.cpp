@@ -187,10 +187,12 @@ RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fi
       go_on_from(rival->camera_from_marker, misfit_of(*rival));
     }
   }
-  if (observation.is_tracked() && fit.share[0] + fit.share[1] < 2 * kNearlyAllEdges &&
-      !is_held_by_halves(frame.camera, marker_.size_mm, samples_, measurements_, fit, frame.smear.bloom, few_,
-                         is_inlier_))
-    observation.state = MarkerState::Doubtful;
+  if (observation.is_tracked() && fit.share[0] + fit.share[1] < 2 * kNearlyAllEdges) {
+    const auto doubt = doubt_by_halves(frame.camera, marker_.size_mm, samples_, measurements_, fit,
+                                       frame.smear.bloom, few_, is_inlier_);
+    if (doubt) observation.covariance += *doubt;
+    if (!doubt) observation.state = MarkerState::Doubtful;
+  }
   const double cell = cell_px(frame, fit.camera_from_marker);
   if (observation.state == MarkerState::Covered)
     observation.state = reason_of_loss(fit.camera_from_marker, measurements_, cell);
