@@ -4,7 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "navigation/markers/verdict.h"
 #include "planning/geometry/quantile.h"
 
 namespace arthronaut::markers {
@@ -216,24 +218,37 @@ std::optional<EdgePose> rival_tilt(const camera::CameraModel& camera, double siz
   return other;
 }
 
-bool is_held_by_halves(const camera::CameraModel& camera, double size_mm, std::span<const EdgeSample> samples,
-                       std::span<const EdgeMeasurement> measurements, const EdgePose& fit,
-                       const BloomPrior& bloom, std::vector<EdgeMeasurement>& half,
-                       std::vector<char>& scratch) {
-  const auto holds = [&](double EdgeSample::*coordinate, double sign) {
-    half.clear();
-    for (const EdgeMeasurement& edge : measurements) {
-      if (edge.state == EdgeState::Found && sign * samples[edge.sample].*coordinate >= 0)
-        half.push_back(edge);
+std::optional<Matrix6d> doubt_by_halves(const camera::CameraModel& camera, double size_mm,
+                                        std::span<const EdgeSample> samples,
+                                        std::span<const EdgeMeasurement> measurements, const EdgePose& fit,
+                                        const BloomPrior& bloom, std::vector<EdgeMeasurement>& half,
+                                        std::vector<char>& scratch) {
+  Matrix6d doubt = Matrix6d::Zero();
+  for (double EdgeSample::*coordinate : {&EdgeSample::x, &EdgeSample::y}) {
+    double least_square = std::numeric_limits<double>::infinity();
+    Vector6d apart_least = Vector6d::Zero();
+    for (const double sign : {-1.0, 1.0}) {
+      if (least_square < kMaxHalfSquare) break;
+      half.clear();
+      for (const EdgeMeasurement& edge : measurements) {
+        if (edge.state == EdgeState::Found && sign * samples[edge.sample].*coordinate >= 0)
+          half.push_back(edge);
+      }
+      const EdgePose by_half =
+          fit_edge_pose(camera, size_mm, samples, half, fit.camera_from_marker, bloom, scratch);
+      if (!by_half.converged) {
+        least_square = 0;
+        break;
+      }
+      const Vector6d apart = geometry::log(fit.camera_from_marker.inverse() * by_half.camera_from_marker);
+      const double square = apart.dot((fit.covariance + by_half.covariance).ldlt().solve(apart)) / 6;
+      if (square >= least_square) continue;
+      least_square = square;
+      apart_least = apart;
     }
-    const EdgePose by_half =
-        fit_edge_pose(camera, size_mm, samples, half, fit.camera_from_marker, bloom, scratch);
-    if (!by_half.converged) return true;
-    const Vector6d apart = geometry::log(fit.camera_from_marker.inverse() * by_half.camera_from_marker);
-    return apart.dot((fit.covariance + by_half.covariance).ldlt().solve(apart)) < kMaxHalfSquare * 6;
-  };
-  return (holds(&EdgeSample::x, -1) || holds(&EdgeSample::x, 1)) &&
-         (holds(&EdgeSample::y, 1) || holds(&EdgeSample::y, -1));
+    if (least_square >= kMaxHalfSquare) doubt += apart_least * apart_least.transpose();
+  }
+  return is_known_well_enough(doubt) ? std::optional(doubt) : std::nullopt;
 }
 
 RowTrend row_trend(const camera::CameraModel& camera, double size_mm, std::span<const EdgeSample> samples,
@@ -241,7 +256,7 @@ RowTrend row_trend(const camera::CameraModel& camera, double size_mm, std::span<
                    const EdgePose& pose) {
   const Eigen::Matrix3d rotation = pose.camera_from_marker.matrix();
   Matrix7d normal = Matrix7d::Identity() * 1e-9;
-  Eigen::Matrix<double, 7, 2> mixed = Eigen::Matrix<double, 7, 2>::Zero();
+  Eigen::Matrix<double, 7, 4> mixed = Eigen::Matrix<double, 7, 4>::Zero();  // by delays, by motion
   Vector7d pull = Vector7d::Zero();
   RowTrend trend;
   double squares = 0, count = 0;
@@ -253,7 +268,8 @@ RowTrend row_trend(const camera::CameraModel& camera, double size_mm, std::span<
       continue;
     const double weight = 1 / (edge.sigma_px * edge.sigma_px);
     normal.noalias() += weight * row.jacobian * row.jacobian.transpose();
-    mixed.noalias() += weight * row.jacobian * edge.by_delays_px.transpose();
+    mixed.leftCols<2>().noalias() += weight * row.jacobian * edge.by_delays_px.transpose();
+    mixed.rightCols<2>().noalias() += weight * row.jacobian * (edge.row_share * edge.normal).transpose();
     trend.weight.noalias() += weight * edge.by_delays_px * edge.by_delays_px.transpose();
     trend.gain += weight * row.residual_px * edge.by_delays_px;
     pull += weight * row.residual_px * row.jacobian;
@@ -261,10 +277,11 @@ RowTrend row_trend(const camera::CameraModel& camera, double size_mm, std::span<
     count += 1;
   }
   // As far as no other pose explains the same.
-  const Eigen::Matrix<double, 7, 2> explained = normal.ldlt().solve(mixed);
-  trend.twist_by_delays = explained.topRows<6>();
-  trend.weight -= mixed.transpose() * explained;
-  trend.gain -= explained.transpose() * pull;
+  const Eigen::Matrix<double, 7, 4> explained = normal.ldlt().solve(mixed);
+  trend.twist_by_delays = explained.topLeftCorner<6, 2>();
+  trend.twist_by_motion = explained.topRightCorner<6, 2>();
+  trend.weight -= mixed.leftCols<2>().transpose() * explained.leftCols<2>();
+  trend.gain -= explained.leftCols<2>().transpose() * pull;
   const double inflation = kCorrelatedEdges * std::max(1.0, squares / std::max(1.0, count - 9));
   trend.weight /= inflation;
   trend.gain /= inflation;

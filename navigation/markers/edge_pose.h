@@ -55,12 +55,13 @@ inline constexpr double kHarmlessTiltRad = 3 * geometry::kPi / 180;
 // Whether the marker's left or its right half, and its upper or its lower one, lead by their own edges to
 // where the fit to all of them is. What hides or bends a part leaves one of both halves as it is: where
 // neither agrees the fit is between two poses, and may be neither. A half of too few edges says nothing
-// against it. `half` keeps its memory, and `scratch`.
-[[nodiscard]] bool is_held_by_halves(const camera::CameraModel& camera, double size_mm,
-                                     std::span<const EdgeSample> samples,
-                                     std::span<const EdgeMeasurement> measurements, const EdgePose& fit,
-                                     const BloomPrior& bloom, std::vector<EdgeMeasurement>& half,
-                                     std::vector<char>& scratch);
+// against it. Gives what the fit may be off by beside its covariance: nothing, or where no half agrees as far
+// as the one that does best, unless that is farther than a pose that stands may be off (nullopt). `half`
+// keeps its memory, and `scratch`.
+[[nodiscard]] std::optional<geometry::Matrix6d> doubt_by_halves(
+    const camera::CameraModel& camera, double size_mm, std::span<const EdgeSample> samples,
+    std::span<const EdgeMeasurement> measurements, const EdgePose& fit, const BloomPrior& bloom,
+    std::vector<EdgeMeasurement>& half, std::vector<char>& scratch);
 
 // What the edges of a pose say of when its rows were exposed.
 [[nodiscard]] RowTrend row_trend(const camera::CameraModel& camera, double size_mm,

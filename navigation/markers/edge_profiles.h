@@ -46,6 +46,7 @@ struct EdgeMeasurement {
   double box_px = 0;         // length of the smear across the edge
   double likeness = 0;       // correlation of profile and model
   double moves_px = 0;       // along the normal, in the time between frames
+  double row_share = 0;      // of all rows, how many its row is after the marker's centre (row_timing.h)
   // What a unit of the delays of row_timing.h moves it by, along the normal.
   Eigen::Vector2d by_delays_px = Eigen::Vector2d::Zero();
 };

@@ -28,12 +28,10 @@ constexpr int kMostSquares = 3;
 constexpr std::size_t kSearchesForCovered = 3;
 // What a search of the whole frame is made of, in this order; and which of several frames has it where there
 // is no hurry. Squares are sought as usual or as covered ones.
-enum class Search { Usual, OtherContrast, Highlights, Covered, Corners };
-constexpr std::pair<Search, int> kSearchParts[] = {{Search::Usual, 0},
-                                                   {Search::OtherContrast, 1},
-                                                   {Search::Highlights, 2},
-                                                   {Search::Covered, 0},
-                                                   {Search::Corners, 3}};
+enum class Search { Lost, Usual, OtherContrast, Highlights, Covered, Corners };
+constexpr std::pair<Search, int> kSearchParts[] = {{Search::Lost, 2},          {Search::Usual, 0},
+                                                   {Search::OtherContrast, 1}, {Search::Highlights, 2},
+                                                   {Search::Covered, 0},       {Search::Corners, 3}};
 constexpr int kMostSupposed = 2;  // squares of which a corner is seen that are measured in one frame
 constexpr std::int64_t kUsualIntervalNs = 33'333'333;
 // A marker that was sought in every frame for so long, and is not there, is sought in every few frames.
@@ -154,6 +152,12 @@ class EdgeTracker final : public MarkerTracker {
     look_at(frame);
     const std::size_t turn = searches_ % kSearchesForCovered;
     switch (what) {
+      case Search::Lost:
+        for (std::size_t k = 0; k < tracks_.size(); ++k) {
+          const std::size_t i = (frames_ + k) % tracks_.size();
+          if (!observations_[i].is_tracked()) recover(i, frame);
+        }
+        break;
       case Search::Usual:
         for (MarkerTrack& track : tracks_) track.is_duplicate = false;
         // The dearer search takes the place of the other now and then; what was just lost is looked for
@@ -168,10 +172,6 @@ class EdgeTracker final : public MarkerTracker {
         break;
       case Search::Highlights:
         take_squares(search_.find_across_highlights(frame.camera), frame, Pass::Covered);
-        for (std::size_t k = 0; k < tracks_.size(); ++k) {
-          const std::size_t i = (frames_ + k) % tracks_.size();
-          if (!observations_[i].is_tracked()) recover(i, frame);
-        }
         break;
       case Search::Covered:
         if (is_for_covered_) take_squares(search_.find_covered(frame.camera), frame, Pass::Covered);

@@ -50,6 +50,11 @@ bool MarkerTrack::measure_recovered(const TrackedFrame& frame, const RigidTransf
                                     MarkerObservation& observation) {
   const bool is_found = !motion_.is_known_at(frame.timestamp_ns);
   if (!measure(frame, start, is_found, observation)) return false;
+  // It is not where it was going to, so that its motion is known no better than at first sight.
+  const auto square = refine_square_pose(frame.camera, observation.corners_px, marker_.size_mm,
+                                         observation.camera_from_marker);
+  if (square && !is_found)
+    observation.covariance += square_covariance(*square, options_.found_corner_sigma_px);
   // Through such a smear the fit to the whole code takes the place of its cells.
   if (is_beyond_edges_ || is_confirmed_by_code(frame, observation.camera_from_marker)) return true;
   observation.state = MarkerState::Doubtful;

@@ -23,6 +23,9 @@ constexpr double kMuchBetter = 0.5;
 constexpr double kManyEdges = 0.75, kMaxPartScale = 2;
 // Where fewer are, something hides or bends a part: one half has to hold the pose by itself.
 constexpr double kNearlyAllEdges = 0.9;
+// How well it is known how a marker moves now: by two sightings in the mean of the way between them, of which
+// a hand changes so much; by three as that changes evenly, but for so much of the change.
+constexpr double kUnknownOfMotion = 0.25, kUnknownOfChange = 0.125;
 
 }  // namespace
 
@@ -34,8 +37,12 @@ void MarkerTrack::doubt_rows(const TrackedFrame& frame, const RowTrend& trend,
   const RigidTransform& pose = observation.camera_from_marker;
   const auto change = motion_.change_to(pose, frame.timestamp_ns, frame.interval_ns);
   const double px_per_mm = cell_px(frame, pose) * cells_ / marker_.size_mm;
-  const double comb_px = rows.comb_px(px_per_mm * interval_motion(frame, pose).head<3>().norm(),
-                                      change ? px_per_mm * change->head<3>().norm() : 0);
+  const double moves_px = px_per_mm * interval_motion(frame, pose).head<3>().norm();
+  const double change_px = change ? px_per_mm * change->head<3>().norm() : 0;
+  const double motion_sigma_px = change ? kUnknownOfChange * change_px : kUnknownOfMotion * moves_px;
+  observation.covariance += rows.uncertainty()(0, 0) * motion_sigma_px * motion_sigma_px *
+                            trend.twist_by_motion * trend.twist_by_motion.transpose();
+  const double comb_px = rows.comb_px(moves_px, change_px);
   if (!(comb_px > 0)) return;
   if (const auto square = refine_square_pose(frame.camera, observation.corners_px, marker_.size_mm, pose))
     observation.covariance += square_covariance(*square, comb_px);
@@ -180,10 +187,12 @@ RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fi
       go_on_from(rival->camera_from_marker, misfit_of(*rival));
     }
   }
-  if (observation.is_tracked() && fit.share[0] + fit.share[1] < 2 * kNearlyAllEdges &&
-      !is_held_by_halves(frame.camera, marker_.size_mm, samples_, measurements_, fit, frame.smear.bloom, few_,
-                         is_inlier_))
-    observation.state = MarkerState::Doubtful;
+  if (observation.is_tracked() && fit.share[0] + fit.share[1] < 2 * kNearlyAllEdges) {
+    const auto doubt = doubt_by_halves(frame.camera, marker_.size_mm, samples_, measurements_, fit,
+                                       frame.smear.bloom, few_, is_inlier_);
+    if (doubt) observation.covariance += *doubt;
+    if (!doubt) observation.state = MarkerState::Doubtful;
+  }
   const double cell = cell_px(frame, fit.camera_from_marker);
   if (observation.state == MarkerState::Covered)
     observation.state = reason_of_loss(fit.camera_from_marker, measurements_, cell);

@@ -75,7 +75,8 @@ void correct_rows(const RowTiming& timing, double centre_row, int height_px, dou
   for (EdgeMeasurement& edge : measurements) {
     if (edge.state != EdgeState::Found) continue;
     const double row = edge.point_px.y() + edge.offset_px * edge.normal.y();
-    edge.by_delays_px[0] = edge.moves_px * (row - centre_row) / height_px;
+    edge.row_share = (row - centre_row) / height_px;
+    edge.by_delays_px[0] = edge.moves_px * edge.row_share;
     edge.offset_px -= known[0] * edge.by_delays_px[0];
     if (known[1] != 0) continue;
     // Between two rows a profile sees both fields, and all the more the steeper it runs: the first harmonic

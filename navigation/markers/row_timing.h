@@ -23,6 +23,9 @@ struct RowTrend {
   Eigen::Matrix2d weight = Eigen::Matrix2d::Zero();
   Eigen::Matrix<double, 6, 2> twist_by_delays =
       Eigen::Matrix<double, 6, 2>::Zero();  // body twist (v mm, w rad)
+  // What a pixel of motion in the time between frames, along the image's x and y, does to it when all of that
+  // time is taken to read the rows.
+  Eigen::Matrix<double, 6, 2> twist_by_motion = Eigen::Matrix<double, 6, 2>::Zero();
 };
 
 // Of the middle of a whole row's exposure after the centre's, in the time between frames.
