@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/plan/plan_view.h"
 #include "app/review/review_view.h"
 #include "app/widgets/hold_hint.h"
 #include "app/widgets/key_clashes.h"
