@@ -111,7 +111,7 @@ TEST(ShapeCheck, ABoneThatLiesIsSaidToLieHoweverItIsTurned) {
   const auto any = [&] { return Eigen::Vector3d(normal(random), normal(random), normal(random)); };
   std::vector<Eigen::Matrix3d> lying{
       Eigen::AngleAxisd(135 * EIGEN_PI / 180, Eigen::Vector3d::Ones().normalized()).toRotationMatrix()};
-  while (lying.size() < 7) {
+  while (lying.size() < 5) {
     const Eigen::Matrix3d rotation =
         Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
             .normalized()
@@ -123,7 +123,7 @@ TEST(ShapeCheck, ABoneThatLiesIsSaidToLieHoweverItIsTurned) {
       EXPECT_THAT(said_of(turned(bone, rotation)), ElementsAre(HasSubstr("the axes of the file")))
           << bones::to_text(bone.kind) << "\n"
           << rotation;
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 2; ++i) {
       const Eigen::Vector3d axis = any().cross(Eigen::Vector3d::UnitZ()).normalized();
       EXPECT_THAT(
           said_of(turned(bone, Eigen::AngleAxisd(kMayLean_deg * EIGEN_PI / 180, axis).toRotationMatrix())),
