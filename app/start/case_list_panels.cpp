@@ -299,7 +299,8 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
   if (!record->part_problem.empty())
     widgets::status_row(ui, Severity::Caution, "Not readable",
                         files::within_folder(record->folder, record->part_problem));
-  if (!record->side.empty()) widgets::status_row(ui, Severity::Quiet, "Side", record->side + " knee");
+  if (record->side)
+    widgets::status_row(ui, Severity::Quiet, "Side", library::word_of(record->side) + " knee");
   if (record->problem.empty())
     widgets::status_row(ui, severity_of_plan(*record, verdict), "Plan", plan_words(*record, pictures_));
   if (const library::SessionFacts* last = record->last_session()) {

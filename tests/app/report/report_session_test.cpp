@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "navigation/operation/achieved_tunnel.h"
+#include "navigation/recording/session_check.h"
 #include "navigation/recording/session_marks.h"
 #include "navigation/sources/exercise_source.h"
 #include "planning/geometry/error.h"
