@@ -123,8 +123,10 @@ TEST_F(DrilledBeforeTest, WhatIsSaidInTheNextProgramIsKeptToo) {
   say(MarkerOut{});
   EXPECT_TRUE(before().tunnels.marker_is_out(bones::BoneKind::Femur));
   EXPECT_NE(drilled(before()), nullptr);
+  EXPECT_FALSE(found());
   say(TakeBackDrilled{});
   EXPECT_EQ(drilled(before()), nullptr);
+  EXPECT_TRUE(found()) << "it is not at its end any more";
   EXPECT_FALSE(before().tunnels.marker_is_out(bones::BoneKind::Femur));
   ASSERT_EQ(cases::session_folders(folder_.path()).size(), 1U);
   const std::filesystem::path folder = cases::session_folders(folder_.path()).front();
