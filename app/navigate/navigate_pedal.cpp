@@ -270,6 +270,9 @@ RailContext NavigateView::rail_context() const {
   const operation::DrilledTunnel* const drilled = plan ? drilled_as(*plan) : nullptr;
   context.was_verified = drilled != nullptr && drilled->was_verified;
   context.marker_is_out = marker_is_out(choices_.bone);
+  context.other_bone_is_left = std::ranges::any_of(finished, [&](const FinishedBone& bone) {
+    return bone.bone != choices_.bone && !(bone.is_drilled() && bone.marker_is_out);
+  });
   return context;
 }
 
