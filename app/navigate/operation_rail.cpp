@@ -367,7 +367,7 @@ std::string words_of(Repeat repeat, Step step) {
     case Repeat::OtherPictures:
       return "not drilled yet: go on with other pictures";
     case Repeat::NotDrilled:
-      return "not drilled yet: take that back";
+      return "take back that the tunnel is drilled";
     case Repeat::ShowFinish:
       return "show the check list";
     case Repeat::NothingNow:

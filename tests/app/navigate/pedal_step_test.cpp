@@ -106,7 +106,7 @@ TEST(PedalStep, AnswersWhatStandsInFront) {
   EXPECT_EQ(theatre.step().kind, Kind::Act);
   theatre.context.looked_at = operation::Step::Guide;
   theatre.context.repeat = Repeat::NotDrilled;
-  EXPECT_EQ(theatre.words(), "not drilled yet: take that back");
+  EXPECT_EQ(theatre.words(), "take back that the tunnel is drilled");
   EXPECT_TRUE(must_be_read(theatre.step()));
   theatre.context.was_left = true;
   EXPECT_EQ(theatre.step().kind, Kind::Resume);
