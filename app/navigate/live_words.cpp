@@ -95,7 +95,9 @@ std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction ac
 }
 
 std::string words_beside_no_picture(theatre::SourceTrouble trouble, NextAction action) {
-  if (action != NextAction::ConfirmTimeOut && action != NextAction::RecordDrilled) return "";
+  if (action != NextAction::ConfirmTimeOut && action != NextAction::RecordDrilled &&
+      action != NextAction::Finish)
+    return "";
   switch (trouble) {
     case theatre::SourceTrouble::NoPicture:
       return "no picture comes; ";

@@ -300,6 +300,8 @@ void OperationRun::apply(const operation::Command& given) {
   if (auto* const drilled = std::get_if<operation::TunnelDrilled>(&command))
     drilled->without_picture_s =
         static_cast<double>(has_source() ? unseen_ns() : live_.unseen_at_end_ns) * 1e-9;
+  if (auto* const out = std::get_if<operation::MarkerOut>(&command); out && has_source())
+    out->without_picture_s = static_cast<double>(unseen_ns()) * 1e-9;
   if (auto* const time_out = std::get_if<operation::ConfirmTimeOut>(&command); time_out && has_source())
     time_out->beside = wrong_with_picture();
   if (const double age_ms = picture_age_ms(); age_ms > kHandRests_ms && is_of_this_moment(command)) {
