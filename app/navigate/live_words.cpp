@@ -112,6 +112,14 @@ std::string words_beside_no_picture(theatre::SourceTrouble trouble, NextAction a
   }
 }
 
+std::string why_not_live(const theatre::LiveState& live) {
+  if (live.phase == theatre::LiveState::Phase::Failed) return live.message;
+  const bool is_of_now = live.trouble == theatre::SourceTrouble::None ||
+                         live.trouble == theatre::SourceTrouble::Repeated ||
+                         live.trouble == theatre::SourceTrouble::Lost;
+  return live.phase != theatre::LiveState::Phase::Running || is_of_now ? "" : live.trouble_words;
+}
+
 std::string words_of(Repeat repeat, operation::Step step, bool is_shown, theatre::SourceTrouble trouble,
                      const std::optional<Eigen::Vector2i>& changed_to_px) {
   const auto wanted = [&] {
