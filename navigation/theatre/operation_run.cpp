@@ -222,6 +222,9 @@ operation::PictureTiming OperationRun::timing_of(const camera::Frame& frame,
   const std::int64_t now_ns = sources::steady_now_ns();
   const bool is_dated = frame.captured_ns > 0 && now_ns >= frame.captured_ns;
   const double guidance_ms = is_dated ? static_cast<double>(now_ns - frame.captured_ns) * 1e-6 : -1;
+  live_.watch.received(is_dated && frame.received_ns > 0
+                           ? static_cast<double>(frame.received_ns - frame.captured_ns) * 1e-6
+                           : -1);
   live_.is_news = live_.watch.picture(view, guidance_ms, live_.taken_ns, source_->remark());
   if (live_.watch.trouble() == SourceTrouble::Slow) return operation::PictureTiming::Slow;
   const double now_s = static_cast<double>(now_ns) * 1e-9;
