@@ -91,8 +91,8 @@ std::shared_ptr<const recording::DrilledBefore> ResumeOffer::search_drilled(cons
   try {  // what nobody can read was drilled by no word: no reason to end anything
     std::map<bones::BoneKind, std::string> hashes;
     for (const auto& [kind, mesh] : search.meshes) hashes.emplace(kind, bones::mesh_sha256(mesh));
-    auto before =
-        std::make_shared<const recording::DrilledBefore>(drilled_before(search.case_folder, hashes));
+    auto before = std::make_shared<const recording::DrilledBefore>(
+        recording::drilled_before(search.case_folder, hashes));
     for (const std::string& broken : before->passed_over) log::error("drilled tunnels: " + broken);
     return before;
   } catch (const std::runtime_error& error) {
