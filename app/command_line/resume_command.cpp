@@ -8,6 +8,7 @@
 #include "planning/cases/case.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
@@ -51,6 +52,9 @@ nlohmann::ordered_json json_of(const recording::ResumeSearch& search) {
   if (was.plan) json["tunnel"] = tunnels::name_of(was.plan->tunnel.key());
   json["drilled"] = nlohmann::ordered_json::array();
   for (const tunnels::TunnelKey& key : found.drilled) json["drilled"].push_back(tunnels::name_of(key));
+  json["said_drilled"] = nlohmann::ordered_json::array();
+  for (const recording::SaidDrilled& said : found.said_drilled)
+    json["said_drilled"].push_back({{"tunnel", said.tunnel}, {"said_utc", files::utc_of(said.when)}});
   json["depth_stop_mm"] = nullptr;
   if (was.depth_stop_mm) json["depth_stop_mm"] = *was.depth_stop_mm;
   return json;
@@ -77,6 +81,9 @@ void say(const Context& context, const recording::Resumable& found) {
                        : std::string("plan in force: none"));
   for (const tunnels::TunnelKey& key : found.drilled)
     context.say("drilled already: " + tunnels::name_of(key) + " tunnel");
+  for (const recording::SaidDrilled& said : found.said_drilled)
+    context.say("said to be drilled: " + said.tunnel + " tunnel, " +
+                files::utc_in_words(files::utc_of(said.when)) + ", by word alone");
   if (was.depth_stop_mm) context.say(files::format("depth stop: %.1f mm, as read", *was.depth_stop_mm));
 }
 

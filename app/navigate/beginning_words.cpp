@@ -2,7 +2,9 @@
 
 #include "navigation/camera/medium.h"
 #include "planning/files/format.h"
+#include "planning/files/local_time.h"
 #include "planning/files/typed_number.h"
+#include "planning/files/utc_clock.h"
 
 namespace arthronaut::navigate {
 
@@ -54,6 +56,11 @@ std::string ago(std::chrono::system_clock::duration time) {
   if (minutes < 120) return count_of(static_cast<std::size_t>(minutes), "minute") + " ago";
   if (minutes < 48 * 60) return std::to_string(minutes / 60) + " hours ago";
   return std::to_string(minutes / (24 * 60)) + " days ago";
+}
+
+// "21:03", as the clock on the wall shows it.
+std::string clock_of(std::chrono::system_clock::time_point moment) {
+  return files::local_time_in_words(files::utc_of(moment)).substr(11, 5);
 }
 
 CardLine medium_line(const operation::OperationState& state) {
@@ -146,6 +153,10 @@ Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedT
         {is_in_force ? Severity::Caution : Severity::Quiet, "Drilled already",
          tunnels::name_of(key) + (is_in_force ? "; that is the one in force: choose the other one" : "")});
   }
+  for (const recording::SaidDrilled& said : found.said_drilled)
+    card.lines.push_back(
+        {Severity::Caution, "Said to be drilled",
+         said.tunnel + ", at " + clock_of(said.when) + "; by word alone, nothing shows where"});
   card.lines.push_back({left.has_same_camera && left.has_same_tools ? Severity::Quiet : Severity::Caution,
                         "Camera and tools",
                         left.has_same_camera && left.has_same_tools ? "the case's"

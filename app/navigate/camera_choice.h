@@ -32,7 +32,8 @@ struct LivePictures {
 
 class CameraChoice {
  public:
-  // Opens one to be looked at, on a thread of its own; must refuse what is in use.
+  // Opens one to be looked at, on a thread of its own; must refuse what is in use. Null: it is what is
+  // navigated by.
   using Look = std::function<std::unique_ptr<sources::FrameSource>(const LivePictures&)>;
   // Offers them; the one that was used before is chosen, a stream also where it gave no picture, else the
   // first. What did not open stands in the field, too.

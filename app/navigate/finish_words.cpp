@@ -39,7 +39,7 @@ bool FinishedBone::is_drilled() const {
 std::optional<bool> FinishedBone::was_verified() const {
   std::optional<bool> all;
   for (const FinishedTunnel& tunnel : tunnels)
-    if (tunnel.is_drilled && tunnel.measured) all = all.value_or(true) && tunnel.was_verified;
+    if (tunnel.is_drilled) all = all.value_or(true) && tunnel.was_verified;
   return all;
 }
 

@@ -12,7 +12,7 @@ struct FinishedTunnel {
   tunnels::TunnelKey key = bones::BoneKind::Femur;
   bool is_drilled = false;                            // by the surgeon's word
   std::optional<operation::AchievedTunnel> measured;  // empty: nothing was
-  bool was_verified = false;                          // what guided there, by touches; of a measured one
+  bool was_verified = false;                          // the registration that it was drilled by, by touches
 };
 // Of one bone that has a planned tunnel, or two.
 struct FinishedBone {
@@ -21,7 +21,7 @@ struct FinishedBone {
   bool marker_is_out = false;             // by the surgeon's word
   bool has_begun = false;                 // pictures of it came: its marker was put in, if not before
   [[nodiscard]] bool is_drilled() const;  // all of them
-  // Of what guided to a measured tunnel, all was verified by touches; empty: none was measured.
+  // What its drilled tunnels were drilled by, all of it, was verified by touches; empty: none is drilled.
   [[nodiscard]] std::optional<bool> was_verified() const;
 };
 

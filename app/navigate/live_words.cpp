@@ -95,7 +95,9 @@ std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction ac
 }
 
 std::string words_beside_no_picture(theatre::SourceTrouble trouble, NextAction action) {
-  if (action != NextAction::ConfirmTimeOut && action != NextAction::RecordDrilled) return "";
+  if (action != NextAction::ConfirmTimeOut && action != NextAction::RecordDrilled &&
+      action != NextAction::Finish)
+    return "";
   switch (trouble) {
     case theatre::SourceTrouble::NoPicture:
       return "no picture comes; ";
@@ -108,6 +110,14 @@ std::string words_beside_no_picture(theatre::SourceTrouble trouble, NextAction a
     default:
       return "";
   }
+}
+
+std::string why_not_live(const theatre::LiveState& live) {
+  if (live.phase == theatre::LiveState::Phase::Failed) return live.message;
+  const bool is_of_now = live.trouble == theatre::SourceTrouble::None ||
+                         live.trouble == theatre::SourceTrouble::Repeated ||
+                         live.trouble == theatre::SourceTrouble::Lost;
+  return live.phase != theatre::LiveState::Phase::Running || is_of_now ? "" : live.trouble_words;
 }
 
 std::string words_of(Repeat repeat, operation::Step step, bool is_shown, theatre::SourceTrouble trouble,

@@ -27,6 +27,9 @@ namespace arthronaut::navigate {
 // picture comes; ". Empty while pictures come, and for all other steps.
 [[nodiscard]] std::string words_beside_no_picture(theatre::SourceTrouble trouble,
                                                   operation::NextAction action);
+// What is wrong with a source whose pictures are not of now, where a card stands in the place of the reasons;
+// empty: nothing, or it has ended.
+[[nodiscard]] std::string why_not_live(const theatre::LiveState& live);
 // Of a step that the surgeon went back to while a source runs: what a press does, or that what it takes is in
 // no picture now. is_shown: what it would show stands on the screen already, and is to be followed.
 [[nodiscard]] std::string words_of(Repeat repeat, operation::Step step, bool is_shown,

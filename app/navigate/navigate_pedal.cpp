@@ -94,8 +94,9 @@ std::string NavigateView::missing_now(const PedalStep& step, const Rail& rail) {
     case Kind::Resume:
     case Kind::Exercise:
     case Kind::WaitForEnd:
-    case Kind::Finish:
       return "";
+    case Kind::Finish:
+      return why_not_live(*live_);
     case Kind::GoBackTo: {
       const RailStep& looked_at = rail[static_cast<std::size_t>(step.step)];
       if (looked_at.verdict == tunnels::PlanCheck::Verdict::Fine) return hindrance_of(looked_at, true);
@@ -111,6 +112,8 @@ std::string NavigateView::missing_now(const PedalStep& step, const Rail& rail) {
       break;
     default:
       if (!is_running()) break;
+      if (step.kind == Kind::Act && step.action == operation::NextAction::ConfirmTimeOut)
+        if (const std::string words = why_not_live(*live_); !words.empty()) return words;
       if (const std::string words = hindrance_of(*live_->operation, live_->trouble); !words.empty())
         return words;
   }
@@ -270,6 +273,9 @@ RailContext NavigateView::rail_context() const {
   const operation::DrilledTunnel* const drilled = plan ? drilled_as(*plan) : nullptr;
   context.was_verified = drilled != nullptr && drilled->was_verified;
   context.marker_is_out = marker_is_out(choices_.bone);
+  context.other_bone_is_left = std::ranges::any_of(finished, [&](const FinishedBone& bone) {
+    return bone.bone != choices_.bone && !(bone.is_drilled() && bone.marker_is_out);
+  });
   return context;
 }
 

@@ -207,11 +207,13 @@ void NavigateView::choose_camera() {
 
 void NavigateView::offer_cameras() {
   choices_.shows_menu = false;  // it would stand over what is asked
-  cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()),
-                used_before_ ? std::optional(used_before_->pictures) : std::nullopt,
-                [turns = turns_](const LivePictures& one) {
-                  return one.device ? turns.open_if_free({*one.device})
-                                    : turns.open_stream_if_free(one.address);
+  const auto before = used_before_ ? std::optional(used_before_->pictures) : std::nullopt;
+  const bool is_open = is_under_way(*live_) && started_.kind() == sources::SourceKind::Live;
+  cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()), before,
+                [turns = turns_, open = is_open ? before : std::nullopt](const LivePictures& one) {
+                  return one == open  ? nullptr
+                         : one.device ? turns.open_if_free({*one.device})
+                                      : turns.open_stream_if_free(one.address);
                 });
 }
 

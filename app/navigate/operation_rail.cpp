@@ -190,9 +190,11 @@ Missing rest_of(Step step, const Known& known) {
       return missing_of(operation::unverified_of(state));
     }
     case Step::Guide:
-      return known.is_drilled() ? Missing::Nothing : Missing::Tunnel;
+      if (known.was_guided_to()) return Missing::Nothing;
+      return known.is_drilled() ? Missing::Evidence : Missing::Tunnel;
     case Step::Finish:
-      return known.context.marker_is_out ? Missing::Nothing : Missing::MarkerOut;
+      if (!known.context.marker_is_out) return Missing::MarkerOut;
+      return known.context.other_bone_is_left ? Missing::OtherBone : Missing::Nothing;
   }
   return Missing::Nothing;
 }
@@ -307,8 +309,12 @@ std::string words_of(Missing missing) {
       return "the nominal guide is not checked";
     case Missing::Tunnel:
       return "the tunnel is not drilled";
+    case Missing::Evidence:
+      return "nothing shows where it was drilled: by word alone";
     case Missing::MarkerOut:
       return "the world marker is in the bone";
+    case Missing::OtherBone:
+      return "the other bone is not finished";
   }
   return "";
 }
@@ -361,7 +367,7 @@ std::string words_of(Repeat repeat, Step step) {
     case Repeat::OtherPictures:
       return "not drilled yet: go on with other pictures";
     case Repeat::NotDrilled:
-      return "not drilled yet: take that back";
+      return "take back that the tunnel is drilled";
     case Repeat::ShowFinish:
       return "show the check list";
     case Repeat::NothingNow:

@@ -45,7 +45,9 @@ enum class Missing {
   ControlPoint,  // to be set, or touched again
   GuideCheck,    // of a nominal guide
   Tunnel,        // drilled
+  Evidence,      // of it: it is drilled by word alone
   MarkerOut,
+  OtherBone,  // its tunnel, or its marker's end
 };
 
 struct RailStep {
@@ -71,6 +73,7 @@ struct RailContext {
   bool was_measured = false;              // and the drill or the guide was seen at it, not only said
   bool was_verified = false;              // likewise: touches had verified what guided to it
   bool marker_is_out = false;             // likewise
+  bool other_bone_is_left = false;        // it is planned, and not drilled or its marker not out
 };
 
 [[nodiscard]] Rail rail_of(const operation::OperationState& state, const RailContext& context);

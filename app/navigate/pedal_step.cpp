@@ -90,6 +90,15 @@ std::string words_of_acting(const PedalStep& step, const theatre::LiveState& liv
   return beside + words_of(step.action) + hand;
 }
 
+std::string words_of_finishing(const PedalStep& step, const theatre::LiveState& live,
+                               const PedalContext& context) {
+  const std::string beside = step.finish == FinishAction::TakeMarkerOut && is_running(live)
+                                 ? words_beside_no_picture(live.trouble, NextAction::Finish)
+                                 : "";
+  const std::string words = words_of(step.finish, context.bones, step.bone);
+  return beside.empty() ? words : beside + words + ": your word alone";
+}
+
 }  // namespace
 
 bool finishes(const std::vector<FinishedBone>& bones, bones::BoneKind bone) {
@@ -161,7 +170,7 @@ std::string words_of(const PedalStep& step, const theatre::LiveState& live, cons
     case Kind::ChooseTunnel:
       return words_of_choosing(*step.tunnel, context.must_choose);
     case Kind::Finish:
-      return words_of(step.finish, context.bones, step.bone);
+      return words_of_finishing(step, live, context);
     case Kind::WaitForPicture:
       return context.stops_once_open ? "wait: it stops once it is open" : "wait for the first picture";
     case Kind::ChangeMedium:

@@ -43,6 +43,7 @@ class RateMeter {
 
 std::string words_of(const Preview& preview) {
   if (!preview.trouble.empty()) return preview.trouble;
+  if (preview.is_open_here) return "is open now";
   if (preview.does_not_answer()) return "does not answer";
   if (preview.picture == nullptr) return kBeingOpened;
   const std::string size = std::to_string(preview.size_px.x()) + " x " + std::to_string(preview.size_px.y());
@@ -85,6 +86,7 @@ class SourcePreview::Reader {
 
   static void read(const Opener& opener, Worker::Inbox& inbox) {
     const std::unique_ptr<sources::FrameSource> source = opener();
+    if (source == nullptr) return inbox.publish({.preview = {.is_open_here = true}});
     const sources::SourceInfo& info = source->info();
     Known known{.preview = {.size_px = info.image_size_px}, .line = info.line};
     inbox.publish(known);

@@ -21,6 +21,7 @@
 
 namespace arthronaut::previews {
 
+// Null: it is open here already, and shown elsewhere on the screen.
 using Opener = std::function<std::unique_ptr<sources::FrameSource>()>;
 
 struct Preview {
@@ -30,10 +31,11 @@ struct Preview {
   std::string trouble = {};      // why no picture comes
   std::string remark = {};       // what is wrong with those that come
   double waited_s = 0;           // for the first one, since it was asked for
+  bool is_open_here = false;     // and not opened a second time
   // None came, and none is to be expected soon; a stream that is there takes less.
   [[nodiscard]] bool does_not_answer() const {
     constexpr double kAnswers_s = 4;
-    return picture == nullptr && (!trouble.empty() || waited_s > kAnswers_s);
+    return picture == nullptr && !is_open_here && (!trouble.empty() || waited_s > kAnswers_s);
   }
 };
 // "1920 x 1080, 59.9/s" and the remark, the trouble, that it is being opened, or does not answer.

@@ -80,6 +80,9 @@ void add(Json& json, const ConfirmTimeOut& time_out) {
 void add(Json& json, const TunnelDrilled& drilled) {
   if (drilled.without_picture_s > 0) json["without_picture_s"] = drilled.without_picture_s;
 }
+void add(Json& json, const MarkerOut& out) {
+  if (out.without_picture_s > 0) json["without_picture_s"] = out.without_picture_s;
+}
 void add(Json& json, const ResumeOperation& resume) {
   json["session"] = resume.session;
   json["of"] = registration::to_json(resume.of);
@@ -209,6 +212,8 @@ Command read_command(const std::string& text, const std::string& name) {
   if (auto* stop = std::get_if<ReadDepthStop>(&command)) stop->depth_mm = json.number("depth_mm");
   if (auto* drilled = std::get_if<TunnelDrilled>(&command); drilled && json.has("without_picture_s"))
     drilled->without_picture_s = json.number("without_picture_s");
+  if (auto* out = std::get_if<MarkerOut>(&command); out && json.has("without_picture_s"))
+    out->without_picture_s = json.number("without_picture_s");
   if (std::holds_alternative<OfferPlan>(command))
     command = OfferPlan{plan_from(json), moves_target_from(json)};
   if (auto* take = std::get_if<TakePlanOver>(&command))

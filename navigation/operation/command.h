@@ -76,7 +76,9 @@ struct TunnelDrilled {
 struct TakeBackDrilled {};
 // The world marker is out of the bone, at the end: nothing that was found by it holds. Not believed while a
 // live source still shows it.
-struct MarkerOut {};
+struct MarkerOut {
+  double without_picture_s = 0;  // as in TunnelDrilled: what the last picture showed is so long ago
+};
 // A registration from a file, or from before a crash.
 struct GiveRegistration {
   registration::RegistrationSummary registration;

@@ -47,7 +47,7 @@ void DrilledTunnels::follow(const OperationState& state) {
   const bool was_verified = before != nullptr && before->was_verified;
   say_drilled({*state.plan, state.drilled.tunnel, was_verified});
   // The operation forgets it with the marker, the tunnel does not.
-  if (state.drilled.tunnel && state.verification != Verification::NotYet)
+  if (state.verification != Verification::NotYet)
     set_verified(key, state.verification == Verification::ByTouches);
 }
 

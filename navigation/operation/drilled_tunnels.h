@@ -15,7 +15,7 @@ namespace arthronaut::operation {
 struct DrilledTunnel {
   PlannedTunnel planned;                   // the very plan that was in force
   std::optional<AchievedTunnel> measured;  // empty: by word alone
-  bool was_verified = false;               // what guided to it, by touches; of a measured one
+  bool was_verified = false;               // the registration that it was drilled by, by touches
 };
 
 class DrilledTunnels {

@@ -171,7 +171,7 @@ struct Operation::Parts {
   }
   void apply(const SkipVerification&) { skip_verification("asked for"); }
   void apply(const MarkerPlacedAnew&) { find_anew("the world marker was placed anew"); }
-  void apply(const MarkerOut&);
+  void apply(const MarkerOut& out);
   void apply(const ReadDepthStop& stop) { drilling.read_depth_stop(stop.depth_mm); }
   void apply(const TunnelDrilled& drilled) {
     if (auto entry = drilling.say_drilled(plan, setup.surface.get(), drilled.without_picture_s))

@@ -273,9 +273,10 @@ void Operation::Parts::take_touch(bool is_control_point) {
 }
 
 // In a recording and in a simulation no hand takes out what their pictures show.
-void Operation::Parts::apply(const MarkerOut&) {
+void Operation::Parts::apply(const MarkerOut& out) {
   touch = {TouchRefusal::None, false, frame.timestamp_ns};
-  if (is_live() && in_view.marker_is_seen(frame.timestamp_ns)) {
+  const std::int64_t now_ns = frame.timestamp_ns + static_cast<std::int64_t>(1e9 * out.without_picture_s);
+  if (is_live() && in_view.marker_is_seen(now_ns)) {
     touch.refusal = TouchRefusal::MarkerIsSeen;
     return;
   }

@@ -29,8 +29,8 @@ class SaidOfDrilled {
       is_verified_ = false;
     if (event.kind == kVerifiedEvent) set_verified(true);
     if (event.kind == kVerificationSkippedEvent) set_verified(false);
-    if (event.kind == kDrilledEvent) take_measured(event);
-    if (event.kind == kDrilledByWordEvent && plan_) said_.say_drilled({*plan_, std::nullopt, false});
+    if (event.kind == kDrilledEvent) take_drilled(operation::read_achieved_file(folder_ / event.text));
+    if (event.kind == kDrilledByWordEvent) take_drilled(std::nullopt);
     if (event.kind == kDrilledTakenBackEvent || event.kind == kSaidTooEarlyEvent) take_back(event.text);
     if (event.kind == kMarkerOutEvent) said_.say_marker(bone_, event.text.empty());
     if (event.kind == kCommandEvent && event.text == kPlacedAnew) said_.say_marker(bone_, false);
@@ -41,18 +41,17 @@ class SaidOfDrilled {
     const RecordedSession::PlanChange change = plan_from_text(event.text, database_file(folder_));
     plan_.reset();
     if (change.plan) plan_ = {*change.plan, change.planned_length_mm};
-    measured_.reset();
+    drilled_.reset();
   }
-  void take_measured(const SessionEvent& event) {
-    const operation::AchievedTunnel measured = operation::read_achieved_file(folder_ / event.text);
+  void take_drilled(const std::optional<operation::AchievedTunnel>& measured) {
     if (!plan_) return;
     said_.say_drilled({*plan_, measured, is_verified_});
-    measured_ = plan_->tunnel.key();
+    drilled_ = plan_->tunnel.key();
   }
   // What is verified later holds for the tunnel that was drilled by it just now.
   void set_verified(bool is_verified) {
     is_verified_ = is_verified;
-    if (measured_) said_.set_verified(*measured_, is_verified);
+    if (drilled_) said_.set_verified(*drilled_, is_verified);
   }
   // By the file that held it, or by its name.
   void take_back(const std::string& text) {
@@ -61,14 +60,14 @@ class SaidOfDrilled {
       if (const TunnelKey key(bone_, bundle);
           text == operation::achieved_file_name(key) || text == tunnels::name_of(key))
         said_.take_back(key);
-    measured_.reset();
+    drilled_.reset();
   }
 
   DrilledTunnels& said_;
   const std::filesystem::path& folder_;
   bones::BoneKind bone_;
   std::optional<operation::PlannedTunnel> plan_;  // in force
-  std::optional<TunnelKey> measured_;             // that was drilled last, as long as its plan is in force
+  std::optional<TunnelKey> drilled_;              // that was drilled last, as long as its plan is in force
   bool is_verified_ = false;
 };
 

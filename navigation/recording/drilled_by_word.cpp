@@ -4,9 +4,6 @@
 
 namespace arthronaut::recording {
 
-namespace {
-
-// Of the file that keeps a drilled tunnel.
 std::string name_of_tunnel_in(const std::string& achieved_file, bones::BoneKind bone) {
   for (const auto bundle :
        {norms::Bundle::Whole, norms::Bundle::Anteromedial, norms::Bundle::Posterolateral}) {
@@ -15,8 +12,6 @@ std::string name_of_tunnel_in(const std::string& achieved_file, bones::BoneKind 
   }
   return "";
 }
-
-}  // namespace
 
 std::vector<DrilledByWord> drilled_by_word(const std::vector<SessionEvent>& events, bones::BoneKind bone) {
   constexpr std::string_view kWhy = ": ";

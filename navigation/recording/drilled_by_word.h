@@ -21,6 +21,10 @@ struct DrilledByWord {
 [[nodiscard]] std::vector<DrilledByWord> drilled_by_word(const std::vector<SessionEvent>& events,
                                                          bones::BoneKind bone);
 
+// The tunnel that a file of a record keeps as drilled (operation::achieved_file_name()), as
+// tunnels::name_of() names it; empty: it keeps none.
+[[nodiscard]] std::string name_of_tunnel_in(const std::string& achieved_file, bones::BoneKind bone);
+
 // The tunnels of which a session says that they are not drilled, whatever an earlier one says; as
 // tunnels::name_of() names them.
 [[nodiscard]] std::vector<std::string> said_too_early(const std::vector<SessionEvent>& events);

@@ -9,6 +9,7 @@
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/recording/declined_resume.h"
+#include "navigation/recording/drilled_by_word.h"
 #include "navigation/recording/hash_chain.h"
 #include "navigation/recording/last_registration.h"
 #include "navigation/recording/recording_lock.h"
@@ -32,22 +33,48 @@ std::chrono::system_clock::time_point last_written(const std::filesystem::path& 
       std::chrono::file_clock::to_sys(newest));
 }
 
-void add_drilled(const RecordedSession& session, std::set<std::string>& files) {
-  std::set<std::string> own;
+// The files of the tunnels that are drilled, session after session.
+void follow_drilled(const RecordedSession& session, std::set<std::string>& files) {
   for (const SessionEvent& event : session.events()) {
-    if (event.kind == kDrilledEvent) own.insert(event.text);
-    if (event.kind == kDrilledTakenBackEvent) own.erase(event.text);
+    if (event.kind == kDrilledEvent) files.insert(event.text);
+    if (event.kind == kDrilledTakenBackEvent) files.erase(event.text);
+    if (event.kind == kSaidTooEarlyEvent)
+      std::erase_if(files, [&](const std::string& file) {
+        return name_of_tunnel_in(file, session.header().bone) == event.text;
+      });
   }
-  files.merge(own);
+}
+
+// Likewise those that are drilled by word alone.
+void follow_said(const RecordedSession& session, std::vector<SaidDrilled>& said) {
+  const bones::BoneKind bone = session.header().bone;
+  const auto forget = [&](const std::string& tunnel) {
+    std::erase_if(said, [&](const SaidDrilled& one) { return one.tunnel == tunnel; });
+  };
+  std::int64_t end_ns = session.frames().empty() ? 0 : session.frames().back().timestamp_ns;
+  for (const SessionEvent& event : session.events()) {
+    end_ns = std::max(end_ns, event.timestamp_ns);
+    if (event.kind == kDrilledEvent) forget(name_of_tunnel_in(event.text, bone));
+    if (event.kind == kSaidTooEarlyEvent) forget(event.text);
+  }
+  // The pictures have a clock of their own, which shows the end when that was written.
+  const auto end = last_written(session.folder());
+  for (const DrilledByWord& one : drilled_by_word(session.events(), bone)) {
+    forget(one.tunnel);
+    said.push_back({one.tunnel, end - std::chrono::duration_cast<std::chrono::system_clock::duration>(
+                                          std::chrono::nanoseconds(end_ns - one.timestamp_ns))});
+  }
 }
 
 // Whether it was drilled in its newest session, and nothing is left to be drilled.
 bool has_come_to_its_end(const RecordedSession& newest, const std::vector<tunnels::TunnelKey>& planned) {
   std::set<std::string> drilled;
-  add_drilled(newest, drilled);
+  follow_drilled(newest, drilled);
   if (drilled.empty()) return false;
+  drilled.clear();
   for (const RecordedSession& session : sessions_before(newest, [](const std::string&) {}))
-    add_drilled(session, drilled);
+    follow_drilled(session, drilled);
+  follow_drilled(newest, drilled);
   // A single tunnel's is the only one, whatever is planned since.
   return drilled.contains(operation::achieved_file_name(newest.header().bone)) ||
          std::ranges::none_of(planned, [&](const tunnels::TunnelKey& key) {
@@ -59,8 +86,8 @@ bool has_come_to_its_end(const RecordedSession& newest, const std::vector<tunnel
 std::vector<tunnels::TunnelKey> drilled_bundles(const RecordedSession& newest,
                                                 const std::vector<RecordedSession>& before) {
   std::set<std::string> files;
-  add_drilled(newest, files);
-  for (const RecordedSession& session : before) add_drilled(session, files);
+  for (const RecordedSession& session : before) follow_drilled(session, files);
+  follow_drilled(newest, files);
   std::vector<tunnels::TunnelKey> keys;
   for (const norms::Bundle bundle : {norms::Bundle::Anteromedial, norms::Bundle::Posterolateral}) {
     const tunnels::TunnelKey key(newest.header().bone, bundle);
@@ -111,6 +138,8 @@ std::optional<Resumable> resumable_from(const RecordedSession& newest) {
   resume.plan = state->plan;
   resume.depth_stop_mm = state->depth_stop_mm;
   found.drilled = drilled_bundles(newest, before);
+  for (const RecordedSession& session : before) follow_said(session, found.said_drilled);
+  follow_said(newest, found.said_drilled);
   found.refusal = last.refusal();
   if (found.refusal.empty()) {
     resume.registration = last.registration();

@@ -13,6 +13,12 @@
 
 namespace arthronaut::recording {
 
+// Of a tunnel that is drilled by the surgeon's word alone.
+struct SaidDrilled {
+  std::string tunnel;  // as tunnels::name_of() names it
+  std::chrono::system_clock::time_point when;
+};
+
 struct Resumable {
   operation::ResumeOperation operation;  // to be given to a new operation as it is
   // Why no registration is brought back: "it was in doubt at the end: ...", "nothing was registered". Empty
@@ -22,6 +28,8 @@ struct Resumable {
   double drawn_length_mm = 0;  // of all strokes, along their samples
   // Of two bundles' tunnels those that the surgeon said he had drilled, AM before PL.
   std::vector<tunnels::TunnelKey> drilled;
+  // In the order in which it was said. The operation is not at its end by that: no pose shows where they run.
+  std::vector<SaidDrilled> said_drilled;
   SessionHeader header;                                // of the newest session of it
   std::chrono::system_clock::time_point last_written;  // when that was
   bool was_finished = false;                           // false: it was cut off, as by a crash; or it goes on:

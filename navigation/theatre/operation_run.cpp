@@ -222,6 +222,9 @@ operation::PictureTiming OperationRun::timing_of(const camera::Frame& frame,
   const std::int64_t now_ns = sources::steady_now_ns();
   const bool is_dated = frame.captured_ns > 0 && now_ns >= frame.captured_ns;
   const double guidance_ms = is_dated ? static_cast<double>(now_ns - frame.captured_ns) * 1e-6 : -1;
+  live_.watch.received(is_dated && frame.received_ns > 0
+                           ? static_cast<double>(frame.received_ns - frame.captured_ns) * 1e-6
+                           : -1);
   live_.is_news = live_.watch.picture(view, guidance_ms, live_.taken_ns, source_->remark());
   if (live_.watch.trouble() == SourceTrouble::Slow) return operation::PictureTiming::Slow;
   const double now_s = static_cast<double>(now_ns) * 1e-9;
@@ -300,6 +303,8 @@ void OperationRun::apply(const operation::Command& given) {
   if (auto* const drilled = std::get_if<operation::TunnelDrilled>(&command))
     drilled->without_picture_s =
         static_cast<double>(has_source() ? unseen_ns() : live_.unseen_at_end_ns) * 1e-9;
+  if (auto* const out = std::get_if<operation::MarkerOut>(&command); out && has_source())
+    out->without_picture_s = static_cast<double>(unseen_ns()) * 1e-9;
   if (auto* const time_out = std::get_if<operation::ConfirmTimeOut>(&command); time_out && has_source())
     time_out->beside = wrong_with_picture();
   if (const double age_ms = picture_age_ms(); age_ms > kHandRests_ms && is_of_this_moment(command)) {

@@ -70,6 +70,23 @@ void SourceWatch::shown_until(double age_ms, std::int64_t now_ns) {
 
 bool SourceWatch::are_too_few() const { return gap_ms_ > kFew_ms && 2 * gap_ms_ > replaced_ms_; }
 
+std::string SourceWatch::words_of_slow() const {
+  if (are_too_few())
+    return files::format("%.0f a second are too few: each is too old to guide by before the next one",
+                         1000 / gap_ms_);
+  // Most of its age it has before this machine knows of it.
+  if (2 * received_ms_ > replaced_ms_)
+    return files::format(
+        "Each is %.0f ms old when it comes: see to what sends it (encoder without B-frames, network)",
+        received_ms_);
+  return files::format("Each is over %.0f ms old before the next one is shown: end other programs",
+                       late_after_ms_);
+}
+
+void SourceWatch::received(double age_ms) {
+  received_ms_ += (received_ms_ > 0 ? 0.3 : 1.0) * (std::max(age_ms, 0.0) - received_ms_);
+}
+
 std::int64_t SourceWatch::silence_ns() const {
   // However slow the machine is: of a source that falls silent it says nothing.
   if (!is_slow_ || !are_too_few()) return kSilence_ns;
@@ -125,13 +142,7 @@ bool SourceWatch::picture(const pipeline::PictureObservation& view, double guida
   if (is_slow_) {
     if (trouble_ == SourceTrouble::Slow && now_ns - late_said_ns_ < kSaidAnew_ns) return false;
     late_said_ns_ = now_ns;
-    return set(
-        SourceTrouble::Slow,
-        are_too_few()
-            ? files::format("%.0f a second are too few: each is too old to guide by before the next one",
-                            1000 / gap_ms_)
-            : files::format("Each is over %.0f ms old before the next one is shown: end other programs",
-                            late_after_ms_));
+    return set(SourceTrouble::Slow, words_of_slow());
   }
   if (was_late_) {
     // The words change with the number only when it is said anew: once a second can be read.

@@ -43,6 +43,9 @@ class SourceWatch {
   SourceWatch() = default;
   explicit SourceWatch(double late_after_ms) : late_after_ms_(late_after_ms) {}
 
+  // The picture that is told of next was so old when it came, before anything was done with it; below 0:
+  // nobody knows. Tells a slow sender from a slow machine.
+  void received(double age_ms);
   // A picture that was worked in; guidance_ms: from its capture until guidance was known, below 0 when nobody
   // knows; remark: what the source says of its pictures. True: what is wrong has changed.
   bool picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns,
@@ -65,7 +68,9 @@ class SourceWatch {
  private:
   bool set(SourceTrouble trouble, const std::string& words);
   [[nodiscard]] std::int64_t silence_ns() const;
-  [[nodiscard]] bool are_too_few() const;  // of a slow source: it is its rate, and not the machine
+  // Of a slow source, by what it is slow.
+  [[nodiscard]] std::string words_of_slow() const;
+  [[nodiscard]] bool are_too_few() const;  // it is its rate, and not the machine
 
   double late_after_ms_ = 1000 * kLateAfter_s;
   SourceTrouble trouble_ = SourceTrouble::None;
@@ -74,6 +79,7 @@ class SourceWatch {
   std::int64_t silence_said_ns_ = 0;
   std::int64_t last_picture_ns_ = 0, torn_ns_ = 0, late_ns_ = 0, late_said_ns_ = 0, slow_ns_ = 0;
   double late_ms_ = 0, gap_ms_ = 0;  // between pictures, lately
+  double received_ms_ = 0;           // how old they were when they came, lately; 0: not known
   double replaced_ms_ = 0;           // how old one that was too old was when the next one was shown
   bool has_begun_ = false, was_torn_ = false, was_late_ = false, is_slow_ = false;
   std::bitset<6> too_old_;  // of those that were shown last

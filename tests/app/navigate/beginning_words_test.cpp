@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "planning/files/local_time.h"
+#include "planning/files/utc_clock.h"
+
 namespace arthronaut::navigate {
 namespace {
 
@@ -137,6 +140,18 @@ TEST(ResumeCard, SaysWhatSpeaksAgainstThePlan) {
   const CardLine wrong = line({.wrong = {"Wall: -3.5 mm"}, .look = {"Bone: check the side"}});
   EXPECT_EQ(wrong.severity, Severity::Bad);
   EXPECT_TRUE(wrong.text.ends_with("; WRONG: Wall: -3.5 mm (and 1 to look at)")) << wrong.text;
+}
+
+// Of a tunnel that is drilled by word alone nobody else tells after a crash.
+TEST(ResumeCard, SaysWhatIsDrilledByWordAlone) {
+  LeftBehind left = left_behind();
+  EXPECT_THROW((void)line_of(card_of(left), "Said to be drilled"), std::runtime_error);
+  left.found.said_drilled = {{"femur", left.found.last_written - std::chrono::minutes(3)}};
+  const std::string when =
+      files::local_time_in_words(files::utc_of(left.found.said_drilled.front().when)).substr(11, 5);
+  const CardLine line = line_of(card_of(left), "Said to be drilled");
+  EXPECT_EQ(line.text, "femur, at " + when + "; by word alone, nothing shows where");
+  EXPECT_EQ(line.severity, Severity::Caution);
 }
 
 // Which of two bundles' tunnels is there already: said, and in doubt where it is the one that would guide

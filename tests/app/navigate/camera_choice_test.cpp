@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -80,6 +81,24 @@ TEST(CameraChoice, WhatAnswersIsChosenInPlaceOfWhatDoesNot) {
   choice.prefer_what_answers();
   EXPECT_EQ(choice.chosen(), silent) << "a hand wants it all the same";
   EXPECT_TRUE(choice.chosen_does_not_answer());
+}
+
+// What is navigated by is not opened a second time, and answers all the same.
+TEST(CameraChoice, WhatIsNavigatedByStaysChosen) {
+  const LivePictures open{"udp://@:5000", std::nullopt, "udp://@:5000"};
+  CameraChoice choice;
+  std::atomic<bool> other_is_read = false;
+  choice.open({}, {"udp://@:5000", "udp://@:5001"}, open,
+              [&](const LivePictures& one) -> std::unique_ptr<sources::FrameSource> {
+                if (one == open) return nullptr;
+                other_is_read = true;
+                return std::make_unique<Gives>();
+              });
+  for (int i = 0; i < 2000 && !other_is_read; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the other one gives pictures by now
+  choice.prefer_what_answers();
+  EXPECT_EQ(choice.chosen(), open);
+  EXPECT_FALSE(choice.chosen_does_not_answer());
 }
 
 // A stream whose sender was not on yet is kept nowhere. The foot that asks again gets it, and no webcam.

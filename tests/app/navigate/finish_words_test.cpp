@@ -70,7 +70,7 @@ TEST(FinishWords, TellOfEachOfTwoTunnels) {
                       {{BoneKind::Femur, norms::Bundle::Posterolateral}, true, {}, false}},
                      true};
   const FinishList list = finish_list({femur});
-  ASSERT_EQ(list.lines.size(), 4U);
+  ASSERT_EQ(list.lines.size(), 4U);  // and one for the registration, one for the marker
   EXPECT_EQ(list.lines[0].name, "Femur AM tunnel");
   EXPECT_EQ(list.lines[0].text, "drilled, 24.5 mm deep");
   EXPECT_EQ(list.lines[1].name, "Femur PL tunnel");
@@ -97,8 +97,11 @@ TEST(FinishWords, SayThatNothingWasVerified) {
   EXPECT_EQ(line().text, "verified by touches");
   EXPECT_EQ(line().severity, widgets::Severity::Good);
   EXPECT_EQ(last_word(), "done: the report is in Review (F3)");
-  femur.tunnels.front().measured.reset();
-  EXPECT_EQ(line().name, "") << "nothing guided to a tunnel of which there is the surgeon's word alone";
+  femur.tunnels.front() = {BoneKind::Femur, true, {}, false};  // by word alone
+  EXPECT_EQ(line().text, "NOT verified by touches");
+  EXPECT_EQ(last_word(), "done, not verified: the report is in Review (F3)");
+  femur.tunnels.front().is_drilled = false;
+  EXPECT_EQ(line().name, "") << "nothing was drilled by any registration";
 }
 
 }  // namespace

@@ -176,15 +176,36 @@ TEST(OperationRail, ATunnelByWordAloneTicksNoStepBeforeIt) {
   Rail rail = course.rail();
   expect_whole(rail);
   EXPECT_EQ(step_of_now(rail), Step::Finish);
-  for (const Step step : {Step::Digitise, Step::Register, Step::Verify})
+  for (const Step step : {Step::Digitise, Step::Register, Step::Verify, Step::Guide})
     EXPECT_NE(state_of(rail, step), StepState::Done) << name_of(step);
 
   // Nor once the marker is out, when the operation itself has forgotten how it was said.
   course.state.drilled = {};
   course.context.marker_is_out = true;
   rail = course.rail();
-  for (const Step step : {Step::Digitise, Step::Register, Step::Verify})
+  for (const Step step : {Step::Digitise, Step::Register, Step::Verify, Step::Guide})
     EXPECT_NE(state_of(rail, step), StepState::Done) << name_of(step);
+
+  // Of one that stands it is said that nothing shows the drilling.
+  Course verified;
+  verified.verify();
+  verified.state.drilled.outcome = operation::DrilledState::Outcome::NoEvidence;
+  EXPECT_EQ(state_of(verified.rail(), Step::Guide), StepState::Open);
+  EXPECT_EQ(missing_of(verified.rail(), Step::Guide), Missing::Evidence);
+}
+
+// The finish is that of both bones: no tick while the list below it names one that is not drilled.
+TEST(OperationRail, TheFinishIsDoneWithBothBones) {
+  Course course;
+  course.plan();
+  course.context.is_drilled = course.context.was_measured = course.context.marker_is_out = true;
+  course.context.other_bone_is_left = true;
+  const Rail rail = course.rail();
+  expect_whole(rail);
+  EXPECT_EQ(state_of(rail, Step::Finish), StepState::Now);
+  EXPECT_EQ(missing_of(rail, Step::Finish), Missing::OtherBone);
+  course.context.other_bone_is_left = false;
+  EXPECT_EQ(state_of(course.rail(), Step::Finish), StepState::Done);
 }
 
 // Pictures that end on the way to the tunnel take nothing back: the marker was found, and what is left to do
@@ -339,9 +360,9 @@ TEST(OperationRail, Hazard26WhatIsOfTheSimulatorTicksNothingOfARealScope) {
 // Everything that is missing has its own words, and so has every way to do a step again.
 TEST(OperationRail, HasWordsForEverything) {
   std::set<std::string> missing, repeats;
-  for (int i = 1; i <= static_cast<int>(Missing::MarkerOut); ++i)
+  for (int i = 1; i <= static_cast<int>(Missing::OtherBone); ++i)
     missing.insert(words_of(static_cast<Missing>(i)));
-  EXPECT_EQ(missing.size(), static_cast<std::size_t>(Missing::MarkerOut));
+  EXPECT_EQ(missing.size(), static_cast<std::size_t>(Missing::OtherBone));
   EXPECT_FALSE(missing.contains(""));
   for (int i = 0; i <= static_cast<int>(Repeat::NothingNow); ++i)
     repeats.insert(words_of(static_cast<Repeat>(i), Step::Tools));

@@ -78,6 +78,17 @@ TEST(PedalStep, StaysTheSameWhilePicturesFlicker) {
   }
 }
 
+// Nor is the marker said to be out, by anybody but the surgeon, while no picture shows it.
+TEST(PedalStep, SaysThatNoPictureShowsWhetherTheMarkerIsOut) {
+  AtThePedal theatre(NextAction::Finish);
+  theatre.context.bones = {{bones::BoneKind::Femur, {{bones::BoneKind::Femur, true, {}, false}}, false}};
+  EXPECT_EQ(theatre.words(), "take the femur's marker out, then say so");
+  theatre.shown.live.trouble = theatre::SourceTrouble::NoPicture;
+  EXPECT_EQ(theatre.words(), "no picture comes; take the femur's marker out, then say so: your word alone");
+  theatre.shown.live.phase = theatre::LiveState::Phase::Ended;
+  EXPECT_EQ(theatre.words(), "take the femur's marker out, then say so");
+}
+
 // A plan that takes the place of the one that was read is read anew, however alike the two are in words; so
 // is one of which something else is known by now.
 TEST(PedalStep, IsAnotherOneWithAnotherPlan) {
@@ -106,7 +117,7 @@ TEST(PedalStep, AnswersWhatStandsInFront) {
   EXPECT_EQ(theatre.step().kind, Kind::Act);
   theatre.context.looked_at = operation::Step::Guide;
   theatre.context.repeat = Repeat::NotDrilled;
-  EXPECT_EQ(theatre.words(), "not drilled yet: take that back");
+  EXPECT_EQ(theatre.words(), "take back that the tunnel is drilled");
   EXPECT_TRUE(must_be_read(theatre.step()));
   theatre.context.was_left = true;
   EXPECT_EQ(theatre.step().kind, Kind::Resume);

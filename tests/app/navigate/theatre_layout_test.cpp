@@ -73,6 +73,7 @@ std::vector<std::string> all_words() {
       words_of(operation::NextAction::VerifyByTouch) + ", 3 to go. Wait: the probe moves",
       words_without_pictures(theatre::SourceTrouble::NoPicture, operation::NextAction::VerifyByTouch,
                              Eigen::Vector2i(1280, 720)),
+      "no picture comes; take the femur's marker out, then say so: your word alone",
       "calibrate camera and tools in Set up",
       "wait: the case's last operation is looked for"};
   for (const auto way_out : {operation::WayOut::StrokesAnew, operation::WayOut::MarkerPlacedAnew})

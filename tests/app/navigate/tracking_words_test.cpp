@@ -50,6 +50,29 @@ TEST(WordsWithoutPictures, StandBesideWhatIsTakenOnSomebodysWord) {
   EXPECT_EQ(words_beside_no_picture(SourceTrouble::NoPicture, NextAction::Draw), "");
 }
 
+// Where a card stands in the place of the reasons, what is wrong with the source is told beside the step.
+TEST(WhyNotLive, IsToldWhileTheSourceIsToBlame) {
+  using theatre::SourceTrouble;
+  theatre::LiveState live;
+  live.phase = theatre::LiveState::Phase::Running;
+  live.trouble_words = "udp://@:5000: nothing";
+  for (const SourceTrouble trouble : {SourceTrouble::NoPicture, SourceTrouble::Plain, SourceTrouble::Frozen,
+                                      SourceTrouble::Torn, SourceTrouble::Late, SourceTrouble::Slow}) {
+    live.trouble = trouble;
+    EXPECT_EQ(why_not_live(live), live.trouble_words) << to_text(trouble);
+  }
+  for (const SourceTrouble trouble : {SourceTrouble::None, SourceTrouble::Repeated, SourceTrouble::Lost}) {
+    live.trouble = trouble;
+    EXPECT_EQ(why_not_live(live), "") << to_text(trouble);
+  }
+  live.trouble = SourceTrouble::NoPicture;
+  live.phase = theatre::LiveState::Phase::Ended;
+  EXPECT_EQ(why_not_live(live), "");
+  live.phase = theatre::LiveState::Phase::Failed;
+  live.message = "camera 0 was pulled out";
+  EXPECT_EQ(why_not_live(live), live.message);
+}
+
 // Nor is anybody told, of a step that he went back to, to follow what is not there.
 TEST(WordsWithoutPictures, TakeThePlaceOfWhatIsToBeDoneOnceMore) {
   using operation::Step;

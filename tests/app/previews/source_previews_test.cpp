@@ -66,6 +66,9 @@ TEST(SourcePreview, SaysWhatItWaitsForAndWhyThereIsNone) {
   const SourcePreview none(
       []() -> std::unique_ptr<sources::FrameSource> { throw DeviceError("nobody there"); });
   EXPECT_TRUE(wait_until([&] { return words_of(none.latest()) == "nobody there"; }));
+  const SourcePreview open([]() -> std::unique_ptr<sources::FrameSource> { return nullptr; });
+  EXPECT_TRUE(wait_until([&] { return words_of(open.latest()) == "is open now"; }));
+  EXPECT_FALSE(open.latest().does_not_answer());
 }
 
 }  // namespace

@@ -73,6 +73,7 @@ const std::vector<Command>& all_commands() {
                                              TunnelDrilled{29.25},
                                              TakeBackDrilled{},
                                              MarkerOut{},
+                                             MarkerOut{14.5},
                                              given(),
                                              ConfirmTimeOut{true},
                                              ConfirmTimeOut{true, "no picture"},

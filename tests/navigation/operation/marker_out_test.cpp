@@ -44,6 +44,16 @@ TEST_F(MarkerOutTest, IsNotBelievedWhileItIsSeen) {
   EXPECT_EQ(run_.in_force().standing, Standing::None) << "nothing guides by where it sat";
 }
 
+// What the last picture showed says nothing of now once no other one has come.
+TEST_F(MarkerOutTest, IsBelievedWhereNoPictureHasComeSince) {
+  begin(SourceKind::Live);
+  run_.apply(MarkerOut{0.4});
+  EXPECT_FALSE(run_.state()->marker_is_out) << "a pause of the source";
+  run_.apply(MarkerOut{14});
+  EXPECT_TRUE(run_.state()->marker_is_out);
+  EXPECT_EQ(run_.state()->touch_refusal, TouchRefusal::None);
+}
+
 TEST_F(MarkerOutTest, EndsWhereItIsSeenAgain) {
   begin(SourceKind::Live);
   show_without_marker(40);

@@ -72,6 +72,7 @@ TEST_F(DrilledBeforeTest, TheWordAloneIsEnoughAndCanBeTakenBack) {
   end(run);
   ASSERT_NE(drilled(before()), nullptr);
   EXPECT_FALSE(drilled(before())->measured);
+  EXPECT_FALSE(drilled(before())->was_verified);
   begin(run, test::scripted_source());  // the same operation goes on
   run.show(run.frame());
   EXPECT_NE(drilled(before()), nullptr);
@@ -80,6 +81,18 @@ TEST_F(DrilledBeforeTest, TheWordAloneIsEnoughAndCanBeTakenBack) {
   EXPECT_EQ(drilled(before()), nullptr);
   drill_and_end();
   EXPECT_TRUE(drilled(before())->measured);
+}
+
+// Also where no picture showed the drilling, the registration that it went by was verified.
+TEST_F(DrilledBeforeTest, WhatWasVerifiedIsKnownOfATunnelByWord) {
+  PhantomOperation run;
+  operate(run, test::scripted_source());
+  run.touch(test::on_bone(trial_, -5));
+  ASSERT_EQ(run.state()->verification, Verification::ByTouches);
+  run.apply(TunnelDrilled{});
+  ASSERT_EQ(run.state()->drilled.outcome, DrilledState::Outcome::NoEvidence);
+  end(run);
+  EXPECT_TRUE(drilled(before())->was_verified);
 }
 
 // With the marker out it came to its end: the next one, of the same plan, has drilled nothing yet.
@@ -123,8 +136,10 @@ TEST_F(DrilledBeforeTest, WhatIsSaidInTheNextProgramIsKeptToo) {
   say(MarkerOut{});
   EXPECT_TRUE(before().tunnels.marker_is_out(bones::BoneKind::Femur));
   EXPECT_NE(drilled(before()), nullptr);
+  EXPECT_FALSE(found());
   say(TakeBackDrilled{});
   EXPECT_EQ(drilled(before()), nullptr);
+  EXPECT_TRUE(found()) << "it is not at its end any more";
   EXPECT_FALSE(before().tunnels.marker_is_out(bones::BoneKind::Femur));
   ASSERT_EQ(cases::session_folders(folder_.path()).size(), 1U);
   const std::filesystem::path folder = cases::session_folders(folder_.path()).front();

@@ -159,17 +159,25 @@ TEST_F(OperationRunTest, Hazard29WhatIsSaidWithoutAPictureIsDatedWhenItIsSaid) {
   run.apply(operation::OfferPlan{wider});
   run.apply(operation::TakePlanOver{});
   give(run);
+  run.apply(operation::MarkerOut{});
   run.end_source();
   run.apply(operation::ReadDepthStop{21});
   std::vector<std::int64_t> said_ns;
+  double out_without_picture_s = 0;
   const recording::RecordedSession recorded(session);
-  for (const recording::SessionEvent& event : recorded.events())
-    if (event.kind == recording::kCommandEvent) said_ns.push_back(event.timestamp_ns);
-  ASSERT_EQ(said_ns.size(), 6U);
+  for (const recording::SessionEvent& event : recorded.events()) {
+    if (event.kind != recording::kCommandEvent) continue;
+    said_ns.push_back(event.timestamp_ns);
+    const operation::Command command = operation::command_from_text(event.text, "events");
+    if (const auto* const out = std::get_if<operation::MarkerOut>(&command))
+      out_without_picture_s = out->without_picture_s;
+  }
+  EXPECT_NEAR(out_without_picture_s, 29, 5) << "the word that the marker is out, likewise";
+  ASSERT_EQ(said_ns.size(), 7U);
   EXPECT_LT(said_ns[0], last_ns) << "of the picture that was there";
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   EXPECT_NEAR(static_cast<double>(said_ns[1] - last_ns) / kSecond_ns, 29, 5);
-  EXPECT_GE(said_ns[5], said_ns[1]);
+  EXPECT_GE(said_ns[6], said_ns[1]);
   const auto newest_ns = [&](std::string_view kind) {
     std::int64_t at_ns = -1;
     for (const recording::SessionEvent& event : recorded.events())

@@ -87,6 +87,32 @@ TEST_F(ResumableTest, WhatWasDeclinedStaysDeclined) {
   EXPECT_FALSE(is_resume_declined(left->folder));
 }
 
+// A tunnel that is drilled by word alone ends no operation, and is not forgotten: when it was said is told,
+// by the clock on the wall; until it is taken back, or its poses are recorded.
+TEST_F(ResumableTest, WhatIsDrilledByWordAloneIsTold) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source(SourceKind::Live);
+  operate(run, source);
+  const std::int64_t said_ns = run.frame().timestamp_ns;
+  run.apply(TunnelDrilled{});
+  for (int i = 0; i < 300; ++i) run.show(run.frame());
+  const std::int64_t passed_ns = run.frame().timestamp_ns - said_ns;
+  ASSERT_GT(passed_ns, 2'000'000'000);
+  end(run);
+  const auto left = found();
+  ASSERT_TRUE(left);
+  ASSERT_EQ(left->said_drilled.size(), 1U);
+  EXPECT_EQ(left->said_drilled.front().tunnel, "femur");
+  const std::chrono::duration<double> before_end = left->last_written - left->said_drilled.front().when;
+  EXPECT_NEAR(before_end.count(), static_cast<double>(passed_ns) * 1e-9, 1) << "the end is written in less";
+  begin(run, source);  // it goes on
+  run.show(run.frame());
+  EXPECT_EQ(found()->said_drilled.size(), 1U);
+  run.apply(TakeBackDrilled{});
+  end(run);
+  EXPECT_TRUE(found()->said_drilled.empty());
+}
+
 // While it goes on it was not cut off.
 TEST_F(ResumableTest, OneThatIsBeingRecordedIsSaidToBe) {
   PhantomOperation run;

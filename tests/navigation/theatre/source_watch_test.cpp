@@ -295,6 +295,23 @@ TEST_F(SourceWatchTest, WhatIsLateByItselfIsNotBlamedOnItsRate) {
   EXPECT_THAT(watch_.words(), HasSubstr("end other programs"));
 }
 
+// Of 60 a second, each 225 ms old when the next one is shown, with B-frames 174 are the sender's: no other
+// program has to end. Where they come at once and are as late it is the machine.
+TEST_F(SourceWatchTest, WhatIsLateWhenItComesIsNotBlamedOnTheMachine) {
+  for (const double received_ms : {174.0, 20.0, -1.0}) {
+    watch_ = {};
+    for (int i = 0; i < 60; ++i) {
+      watch_.shown_until(225, now_ns_);
+      watch_.received(received_ms);
+      pictures(well_, 17);
+    }
+    EXPECT_EQ(watch_.trouble(), SourceTrouble::Slow);
+    EXPECT_THAT(watch_.words(),
+                HasSubstr(received_ms > 100 ? "Each is 174 ms old when it comes: see to what sends it"
+                                            : "end other programs"));
+  }
+}
+
 // The sender is gone: that is not the computer's fault, however late it was with the pictures before.
 TEST_F(SourceWatchTest, Hazard3ASilentSourceIsNotBlamedOnTheMachine) {
   for (int i = 0; i < 30; ++i) {
