@@ -313,7 +313,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
     result.bones.front().doubts.push_back(
         std::string("the volume shows no ") +
         (result.bones.front().bone.kind == BoneKind::Femur ? "tibia" : "femur"));
-  const std::string of_slices = is_ct ? slice_doubt(volume) : "";
+  const std::string of_slices = slice_doubt(volume);
   for (ImportedBone& imported : result.bones) {
     for (const ImageCut& cut : images_of_bones.cuts[imported.bone.kind])
       imported.doubts.push_back(cut_doubt(cut));
