@@ -1,8 +1,10 @@
 #include "app/case/case_opening.h"
 
 #include <cstdlib>
+#include <stdexcept>
 #include <utility>
 
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
@@ -23,6 +25,15 @@ std::filesystem::path built_in_case_folder() {
 
 namespace {
 
+// What cannot be read Plan and Navigate tell.
+cases::BoneDoubts doubts_there(const std::filesystem::path& folder) {
+  try {
+    return cases::load_bone_doubts(folder);
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
 using Tell = std::function<void(double)>;
 
 // Meshes from the disk are about a fifth of it.
@@ -39,6 +50,10 @@ void load(OpenedCase& opened, const std::stop_token& stop, const Tell& tell) {
     opened.model = std::make_unique<PlanModel>(std::move(knee), stop, [&tell](double done) {
       if (tell) tell(kReadingShare + (1 - kReadingShare) * done);
     });
+    const cases::BoneDoubts doubts = doubts_there(opened.folder);
+    for (const bones::BoneKind kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
+      if (auto cuts = cases::image_cuts_of(doubts, kind); opened.model->has_bone(kind) && !cuts.empty())
+        opened.model->set_image_cuts(kind, std::move(cuts));
     opened.model->set_measurements(cases::load_measurements(opened.folder));
   }
   opened.identity = cases::load_identity(opened.folder);

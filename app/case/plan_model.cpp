@@ -82,8 +82,17 @@ void PlanModel::use_landmarks(bones::BoneKind kind) {
   BoneModel& bone = bones_.at(kind);
   bone.axes = landmarks::anatomical_axes(kind, knee_.side, landmarks(kind), mesh);
   bone.joint_bounds = scene::joint_bounds(mesh, kind, bone.axes);
+  auto image_cuts = std::move(bone.review.surroundings.image_cuts);  // the bone's, whatever its landmarks
   bone.review = plan_review::review_bone(mesh, kind, knee_.side, landmarks(kind), bone.review.surface);
+  bone.review.surroundings.image_cuts = std::move(image_cuts);
   plan_review::put_bone(knee_surroundings_, kind, bone.review);
+}
+
+void PlanModel::set_image_cuts(bones::BoneKind kind, std::vector<bones::ImageCut> cuts) {
+  BoneModel& bone = bones_.at(kind);
+  bone.review.surroundings.image_cuts = std::move(cuts);
+  plan_review::put_bone(knee_surroundings_, kind, bone.review);
+  ++revision_;
 }
 
 const landmarks::Landmarks& PlanModel::landmarks(bones::BoneKind kind) const {

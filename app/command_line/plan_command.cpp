@@ -146,7 +146,7 @@ void run_plan(PlanArguments& arguments, Context& context) {
   std::map<bones::BoneKind, plan_review::ProposedBone> by_shape;
   const cases::Case shown = with_proposals(arguments, changed, by_shape);
   const std::string side_doubt = plan_review::side_doubt(doubts);
-  const plan_review::CaseReview review(shown, by_shape, side_doubt);
+  const plan_review::CaseReview review(shown, by_shape, doubts);
   PlanVerdict& verdict = changed.verdict;
   if (arguments.by_default) verdict = judged(shown, review, key_of(arguments), doubts, verdict);
   show(arguments, context, shown, review, doubts, verdict);

@@ -91,8 +91,12 @@ void describe_tunnel(const Context& context, const cases::Case& knee, const plan
   context.say("  direction  " + coordinates(tunnel.direction, 5));
   if (!verdict.source.empty()) context.say("  default    " + verdict.place + " [" + verdict.source + "]");
   if (measured.enters_bone) {
-    context.say(files::format("  length     %.2f mm inside bone", measured.length_mm));
-    context.say("  exit       " + coordinates(measured.exit_mm, 3) + " mm");
+    const bool leaves_images =
+        bones::images_end_at(review.bone(key.bone).surroundings.image_cuts, measured.exit_mm);
+    context.say(files::format("  length     %.2f mm inside bone", measured.length_mm) +
+                (leaves_images ? ", as far as the images go" : ""));
+    context.say("  exit       " + coordinates(measured.exit_mm, 3) + " mm" +
+                (leaves_images ? ", where the images end" : ""));
     context.say("  wall       " + files::fixed(measured.wall_mm, 2) + " mm at the thinnest");
   }
   if (const auto fit = cases::plan_fit(knee, key); !fit.is_valid())

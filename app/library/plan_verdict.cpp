@@ -17,8 +17,9 @@ using plan_review::TunnelVerdict;
 namespace {
 
 // 2: by proposed landmarks where the case has none, and whether the plan is of this bone. 3: whether its
-// landmarks lie where its shape puts them. 4: the side, the grid and what is to be looked at, too.
-constexpr const char* kFirstLine = "arthronaut.plan_verdict 4";
+// landmarks lie where its shape puts them. 4: the side, the grid and what is to be looked at, too. 5: whether
+// a tunnel leaves where the images end.
+constexpr const char* kFirstLine = "arthronaut.plan_verdict 5";
 constexpr std::string_view kWrong = "wrong ", kLook = "look ";
 
 }  // namespace
@@ -40,7 +41,7 @@ TunnelVerdict judge_plan(const cases::Case& knee, const cases::BoneDoubts& doubt
   if (knee.plan.tunnels.empty()) return {};
   cases::Case judged = knee;
   const auto by_shape = plan_review::propose_landmarks(judged, plan_review::Proposing::Planned);
-  const plan_review::CaseReview review(judged, by_shape);
+  const plan_review::CaseReview review(judged, by_shape, doubts);
   return plan_review::verdict_of_plan(judged, plan_review::checks_of_plan(review), doubts);
 }
 

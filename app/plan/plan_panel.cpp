@@ -142,10 +142,13 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
     widgets::status_row(ui, widgets::Severity::Bad, "Entry", entry);
   const tunnels::TunnelGeometry& geometry = panel.model.measured(panel.key);
   draw_numbers(ui, *tunnel, geometry);
+  const auto& image_cuts = panel.model.surroundings(panel.key.bone).image_cuts;
   if (geometry.enters_bone)
-    widgets::text_in(ui.theme.body, widgets::kText,
-                     "Leaves the bone " + place_from_entry(geometry.exit_mm - geometry.entry_on_surface_mm,
-                                                           panel.model.axes(panel.key.bone)));
+    widgets::text_in(
+        ui.theme.body, widgets::kText,
+        (bones::images_end_at(image_cuts, geometry.exit_mm) ? "Leaves the images " : "Leaves the bone ") +
+            place_from_entry(geometry.exit_mm - geometry.entry_on_surface_mm,
+                             panel.model.axes(panel.key.bone)));
   ImGui::Dummy({0, ui.theme.px(4)});
   const auto checks = plan_review::as_side_is_doubted(panel.model.checks(panel.key), side);
   bool has_doubts = false;

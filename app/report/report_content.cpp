@@ -329,8 +329,8 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
       (void)take_session(*it, Registration::Tried, content);
   }
   const auto by_shape = plan_review::propose_landmarks(content.knee, plan_review::Proposing::Planned);
-  content.review = std::make_unique<const plan_review::CaseReview>(
-      content.knee, by_shape, plan_review::side_doubt(content.bone_doubts));
+  content.review =
+      std::make_unique<const plan_review::CaseReview>(content.knee, by_shape, content.bone_doubts);
   content.is_of_another_surface = is_of_another_surface(content);
   add_other_sessions(sessions, content);
   add_postoperative(content);

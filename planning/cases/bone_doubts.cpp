@@ -27,6 +27,7 @@ SideDoubt side_doubt_from(const files::JsonObject& node) {
 std::string words_of(const BoneDoubt& doubt) {
   if (const auto* sentence = std::get_if<std::string>(&doubt)) return *sentence;
   if (const auto* filled = std::get_if<FilledHoles>(&doubt)) return filled->words();
+  if (const auto* cut = std::get_if<bones::ImageCut>(&doubt)) return cut->words();
   return std::get<SideDoubt>(doubt).words();
 }
 
@@ -36,15 +37,27 @@ std::vector<std::string> words_of(const std::vector<BoneDoubt>& doubts) {
   return words;
 }
 
+std::vector<bones::ImageCut> image_cuts_of(const BoneDoubts& doubts, bones::BoneKind bone) {
+  std::vector<bones::ImageCut> cuts;
+  if (const auto of_bone = doubts.find(bone); of_bone != doubts.end())
+    for (const BoneDoubt& doubt : of_bone->second)
+      if (const auto* cut = std::get_if<bones::ImageCut>(&doubt)) cuts.push_back(*cut);
+  return cuts;
+}
+
 fs::path bone_doubts_file(const fs::path& case_folder) { return case_folder / "bone_doubts.json"; }
 
 void put_doubts(nlohmann::ordered_json& bone, const std::vector<BoneDoubt>& doubts) {
-  auto sentences = nlohmann::ordered_json::array(), sides = sentences, holes = sentences;
+  auto sentences = nlohmann::ordered_json::array(), sides = sentences, holes = sentences, cuts = sentences;
   for (const BoneDoubt& doubt : doubts) {
     if (const auto* sentence = std::get_if<std::string>(&doubt)) sentences.push_back(*sentence);
     if (const auto* filled = std::get_if<FilledHoles>(&doubt))
       for (const bones::FilledHole& hole : filled->holes)
         holes.push_back({{"at_mm", files::to_json(hole.at_mm)}, {"across_mm", hole.across_mm}});
+    if (const auto* cut = std::get_if<bones::ImageCut>(&doubt))
+      cuts.push_back({{"at_mm", files::to_json(cut->at_mm)},
+                      {"out", files::to_json(cut->out)},
+                      {"area_mm2", cut->area_mm2}});
     const auto* side = std::get_if<SideDoubt>(&doubt);
     if (side == nullptr) continue;
     sides.push_back({{"witness", to_text(side->witness)},
@@ -54,6 +67,7 @@ void put_doubts(nlohmann::ordered_json& bone, const std::vector<BoneDoubt>& doub
   }
   bone["doubts"] = std::move(sentences);
   if (!holes.empty()) bone["filled_holes"] = std::move(holes);
+  if (!cuts.empty()) bone["image_cuts"] = std::move(cuts);
   bone["side_doubts"] = std::move(sides);
 }
 
@@ -71,6 +85,11 @@ std::vector<BoneDoubt> doubts_from(const files::JsonObject& bone) {
           {.at_mm = hole.vector3("at_mm"), .across_mm = hole.positive_number("across_mm")});
     if (!filled.holes.empty()) doubts.emplace_back(std::move(filled));
   }
+  if (bone.has("image_cuts"))
+    for (const files::JsonObject& cut : bone.objects("image_cuts"))
+      doubts.emplace_back(bones::ImageCut{.at_mm = cut.vector3("at_mm"),
+                                          .out = cut.vector3("out"),
+                                          .area_mm2 = cut.positive_number("area_mm2")});
   if (is_of_version_1) return doubts;
   for (const files::JsonObject& side : bone.objects("side_doubts"))
     doubts.emplace_back(side_doubt_from(side));

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "planning/bones/image_cut.h"
 #include "planning/cases/filled_holes.h"
 #include "planning/cases/side_doubt.h"
 
@@ -20,8 +21,8 @@ class JsonObject;
 
 namespace arthronaut::cases {
 
-// A sentence for a person, what is asked about the side, or where its surface is made up.
-using BoneDoubt = std::variant<std::string, SideDoubt, FilledHoles>;
+// A sentence for a person, what is asked about the side, or where its surface is none of its own.
+using BoneDoubt = std::variant<std::string, SideDoubt, FilledHoles, bones::ImageCut>;
 // By bone; only bones with any.
 using BoneDoubts = std::map<bones::BoneKind, std::vector<BoneDoubt>>;
 
@@ -35,8 +36,11 @@ using BoneDoubts = std::map<bones::BoneKind, std::vector<BoneDoubt>>;
 // first, what is asked about the side last.
 void save_bone_doubts(const std::filesystem::path& case_folder, const BoneDoubts& doubts);
 
+// Where the images end within that bone.
+[[nodiscard]] std::vector<bones::ImageCut> image_cuts_of(const BoneDoubts& doubts, bones::BoneKind bone);
+
 // A bone's doubts in this file, and wherever else a file of the case holds some: "doubts",
-// "filled_holes" and "side_doubts".
+// "filled_holes", "image_cuts" and "side_doubts".
 void put_doubts(nlohmann::ordered_json& bone, const std::vector<BoneDoubt>& doubts);
 // Also of version 1, where all were sentences. Throws InvalidInput (file, place, reason).
 [[nodiscard]] std::vector<BoneDoubt> doubts_from(const files::JsonObject& bone);

@@ -58,15 +58,9 @@ std::string formatted_size(const Eigen::Vector3d& size) {
                        size.z());
 }
 
-// Images that bones are made of, and where they end within each, which is asked for twice.
-struct BoneImages {
-  const Volume& volume;
-  std::map<BoneKind, std::vector<ImageCut>> cuts = {};
-};
-
 // images: that it was made of; null for a mesh.
 ImportedBone finished(BoneKind kind, const std::string& source, const geometry::TriangleMesh& mesh,
-                      BoneImages* images, const Tell& tell) {
+                      const Volume* images, const Tell& tell) {
   tell({ImportStage::MendingMesh});
   bones::MeshRepair repair = bones::mend_mesh(mesh);
   ImportedBone imported;
@@ -77,13 +71,11 @@ ImportedBone finished(BoneKind kind, const std::string& source, const geometry::
                            formatted_size(bounds.size_mm()));
   for (const auto& line : repair.report.lines()) imported.lines.push_back("mended: " + line);
   imported.doubts = repair.report.doubts();
-  std::vector<Eigen::Vector3d> image_ends;
-  if (images != nullptr) {
-    const auto& cuts = images->cuts[kind] = cuts_of(imported.bone.mesh, kind, images->volume);
-    for (const ImageCut& cut : cuts) image_ends.push_back(cut.out);
-  }
+  if (images != nullptr) imported.image_cuts = cuts_of(imported.bone.mesh, kind, *images);
   // Of a mesh that is no bone at all there is enough to say already.
   if (!imported.doubts.empty()) return imported;
+  std::vector<Eigen::Vector3d> image_ends;
+  for (const bones::ImageCut& cut : imported.image_cuts) image_ends.push_back(cut.out);
   imported.doubts = shape_doubts(imported.bone.mesh, kind, image_ends);
   imported.filled_holes = wide_holes(std::move(repair.filled), imported.bone.mesh, kind);
   return imported;
@@ -197,9 +189,8 @@ void take_side_of_segments(const Volume& volume, const std::map<BoneKind, int>& 
                                            "\" and the other names do not say the same side: none is taken");
 }
 
-void import_labels(BoneImages& images, const std::map<BoneKind, int>& labels,
+void import_labels(const Volume& volume, const std::map<BoneKind, int>& labels,
                    const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
-  const Volume& volume = images.volume;
   take_side_of_segments(volume, labels, options, result);
   const std::optional<Volume> ct = ct_of(volume, options, tell);
   for (const auto& [kind, label] : labels) {
@@ -213,24 +204,24 @@ void import_labels(BoneImages& images, const std::map<BoneKind, int>& labels,
       surface = surface_of_label(volume, label);
     }
     result.bones.push_back(finished(kind, "label " + std::to_string(label) + " of " + volume.format,
-                                    surface.mesh, &images, tell));
+                                    surface.mesh, &volume, tell));
     auto& lines = result.bones.back().lines;
     lines.insert(lines.begin(), surface.notes.begin(), surface.notes.end());
   }
   if (result.bones.empty()) throw InvalidInput("--label does not name the bone of --bone");
 }
 
-void import_ct(BoneImages& images, const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
+void import_ct(const Volume& volume, const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
   segmentation::CtBonesOptions ct;
   ct.threshold = options.threshold;
   ct.only = options.kind;
   ct.side = result.side;
   ct.tell = [&](double fraction) { tell({ImportStage::FindingBones, fraction}); };
-  const segmentation::CtBones found = segmentation::bones_of_ct(images.volume, ct);
+  const segmentation::CtBones found = segmentation::bones_of_ct(volume, ct);
   result.lines.insert(result.lines.end(), found.notes.begin(), found.notes.end());
   result.side_by_fibula = found.side_by_fibula;
   for (const segmentation::CtBone& bone : found.bones) {
-    result.bones.push_back(finished(bone.kind, images.volume.format, bone.mesh, &images, tell));
+    result.bones.push_back(finished(bone.kind, volume.format, bone.mesh, &volume, tell));
     ImportedBone& imported = result.bones.back();
     imported.lines.insert(imported.lines.begin(), bone.notes.begin(), bone.notes.end());
     imported.doubts.insert(imported.doubts.begin(), bone.doubts.begin(), bone.doubts.end());
@@ -265,12 +256,11 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   result.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
   const bool has_labels = is_label_map(volume);
   bool is_ct = false;
-  BoneImages images_of_bones{volume};
   try {
     if (options.images_only) {
       if (has_labels) throw InvalidInput("is a label map: there is no image to paint in");
     } else if (!options.labels.empty()) {
-      import_labels(images_of_bones, options.labels, options, result, tell);
+      import_labels(volume, options.labels, options, result, tell);
     } else if (has_labels && !options.threshold) {
       auto named = labels_by_name(volume, result.lines);
       if (named.empty() && volume.segments.empty()) {
@@ -285,11 +275,11 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
                           (labels.size() > 2 ? ",tibia=NUMBER" : ""),
                       {.reason = FailureReason::NeedsLabels, .labels = found_labels(volume)});
       }
-      import_labels(images_of_bones, named, options, result, tell);
+      import_labels(volume, named, options, result, tell);
     } else {
       refuse_without_threshold(volume, source, options);
       is_ct = true;
-      import_ct(images_of_bones, options, result, tell);
+      import_ct(volume, options, result, tell);
     }
   } catch (const segmentation::ShowsBothKnees& error) {
     throw refusal(source, error.what(), {.reason = FailureReason::ShowsBothKnees});
@@ -313,12 +303,8 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
     result.bones.front().doubts.push_back(
         std::string("the volume shows no ") +
         (result.bones.front().bone.kind == BoneKind::Femur ? "tibia" : "femur"));
-  const std::string of_slices = is_ct ? slice_doubt(volume) : "";
-  for (ImportedBone& imported : result.bones) {
-    for (const ImageCut& cut : images_of_bones.cuts[imported.bone.kind])
-      imported.doubts.push_back(cut_doubt(cut));
-    if (!of_slices.empty()) imported.doubts.push_back(of_slices);
-  }
+  if (const std::string of_slices = slice_doubt(volume); !of_slices.empty())
+    for (ImportedBone& imported : result.bones) imported.doubts.push_back(of_slices);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "planning/bones/bone.h"
+#include "planning/bones/image_cut.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/bones/mesh_repair.h"
 #include "planning/cases/case_image.h"
@@ -49,6 +50,7 @@ struct ImportedBone {
   // Why a person should look before relying on it; what is to be said of its side, import_side.h says.
   std::vector<std::string> doubts;
   std::vector<bones::FilledHole> filled_holes = {};  // wide ones (filled_check.h): a doubt, too
+  std::vector<bones::ImageCut> image_cuts = {};      // where the images end within it: doubts, too
   std::optional<bones::Space> read_in = {};          // of a mesh: the axes that the file was taken to be in
   bool looks_backwards = false;                      // to the patient's back, which is among the doubts
   // Of which knee its shape is, where that was looked at and it tells; import_side.h holds it against the

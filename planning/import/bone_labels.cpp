@@ -19,7 +19,7 @@ constexpr std::size_t kMostLabels = 12;
 
 bool has_shape_of(BoneKind kind, const geometry::TriangleMesh& mesh, const images::Volume& volume) {
   std::vector<Eigen::Vector3d> image_ends;
-  for (const ImageCut& cut : cuts_of(mesh, kind, volume)) image_ends.push_back(cut.out);
+  for (const bones::ImageCut& cut : cuts_of(mesh, kind, volume)) image_ends.push_back(cut.out);
   return segmentation::anatomy_doubts(mesh, kind, image_ends).empty();
 }
 

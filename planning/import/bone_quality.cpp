@@ -20,7 +20,6 @@ BoneQuality quality_of(const BoneImport& import, const ImportedBone& made, doubl
           .edges_not_manifold = made.repair.edges_not_manifold,
           .triangles = made.repair.triangles_now,
           .cortex_outside_mm = rim.is_seen() ? rim.thickness_mm : 0,
-          .slice_mm = images.spacing_mm().maxCoeff(),
           .roughness_mm = segmentation::roughness_mm(made.bone.mesh),
           .beneath = segmentation::bone_beneath(made.bone.mesh, images),
           .doubts = cases::words_of(doubts_with(import, made, import.side))};
@@ -74,11 +73,6 @@ std::vector<QualityLine> quality_lines(const BoneQuality& quality) {
                        quality.cortex_outside_mm)});
   if (const std::string rough = rough_doubt(quality); !rough.empty())
     lines.push_back({Caution, "Surface", rough});
-  if (quality.slice_mm >= kThickSlices_mm)
-    lines.push_back({NotChecked, "Slices",
-                     files::format("%.1f mm apart: where the bone ends between two of them its surface may "
-                                   "be off by %.1f mm",
-                                   quality.slice_mm, quality.slice_mm / 2)});
   using Outcome = segmentation::BoneBeneath::Outcome;
   if (const std::string leak = leak_doubt(quality); !leak.empty())
     lines.push_back({Caution, "Grey values", leak});

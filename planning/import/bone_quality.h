@@ -21,7 +21,6 @@ struct BoneQuality {
   // Of an MR: so thick a rim, dark as cortex is, lies outside of the surface (segmentation/dark_rim.h); 0
   // where none is seen.
   double cortex_outside_mm = 0;
-  double slice_mm = 0;                // the longest side of a voxel of the images
   double roughness_mm = 0;            // see segmentation/surface_roughness.h
   segmentation::BoneBeneath beneath;  // whether bone lies beneath all of the surface
   std::vector<std::string> doubts;    // of the mesh and of its shape; empty: nothing speaks against it
@@ -43,8 +42,6 @@ struct QualityLine {
 };
 // Bones are smoother, and ragged ones rougher, by half.
 inline constexpr double kRough_mm = 0.3;
-// Slices further apart than this are said: what lies between two of them was not seen.
-inline constexpr double kThickSlices_mm = 2.0;
 // A surface that holds more than this share less or more than what was labelled is to be looked at.
 inline constexpr double kMostVolumeOff_fraction = 0.05;
 [[nodiscard]] std::vector<QualityLine> quality_lines(const BoneQuality& quality);

@@ -68,6 +68,8 @@ constexpr std::size_t kLeastBytes<ImportedBone> = sizeof(bones::MeshRepairReport
 template <>
 constexpr std::size_t kLeastBytes<bones::FilledHole> = 7 * sizeof(double);
 template <>
+constexpr std::size_t kLeastBytes<bones::ImageCut> = 7 * sizeof(double);
+template <>
 constexpr std::size_t kLeastBytes<bones::LengthUnit> = sizeof(bones::LengthUnit);
 template <>
 constexpr std::size_t kLeastBytes<FoundLabel> = sizeof(std::int32_t) + 7 * sizeof(double);
@@ -135,6 +137,13 @@ void describe(Archive& archive, bones::FilledHole& hole) {
 }
 
 template <typename Archive>
+void describe(Archive& archive, bones::ImageCut& cut) {
+  archive.bytes(cut.at_mm.data(), 3 * sizeof(double));
+  archive.bytes(cut.out.data(), 3 * sizeof(double));
+  describe(archive, cut.area_mm2);
+}
+
+template <typename Archive>
 void describe(Archive& archive, ImportedBone& imported) {
   describe(archive, imported.bone.kind);
   describe(archive, imported.bone.mesh);
@@ -143,6 +152,7 @@ void describe(Archive& archive, ImportedBone& imported) {
   describe(archive, imported.lines);
   describe(archive, imported.doubts);
   describe(archive, imported.filled_holes);
+  describe(archive, imported.image_cuts);
   describe(archive, imported.read_in);
   describe(archive, imported.looks_backwards);
   describe(archive, imported.shape_was_judged);
@@ -352,6 +362,8 @@ void refuse_unsound(const BoneImport& import) {
     for (const Eigen::Vector3d& p : mesh.vertices_mm) is_sound = is_sound && p.allFinite();
     for (const bones::FilledHole& hole : imported.filled_holes)
       is_sound = is_sound && hole.at_mm.allFinite() && std::isfinite(hole.across_mm) && hole.across_mm > 0;
+    for (const bones::ImageCut& cut : imported.image_cuts)
+      is_sound = is_sound && cut.at_mm.allFinite() && cut.out.allFinite() && std::isfinite(cut.area_mm2);
     for (const auto& triangle : mesh.triangles) {
       for (const std::int32_t corner : triangle) is_sound = is_sound && corner >= 0 && corner < count;
     }

@@ -10,8 +10,8 @@ constexpr double kMostApart_mm = 1.6;  // 1.5, and what a header rounds that to
 
 }  // namespace
 
-std::string slice_doubt(const images::Volume& ct) {
-  const double apart_mm = ct.spacing_mm().maxCoeff();
+std::string slice_doubt(const images::Volume& images) {
+  const double apart_mm = images.spacing_mm().maxCoeff();
   if (apart_mm <= kMostApart_mm) return "";
   return files::format(
       "its slices are %.1f mm apart: where the bone ends between two of them, as about the entries, its "

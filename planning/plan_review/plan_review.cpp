@@ -5,6 +5,7 @@
 
 #include "planning/norms/insertion_norms.h"
 #include "planning/plan_review/landmark_check.h"
+#include "planning/plan_review/tunnel_verdict.h"
 
 namespace arthronaut::plan_review {
 
@@ -99,8 +100,8 @@ std::vector<tunnels::PlanCheck> as_side_is_doubted(std::vector<tunnels::PlanChec
 }
 
 CaseReview::CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, ProposedBone>& by_shape,
-                       std::string side_doubt)
-    : side_doubt_(std::move(side_doubt)) {
+                       const cases::BoneDoubts& doubts)
+    : side_doubt_(side_doubt(doubts)) {
   knee_.is_of_two_frames = knee.is_of_two_frames;
   for (const auto& [kind, bone] : knee.bones) {
     if (bone.mesh.empty()) continue;
@@ -109,9 +110,10 @@ CaseReview::CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, 
     const auto proposed = by_shape.find(kind);
     auto surface = proposed == by_shape.end() ? nullptr : proposed->second.surface;
     if (!surface) surface = std::make_shared<const geometry::Surface>(bone.mesh);
-    const ReviewedBone& reviewed =
+    ReviewedBone& reviewed =
         bones_.emplace(kind, review_bone(bone.mesh, kind, knee.side, marks, std::move(surface)))
             .first->second;
+    reviewed.surroundings.image_cuts = cases::image_cuts_of(doubts, kind);
     const auto states = knee.landmark_states.find(kind);
     landmark_checks_[kind] = check_landmarks(
         kind, marks, states == knee.landmark_states.end() ? landmarks::LandmarkStates{} : states->second,

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/surface.h"
 #include "planning/norms/footprint.h"
@@ -69,9 +70,9 @@ class CaseReview {
  public:
   // Takes the landmarks as the case has them: what they don't give is not checked. Half a second a bone.
   // by_shape: what propose_landmarks() gave of these bones; of a bone that is not in it no landmark is
-  // checked. side_doubt: tunnel_verdict.h; the checks are as it leaves them.
+  // checked. doubts: what spoke against the bones; the checks are as it leaves them.
   explicit CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, ProposedBone>& by_shape = {},
-                      std::string side_doubt = {});
+                      const cases::BoneDoubts& doubts = {});
 
   [[nodiscard]] bool has_bone(bones::BoneKind kind) const { return bones_.contains(kind); }
   // Precondition: has_bone(kind).

@@ -106,6 +106,9 @@ std::string entry_doubt(const tunnels::Tunnel& tunnel, const cases::BoneDoubts& 
   const auto of_bone = doubts.find(tunnel.bone);
   if (of_bone == doubts.end()) return "";
   for (const cases::BoneDoubt& doubt : of_bone->second) {
+    const auto* cut = std::get_if<bones::ImageCut>(&doubt);
+    if (cut != nullptr && cut->is_reached(tunnel.entry_mm, tunnel.diameter_mm / 2))
+      return "it reaches where the images end: nobody has seen bone there";
     const auto* filled = std::get_if<cases::FilledHoles>(&doubt);
     if (filled == nullptr) continue;
     if (const auto* hole = filled->reached(tunnel.entry_mm, tunnel.diameter_mm / 2))

@@ -48,8 +48,8 @@ using CheckedPlan = std::map<tunnels::TunnelKey, std::vector<tunnels::PlanCheck>
 [[nodiscard]] std::string grid_doubt(const cases::Case& knee, bones::BoneKind kind);
 // The first of the doubts by which the bones are of the other knee than their case; empty where none is.
 [[nodiscard]] std::string side_doubt(const cases::BoneDoubts& doubts);
-// That the tunnel's mouth reaches a hole that was filled in when the bone was made; empty where it reaches
-// none.
+// That the tunnel's mouth reaches a hole that was filled in when the bone was made, or where the images end
+// within the bone; empty where it reaches neither.
 [[nodiscard]] std::string entry_doubt(const tunnels::Tunnel& tunnel, const cases::BoneDoubts& doubts);
 // What is doubted of that bone but for the side, a sentence each.
 [[nodiscard]] std::vector<std::string> doubts_but_side(const cases::BoneDoubts& doubts, bones::BoneKind bone);

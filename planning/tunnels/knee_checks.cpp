@@ -51,19 +51,28 @@ graft::GraftEnd end_of(const Tunnel& tunnel, const TunnelGeometry& measured) {
   return {measured.entry_on_surface_mm, tunnel.direction};
 }
 
+// Else it leaves where the images end, and is longer than it was measured.
+bool leaves_bone(bones::BoneKind bone, const TunnelGeometry& measured, const KneeSurroundings& knee) {
+  const auto cuts = knee.image_cuts.find(bone);
+  return cuts == knee.image_cuts.end() || !bones::images_end_at(cuts->second, measured.exit_mm);
+}
+
 // Studies measure the ligament, each in its way and in a knee as it lay: what no mean of theirs comes near is
 // to be looked at, and only of a graft in place of the whole ligament.
-PlanCheck check_graft_length(const KneePlan& plan) {
+PlanCheck check_graft_length(const KneePlan& plan, const KneeSurroundings& knee) {
   const double in_joint_mm =
       (plan.femoral_measured->entry_on_surface_mm - plan.tibial_measured->entry_on_surface_mm).norm();
   const double all_mm = in_joint_mm + plan.femoral_measured->length_mm + plan.tibial_measured->length_mm;
-  PlanCheck check{
-      .verdict = Verdict::Note,
-      .name = "Graft length",
-      .text = number_text(in_joint_mm, "mm") + " in the joint, " + number_text(all_mm, "mm") + " in all",
-      .source = "as imaged, straight between the openings; ",
-      .value = in_joint_mm,
-      .unit = "mm"};
+  const bool is_all_seen = leaves_bone(bones::BoneKind::Femur, *plan.femoral_measured, knee) &&
+                           leaves_bone(bones::BoneKind::Tibia, *plan.tibial_measured, knee);
+  const char* const at_least = is_all_seen ? "" : "at least ";
+  PlanCheck check{.verdict = Verdict::Note,
+                  .name = "Graft length",
+                  .text = number_text(in_joint_mm, "mm") + " in the joint, " + at_least +
+                          number_text(all_mm, "mm") + " in all",
+                  .source = "as imaged, straight between the openings; ",
+                  .value = in_joint_mm,
+                  .unit = "mm"};
   if (plan.graft != norms::Bundle::Whole) {
     check.source += "of one of two bundles: no published limit";
     return check;
@@ -268,11 +277,13 @@ void put_femur(KneeSurroundings& knee, const geometry::TriangleMesh& femur,
                const PlanSurroundings& of_femur) {
   knee.femur_axes = of_femur.axes;
   knee.femur_landmarks = of_femur.landmarks;
+  knee.image_cuts[bones::BoneKind::Femur] = of_femur.image_cuts;
   knee.axis = of_femur.axes ? graft::flexion_axis(of_femur.landmarks, femur, *of_femur.axes) : std::nullopt;
 }
 
 void put_tibia(KneeSurroundings& knee, const PlanSurroundings& of_tibia) {
   using Origin = landmarks::AnatomicalAxes::Origin;
+  knee.image_cuts[bones::BoneKind::Tibia] = of_tibia.image_cuts;
   knee.plateau_middle_mm.reset();
   knee.tibia_axes.reset();
   if (!of_tibia.axes) return;
@@ -311,7 +322,7 @@ std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,
     checks.push_back(not_checked(bend, missing));
     return checks;
   }
-  if (is_femur) checks.push_back(check_graft_length(plan));
+  if (is_femur) checks.push_back(check_graft_length(plan, surroundings));
   if (auto diameters = check_graft_diameters(plan)) checks.push_back(*std::move(diameters));
   if (!surroundings.axis) {
     const char* needed = "the flexion axis: two condyles' centres, their posterior points or the epicondyles";

@@ -20,6 +20,7 @@ struct KneeSurroundings {
   // By landmarks, else by shape; and which way is lateral, where landmarks tell it.
   std::optional<Eigen::Vector3d> plateau_middle_mm = {};
   std::optional<landmarks::AnatomicalAxes> tibia_axes = {};
+  std::map<bones::BoneKind, std::vector<bones::ImageCut>> image_cuts = {};
   bool is_of_two_frames = false;  // of reference, as the bones' images say themselves (cases::Case)
   // Where the ligament and its bundles were attached, middles, as imaged: what a graft is compared with over
   // flexion. A missing one is unknown.

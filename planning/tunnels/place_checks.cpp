@@ -115,6 +115,16 @@ PlanCheck not_checked(const char* name, const std::string& missing) {
   return {.verdict = Verdict::NotChecked, .name = name, .text = "not checked: " + missing + " is missing"};
 }
 
+bool leaves_images(const TunnelGeometry& geometry, const PlanSurroundings& surroundings) {
+  return bones::images_end_at(surroundings.image_cuts, geometry.exit_mm);
+}
+
+PlanCheck not_seen(const char* name) {
+  return {.verdict = Verdict::NotChecked,
+          .name = name,
+          .text = "not checked: the tunnel leaves where the images end"};
+}
+
 std::string number_text(double value, const char* unit) { return files::fixed(value, 1) + " " + unit; }
 
 // Without a needless ".0": limits are round numbers mostly.
@@ -134,6 +144,7 @@ PlanCheck check_entry_place(const Tunnel& tunnel, const TunnelGeometry& geometry
 
 PlanCheck check_exit_place(const Tunnel& tunnel, const TunnelGeometry& geometry,
                            const PlanSurroundings& surroundings) {
+  if (leaves_images(geometry, surroundings)) return not_seen("Exit");
   if (!surroundings.axes) return not_checked("Exit", "the bone's axes");
   const landmarks::AnatomicalAxes& axes = *surroundings.axes;
   if (tunnel.bone == bones::BoneKind::Femur && !surroundings.surface)
@@ -146,7 +157,12 @@ PlanCheck check_exit_place(const Tunnel& tunnel, const TunnelGeometry& geometry,
 
 std::vector<PlanCheck> check_exit_neighbours(const Tunnel& tunnel, const TunnelGeometry& geometry,
                                              const PlanSurroundings& surroundings, const PlanNorms& norms) {
-  if (tunnel.bone == bones::BoneKind::Tibia)
+  const bool is_tibia = tunnel.bone == bones::BoneKind::Tibia;
+  if (leaves_images(geometry, surroundings)) {
+    if (is_tibia) return {not_seen("Tuberosity")};
+    return {not_seen("Lateral epicondyle"), not_seen("Posterior cortex")};
+  }
+  if (is_tibia)
     return {check_distance("Tuberosity", "tuberosity", "the patellar tendon's insertion", geometry,
                            surroundings)};
   std::vector<PlanCheck> checks{check_distance("Lateral epicondyle", "lateral_epicondyle",

@@ -6,6 +6,10 @@
 namespace arthronaut::tunnels {
 
 [[nodiscard]] PlanCheck not_checked(const char* name, const std::string& missing);
+// Whether the tunnel leaves where the images end, and what is then said of a check that asks where it leaves
+// the bone.
+[[nodiscard]] bool leaves_images(const TunnelGeometry& geometry, const PlanSurroundings& surroundings);
+[[nodiscard]] PlanCheck not_seen(const char* name);
 [[nodiscard]] std::string number_text(double value, const char* unit);  // "24.1 mm"
 [[nodiscard]] std::string limit_text(double value, const char* unit);   // "25 mm"
 

@@ -14,7 +14,8 @@ namespace {
 
 using Verdict = PlanCheck::Verdict;
 
-PlanCheck check_length(const Tunnel& tunnel, const TunnelGeometry& geometry, const PlanNorms& norms) {
+PlanCheck check_length_in_images(const Tunnel& tunnel, const TunnelGeometry& geometry,
+                                 const PlanNorms& norms) {
   PlanCheck check{.verdict = Verdict::Fine,
                   .name = "Length",
                   .text = number_text(geometry.length_mm, "mm"),
@@ -52,6 +53,14 @@ PlanCheck check_length(const Tunnel& tunnel, const TunnelGeometry& geometry, con
     check.text += geometry.length_mm < center ? ": short" : ": long";
   }
   return check;
+}
+
+PlanCheck check_length(const Tunnel& tunnel, const TunnelGeometry& geometry,
+                       const PlanSurroundings& surroundings, const PlanNorms& norms) {
+  PlanCheck check = check_length_in_images(tunnel, geometry, norms);
+  // What is too long in them is so beyond them.
+  const bool is_too_long = check.greatest && geometry.length_mm > *check.greatest;
+  return leaves_images(geometry, surroundings) && !is_too_long ? not_seen("Length") : check;
 }
 
 // Along the axis from the entry. A slanting mouth reaches before the entry and beyond the exit, where a depth
@@ -328,9 +337,9 @@ std::vector<PlanCheck> check_plan(const Tunnel& tunnel, const TunnelGeometry& ge
              .text = "misses the bone: place the entry on it and aim inwards"}};
   }
   std::vector<PlanCheck> checks{
-      check_length(tunnel, geometry, norms), check_wall(tunnel, geometry, surroundings.surface.get(), norms),
-      check_diameter(tunnel, norms), check_entry_place(tunnel, geometry, surroundings),
-      check_exit_place(tunnel, geometry, surroundings)};
+      check_length(tunnel, geometry, surroundings, norms),
+      check_wall(tunnel, geometry, surroundings.surface.get(), norms), check_diameter(tunnel, norms),
+      check_entry_place(tunnel, geometry, surroundings), check_exit_place(tunnel, geometry, surroundings)};
   add_grid_checks(tunnel, geometry.entry_on_surface_mm, surroundings, norms, checks);
   if (tunnel.bone == bones::BoneKind::Tibia) {
     checks.push_back(surroundings.axes ? check_coronal_angle(tunnel, *surroundings.axes, norms)

@@ -183,7 +183,9 @@ TEST_F(Schemas, DescribeTheMeasurements) {
 
 TEST_F(Schemas, DescribeTheBonesDoubts) {
   cases::save_bone_doubts(
-      folder_.path(), {{bones::BoneKind::Femur, {"cut off", cases::SideDoubt{.looked_on = "2026-01-31"}}}});
+      folder_.path(), {{bones::BoneKind::Femur,
+                        {"cut off", cases::FilledHoles{{{.at_mm = {1, 2, 3}, .across_mm = 12}}},
+                         bones::ImageCut{.area_mm2 = 1234}, cases::SideDoubt{.looked_on = "2026-01-31"}}}});
   expect_described(cases::bone_doubts_file(folder_.path()), "bone_doubts",
                    [&] { (void)cases::load_bone_doubts(folder_.path()); });
 }
@@ -193,9 +195,11 @@ TEST_F(Schemas, DescribeTheOtherSide) {
   const cases::Case knee =
       phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Knee of a test");
   cases::save_case(folder_.path(), knee);
-  cases::change_side(
-      folder_.path(), bones::Side::Left,
-      {.plan = knee.plan, .doubts = {{bones::BoneKind::Femur, {"cut off", cases::SideDoubt{}}}}});
+  cases::change_side(folder_.path(), bones::Side::Left,
+                     {.plan = knee.plan,
+                      .doubts = {{bones::BoneKind::Femur,
+                                  {"cut off", cases::FilledHoles{{{.at_mm = {1, 2, 3}, .across_mm = 12}}},
+                                   bones::ImageCut{.area_mm2 = 1234}, cases::SideDoubt{}}}}});
   expect_described(cases::sides_file(folder_.path()), "sides",
                    [&] { (void)cases::load_side(folder_.path(), knee, bones::Side::Right); });
   json cut_off = read(cases::sides_file(folder_.path()));

@@ -93,6 +93,22 @@ TEST(PlanModel, IsNotMadeByHalves) {
   EXPECT_THROW(PlanModel(phantom(), stop.get_token()), InvalidInput);
 }
 
+// Where the images end within a bone is known, whatever becomes of its landmarks.
+TEST(PlanModel, Hazard46WhereTheImagesEndOutlastsOtherLandmarks) {
+  PlanModel model(phantom());
+  const auto length = [&] { return model.checks(BoneKind::Femur).front(); };
+  ASSERT_EQ(length().name, "Length");
+  EXPECT_EQ(length().verdict, tunnels::PlanCheck::Verdict::Fine);
+  const Eigen::Vector3d out = model.tunnel(BoneKind::Femur)->direction;
+  model.set_image_cuts(
+      BoneKind::Femur,
+      {{.at_mm = model.measured(BoneKind::Femur).exit_mm - out, .out = out, .area_mm2 = 500}});
+  EXPECT_EQ(length().verdict, tunnels::PlanCheck::Verdict::NotChecked);
+  model.set_landmarks(BoneKind::Femur, model.landmarks(BoneKind::Femur),
+                      model.landmark_states(BoneKind::Femur));
+  EXPECT_EQ(length().verdict, tunnels::PlanCheck::Verdict::NotChecked);
+}
+
 TEST(PlanModel, RefusesACaseWithoutBones) {
   cases::Case empty;
   empty.name = "nothing";

@@ -26,6 +26,8 @@ TEST(BoneDoubts, ComeBackAndWithoutAnyTheFileGoes) {
       {BoneKind::Tibia,
        {"too short",
         FilledHoles{{{.at_mm = {1.0 / 3, -2, 3}, .across_mm = 12.25}, {.at_mm = {4, 5, 6}, .across_mm = 9}}},
+        bones::ImageCut{.at_mm = {1, 1.0 / 3, 2}, .out = {0, -1, 0}, .area_mm2 = 1234.5},
+        bones::ImageCut{.at_mm = {7, 8, 9}, .out = {-1, 0, 0}, .area_mm2 = 101},
         SideDoubt{SideWitness::Fibula, Side::Left, Side::Right},
         SideDoubt{SideWitness::ShapesAlone, Side::Left, Side::Left},
         SideDoubt{SideWitness::ImageMark, Side::Right, Side::Left, "2026-01-31"}}}};
@@ -57,8 +59,8 @@ TEST(BoneDoubts, OfVersionOneTheSentencesOfTheSideAreRead) {
                 SideDoubt{SideWitness::ShapesAlone, Side::Left, Side::Left},
                 "by the shape of the bone it is a left knee, but the side is unclear: check the side"}));
   const auto today = put(2, R"(, "side_doubts": [])");
-  EXPECT_TRUE(
-      std::ranges::none_of(today, std::holds_alternative<SideDoubt, std::string, SideDoubt, FilledHoles>));
+  EXPECT_TRUE(std::ranges::none_of(
+      today, std::holds_alternative<SideDoubt, std::string, SideDoubt, FilledHoles, bones::ImageCut>));
 }
 
 TEST(BoneDoubts, AFileThatIsNoneIsRefusedByPlace) {

@@ -210,6 +210,10 @@ TEST(BoneImport, TheShapeOfAKneeIsHeldAgainstTheSideThatASegmentsNameTells) {
   EXPECT_TRUE(side_is_contradicted(import));
 }
 
+std::vector<std::string> doubts_of_first(const BoneImport& import) {
+  return cases::words_of(doubts_with(import, import.bones.front(), import.side));
+}
+
 // A knee that fills the images up to their front edge: the bone ends there, flat, and what was in front of it
 // is missing. Through the shaft every scan cuts.
 TEST(BoneImport, Hazard46ABoneThatTheEdgeOfTheImagesCutsRaisesADoubt) {
@@ -222,24 +226,29 @@ TEST(BoneImport, Hazard46ABoneThatTheEdgeOfTheImagesCutsRaisesADoubt) {
       for (int i = 10; i < 50; ++i) volume.values[volume.index(i, j, k)] = 1.0F;
   BoneImportOptions options;
   options.labels = {{BoneKind::Femur, 1}};
-  const auto doubts_at = [&](const char* name) {
+  const auto import_of = [&](const char* name) {
     images::write_volume(folder / name, volume);
-    return import_bones(folder / name, options).bones.at(0).doubts;
+    return import_bones(folder / name, options);
   };
+  const auto doubts_at = [&](const char* name) { return doubts_of_first(import_of(name)); };
   // 40 by 30 mm, less a rim of a voxel that is rounded off.
   const auto is_cut = [](const char* area) {
     return Contains(HasSubstr(std::string(area) + " cm\u00B2 of it are cut off flat in front"));
   };
   EXPECT_THAT(doubts_at("cut.nrrd"), testing::AnyOf(is_cut("10"), is_cut("11"), is_cut("12")));
   EXPECT_THAT(doubts_at("cut.nrrd"), Not(Contains(HasSubstr("cut off flat above"))));
+  // The face lies half a voxel before the first row, and a place on it is told from one beside it.
+  const auto cuts = import_of("cut.nrrd").bones.at(0).image_cuts;
+  ASSERT_EQ(cuts.size(), 1U);
+  EXPECT_TRUE(cuts[0].out.isApprox(Eigen::Vector3d(0, -1, 0)));
+  EXPECT_LT((cuts[0].at_mm - Eigen::Vector3d(29.5, 0.25, 44.5)).norm(), 1) << "in its middle";
+  EXPECT_TRUE(cuts[0].is_reached({20, -0.5, 50}));
+  EXPECT_FALSE(cuts[0].is_reached({20, 1, 50}));
+  EXPECT_FALSE(cuts[0].is_reached({20, 29.5, 50}));
   volume.lps_from_index.translation().y() = 5;
   for (int k = 30; k < 60; ++k)
     for (int i = 10; i < 50; ++i) volume.values[volume.index(i, 0, k)] = 0.0F;
   EXPECT_THAT(doubts_at("whole.nrrd"), Not(Contains(HasSubstr("cut off flat"))));
-}
-
-std::vector<std::string> doubts_of_first(const BoneImport& import) {
-  return cases::words_of(doubts_with(import, import.bones.front(), import.side));
 }
 
 // A person is believed, but what the fibula says against it is not forgotten.

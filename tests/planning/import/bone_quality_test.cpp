@@ -50,23 +50,6 @@ TEST(BoneQuality, SaysThatASurfaceIsRough) {
   EXPECT_EQ(surface->verdict, QualityVerdict::Caution);
 }
 
-// What lies between two thick slices nobody has seen.
-TEST(BoneQuality, SaysThatSlicesAreThick) {
-  BoneQuality quality;
-  const auto lines_of_slices = [&] {
-    const auto lines = quality_lines(quality);
-    return std::ranges::count(lines, "Slices", &QualityLine::name);
-  };
-  quality.slice_mm = 0.7;
-  EXPECT_EQ(lines_of_slices(), 0);
-  quality.slice_mm = 4;
-  ASSERT_EQ(lines_of_slices(), 1);
-  const auto lines = quality_lines(quality);
-  const auto slices = *std::ranges::find(lines, "Slices", &QualityLine::name);
-  EXPECT_EQ(slices.verdict, QualityVerdict::NotChecked);
-  EXPECT_THAT(slices.text, testing::AllOf(HasSubstr("4.0 mm apart"), HasSubstr("off by 2.0 mm")));
-}
-
 // Soft tissue that was painted as bone is told with its size and place; where nobody could look it is no
 // tick.
 TEST(BoneQuality, SaysWhereNoBoneLiesBeneathTheSurface) {

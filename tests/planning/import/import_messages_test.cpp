@@ -42,6 +42,7 @@ BoneImport an_import() {
   import.bones.resize(1);
   import.bones[0].bone = {bones::BoneKind::Tibia, test::ellipsoid({40, 30, 25}, 0), "label 2"};
   import.bones[0].lines = {"20 triangles"};
+  import.bones[0].image_cuts = {{.at_mm = {1, 2, 3}, .out = {0, -1, 0}, .area_mm2 = 1234 }};
   import.side = bones::Side::Left;
   import.image.emplace();
   return import;
@@ -105,6 +106,11 @@ bool is_refused(const Kind& kind, std::string_view contents) {
 TEST(ImportMessages, AListComesBackAsItWas) {
   expect_same(series_list_from(contents_of(message_of(a_list()))), a_list());
   expect_same(series_list_from(contents_of(message_of(images::SeriesList{}))), {});
+}
+
+TEST(ImportMessages, WhereTheImagesEndComesBackAsItWas) {
+  EXPECT_EQ(import_from(contents_of(message_of(an_import()))).bones[0].image_cuts,
+            an_import().bones[0].image_cuts);
 }
 
 TEST(ImportMessages, APictureComesBackAsItWas) {

@@ -38,6 +38,26 @@ TEST(SliceCheck, BonesOfThickSlicesAreDoubted) {
   for (const ImportedBone& bone : thin.bones) EXPECT_THAT(bone.doubts, Not(Contains(HasSubstr("apart"))));
 }
 
+// A label map is no better: what lies between two of its slices nobody has labelled.
+TEST(SliceCheck, BonesOfAThickLabelMapAreDoubted) {
+  const test::TemporaryFolder folder;
+  const auto doubts_at = [&](double slice_mm) {
+    images::Volume labels;
+    labels.size = {40, 40, 30};
+    labels.lps_from_index.linear() = Eigen::Vector3d(1, 1, slice_mm).asDiagonal();
+    labels.values.assign(static_cast<std::size_t>(labels.size.prod()), 0.0F);
+    for (int k = 5; k < 25; ++k)
+      for (int j = 5; j < 35; ++j)
+        for (int i = 5; i < 35; ++i) labels.values[labels.index(i, j, k)] = 1.0F;
+    images::write_volume(folder / "right.nrrd", labels);
+    BoneImportOptions options;
+    options.labels = {{bones::BoneKind::Femur, 1}};
+    return import_bones(folder / "right.nrrd", options).bones.at(0).doubts;
+  };
+  EXPECT_THAT(doubts_at(4.2), Contains(AllOf(HasSubstr("slices are 4.2 mm apart"), HasSubstr("2.1 mm or"))));
+  EXPECT_THAT(doubts_at(1.5), Not(Contains(HasSubstr("apart"))));
+}
+
 TEST(SliceCheck, TheLimitIsTheMeasuredOne) {
   images::Volume ct;
   ct.lps_from_index.linear() = Eigen::Vector3d(0.6, 0.6, 1.504).asDiagonal();

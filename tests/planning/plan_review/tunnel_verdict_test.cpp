@@ -67,6 +67,73 @@ TEST(TunnelVerdict, AnEntryOnAHoleThatWasFilledIsToldFromOneBesideIt) {
   EXPECT_TRUE(verdict_of(of_tibia, {}, doubts, "").is_fine()) << "the hole is the femur's";
 }
 
+// Nor has anybody seen bone where the images end: a mouth that reaches there is wrong.
+TEST(TunnelVerdict, AnEntryWhereTheImagesEndIsWrong) {
+  const cases::BoneDoubts doubts{
+      {kFemur, {bones::ImageCut{.at_mm = {10, 0, 0}, .out = {1, 0, 0}, .area_mm2 = 500}}}};
+  const auto wrong_at = [&](double x_mm) {
+    tunnels::Tunnel tunnel = kOfFemur;
+    tunnel.entry_mm = {x_mm, 30, 0};
+    return verdict_of(tunnel, {}, doubts, "").wrong;
+  };
+  const std::vector<std::string> ends = {
+      "Entry: it reaches where the images end: nobody has seen bone there"};
+  EXPECT_EQ(wrong_at(11), ends);
+  EXPECT_EQ(wrong_at(5.6), ends) << "its mouth of 9 mm reaches there";
+  EXPECT_TRUE(wrong_at(5.4).empty());
+}
+
+// A tunnel that leaves where the images end goes on through bone that nobody has seen: what asks where it
+// leaves the bone is not checked, and the graft is no shorter than what was seen of it. Of the other bone,
+// and of the same tunnel where the images go on beyond its exit, everything is as it was.
+TEST(TunnelVerdict, Hazard46ATunnelThatLeavesWhereTheImagesEndIsNotChecked) {
+  const cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Knee");
+  const CaseReview whole(knee);
+  using Names = std::vector<std::string>;
+  const std::map<bones::BoneKind, Names> of_the_exit = {
+      {kFemur, {"Length", "Exit", "Lateral epicondyle", "Posterior cortex"}},
+      {kTibia, {"Length", "Exit", "Tuberosity"}}};
+  for (const auto& [bone, names] : of_the_exit) {
+    const tunnels::TunnelGeometry& measured = whole.tunnels().at(bone).geometry;
+    const auto cut_off = [&, kind = bone](double beyond_exit_mm) {
+      const Eigen::Vector3d along = (measured.exit_mm - measured.entry_on_surface_mm).normalized();
+      return CaseReview(
+          knee, {},
+          {{kind,
+            {bones::ImageCut{
+                .at_mm = measured.exit_mm + beyond_exit_mm * along, .out = along, .area_mm2 = 500}}}});
+    };
+    const CaseReview cut = cut_off(-0.5), beside = cut_off(0.5);
+    for (const bones::BoneKind asked : {kFemur, kTibia}) {
+      const auto before = whole.checks(asked), now = cut.checks(asked), same = beside.checks(asked);
+      ASSERT_EQ(before.size(), now.size());
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        EXPECT_EQ(same[i].text, before[i].text);
+        if (before[i].name == "Graft length") {
+          EXPECT_NE(before[i].text, now[i].text);
+          EXPECT_NE(now[i].text.find(" in the joint, at least "), std::string::npos) << now[i].text;
+        } else if (asked == bone && std::ranges::count(names, before[i].name) > 0) {
+          EXPECT_NE(before[i].verdict, Verdict::NotChecked) << before[i].name;
+          EXPECT_EQ(now[i].verdict, Verdict::NotChecked) << now[i].name;
+          EXPECT_EQ(now[i].text, "not checked: the tunnel leaves where the images end");
+        } else {
+          EXPECT_EQ(now[i].text, before[i].text) << before[i].name;
+        }
+      }
+    }
+  }
+}
+
+// What is too long as far as the images go is so beyond them.
+TEST(TunnelVerdict, ATunnelThatIsTooLongWithinTheImagesIsTooLong) {
+  tunnels::PlanSurroundings known;
+  const tunnels::TunnelGeometry measured{.enters_bone = true, .exit_mm = {60, 0, 0}, .length_mm = 60};
+  known.image_cuts = {{.at_mm = {59, 0, 0}, .out = {1, 0, 0}, .area_mm2 = 500}};
+  const auto checks = tunnels::check_plan(kOfFemur, measured, known);
+  EXPECT_EQ(checks.front().name, "Length");
+  EXPECT_EQ(checks.front().verdict, Verdict::Wrong) << checks.front().text;
+}
+
 // A tick that rests on the side is none while the side is in doubt; what is wrong stays wrong.
 TEST(TunnelVerdict, WhileTheSideIsInDoubtNothingThatRestsOnItIsFine) {
   const std::vector<tunnels::PlanCheck> checks = {
