@@ -28,6 +28,7 @@ TEST(BoneDoubts, ComeBackAndWithoutAnyTheFileGoes) {
         FilledHoles{{{.at_mm = {1.0 / 3, -2, 3}, .across_mm = 12.25}, {.at_mm = {4, 5, 6}, .across_mm = 9}}},
         SideDoubt{SideWitness::Fibula, Side::Left, Side::Right},
         SideDoubt{SideWitness::ShapesAlone, Side::Left, Side::Left},
+        SideDoubt{SideWitness::PersonAlone, Side::Left, Side::Left},
         SideDoubt{SideWitness::ImageMark, Side::Right, Side::Left, "2026-01-31"}}}};
   save_bone_doubts(folder.path(), doubts);
   EXPECT_EQ(load_bone_doubts(folder.path()), doubts);
