@@ -85,7 +85,8 @@ void import(Context& context, const ImportArguments& arguments) {
   }
   workstation_library::note_case(folder);
   const auto note = importing::side_note(import, target.side);
-  const std::string by = note ? note->words() : importing::told_by(import.side_source);
+  const std::string by = note ? "as said; nothing in the images or the shape of the bones confirms it"
+                              : importing::told_by(import.side_source);
   context.say("Wrote " + folder.string() + ": a " + std::string(bones::to_text(target.side)) + " knee" +
               (by.empty() ? "" : " (" + by + ")") + ".");
   if (!doubts.empty()) context.say_unreliable(folder.string(), doubts);

@@ -99,6 +99,7 @@ void MadeBones::show(const importing::BoneImport& import) {
   is_there_ = false;
   // Of a CT, too: a fibula that hung on the tibia is taken off it, and the bones tell no side any more.
   has_slices_ = import.image.has_value();
+  has_bones_ = !import.bones.empty();
   if (has_slices_)
     slices_.show(import);
   else
@@ -119,8 +120,11 @@ std::optional<Side> MadeBones::draw(const widgets::Ui& ui, const widgets::Rect& 
   widgets::Rect rest = area;
   const float gap = ui.theme.px(8);
   // Beside slices the sketches stand one above the other, and leave them all of the height.
-  if (has_slices_) (void)slices_.draw(ui, rest.cut_right(0.62F * rest.width, gap));
-  widgets::Rect sketches = rest.cut_bottom(has_slices_ ? 0.55F * rest.height : ui.theme.px(230), gap);
+  if (has_slices_) (void)slices_.draw(ui, rest.cut_right((has_bones_ ? 0.62F : 0.7F) * rest.width, gap));
+  widgets::Rect sketches = rest.cut_bottom(!has_slices_ ? ui.theme.px(230)
+                                           : has_bones_ ? 0.55F * rest.height
+                                                        : rest.height,
+                                           gap);
   if (thinning_.is_ready()) {
     const Meshes meshes = thinning_.take();
     scene::SceneContent content;

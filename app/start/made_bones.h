@@ -34,7 +34,7 @@ class MadeBones {
   std::function<void()> wake_;
   widgets::ScenePane pane_;
   SideSlices slices_;
-  bool has_slices_ = false;
+  bool has_slices_ = false, has_bones_ = false;
   worker::Awaited<Meshes> thinning_;
   bool is_there_ = false;
 };
