@@ -67,7 +67,12 @@ library::PlanVerdicts verdicts_of(const std::vector<CaseRecord>& records, bool c
   for (std::size_t i = 0; i < records.size(); ++i) {
     const CaseRecord& record = records[i];
     progress.advance_to(static_cast<long>(i));
-    if (!record.is_there || !record.problem.empty() || record.planned.empty()) continue;
+    if (!record.is_there || !record.problem.empty()) continue;
+    if (record.planned.empty()) {
+      auto bones = workstation_library::judge_bones(record.folder);
+      if (!bones.is_fine()) verdicts[record.folder] = std::move(bones);
+      continue;
+    }
     auto verdict = workstation_library::plan_verdict(record.folder);
     if (!verdict && checks) {
       verdict = workstation_library::judge_plan(cases::load_case(record.folder),

@@ -84,7 +84,9 @@ void import(Context& context, const ImportArguments& arguments) {
                        " reads it the other way round");
   }
   workstation_library::note_case(folder);
-  const std::string by = importing::told_by(import.side_source);
+  const auto note = importing::side_note(import, target.side);
+  const std::string by = note ? "as said; nothing in the images or the shape of the bones confirms it"
+                              : importing::told_by(import.side_source);
   context.say("Wrote " + folder.string() + ": a " + std::string(bones::to_text(target.side)) + " knee" +
               (by.empty() ? "" : " (" + by + ")") + ".");
   if (!doubts.empty()) context.say_unreliable(folder.string(), doubts);

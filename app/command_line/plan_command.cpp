@@ -47,6 +47,8 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
       describe_tunnel(context, knee, review, key, verdict);
       const std::string side = plan_review::side_doubt(doubts);
       if (!side.empty()) context.say("  x Side: " + side);
+      if (const std::string note = plan_review::side_note(doubts); !note.empty())
+        context.say("    Side: " + note);
       if (const std::string entry = plan_review::entry_doubt(knee.plan.tunnels.at(key), doubts);
           !entry.empty())
         context.say("  x Entry: " + entry);

@@ -74,7 +74,8 @@ PlanVerdict judged(const cases::Case& knee, const plan_review::CaseReview& revie
     reasons.push_back(*std::move(doubt));
   if (const auto of_bone = doubts.find(key.bone); of_bone != doubts.end())
     for (const cases::BoneDoubt& doubt : of_bone->second)
-      reasons.push_back("the " + std::string(bones::to_text(key.bone)) + ": " + words_of(doubt));
+      if (!is_note(doubt))
+        reasons.push_back("the " + std::string(bones::to_text(key.bone)) + ": " + words_of(doubt));
   if (const auto fit = cases::plan_fit(knee, key); !fit.is_valid()) reasons.push_back(fit.reason);
   if (const std::string doubt = doubt_of_grid(knee, review, key.bone);
       verdict.source.empty() && !doubt.empty())

@@ -18,7 +18,7 @@ namespace {
 
 // 2: by proposed landmarks where the case has none, and whether the plan is of this bone. 3: whether its
 // landmarks lie where its shape puts them. 4: the side, the grid and what is to be looked at, too. 5: whether
-// a tunnel leaves where the images end.
+// a tunnel leaves where the images end, and what speaks against bones without a plan.
 constexpr const char* kFirstLine = "arthronaut.plan_verdict 5";
 constexpr std::string_view kWrong = "wrong ", kLook = "look ";
 
@@ -38,7 +38,7 @@ bool is_of_now(const fs::path& made, const fs::path& case_folder) {
 }
 
 TunnelVerdict judge_plan(const cases::Case& knee, const cases::BoneDoubts& doubts) {
-  if (knee.plan.tunnels.empty()) return {};
+  if (knee.plan.tunnels.empty()) return plan_review::verdict_of_bones(doubts);
   cases::Case judged = knee;
   const auto by_shape = plan_review::propose_landmarks(judged, plan_review::Proposing::Planned);
   const plan_review::CaseReview review(judged, by_shape, doubts);
@@ -76,12 +76,22 @@ std::optional<TunnelVerdict> plan_verdict(const fs::path& case_folder) {
   }
 }
 
+TunnelVerdict judge_bones(const fs::path& case_folder) {
+  try {  // one case that cannot be read is no reason to list none
+    return plan_review::verdict_of_bones(cases::load_bone_doubts(case_folder));
+  } catch (const std::runtime_error& error) {
+    return {.look = {std::string("Bone: what spoke against it cannot be read: ") + error.what()}};
+  }
+}
+
+std::string in_words(const TunnelVerdict* verdict) {
+  if (verdict == nullptr || verdict->is_fine()) return "";
+  return (verdict->is_wrong() ? "; wrong: " : "; look: ") + verdict->in_short();
+}
+
 std::string plan_in_words(const library::CaseRecord& record, const TunnelVerdict* verdict) {
-  const std::string planned = record.plan_in_words();
-  if (record.planned.empty()) return planned;
-  if (verdict == nullptr) return planned + "; not checked yet";
-  if (verdict->is_fine()) return planned;
-  return planned + (verdict->is_wrong() ? "; wrong: " : "; look: ") + verdict->in_short();
+  const bool is_unchecked = verdict == nullptr && !record.planned.empty();
+  return record.plan_in_words() + (is_unchecked ? "; not checked yet" : in_words(verdict));
 }
 
 }  // namespace arthronaut::workstation_library

@@ -16,7 +16,7 @@ namespace arthronaut::workstation_library {
 
 [[nodiscard]] std::filesystem::path plan_verdict_file(const std::filesystem::path& case_folder);
 // As Plan judges it: by what is proposed where the case's landmarks give no grid, which takes two seconds,
-// else half a second a bone; none without a plan.
+// else half a second a bone; without a plan what speaks against the bones, at once.
 [[nodiscard]] plan_review::TunnelVerdict judge_plan(const cases::Case& knee, const cases::BoneDoubts& doubts);
 // Throws IoError.
 void keep_plan_verdict(const std::filesystem::path& case_folder, const plan_review::TunnelVerdict& verdict);
@@ -24,8 +24,13 @@ void keep_plan_verdict(const std::filesystem::path& case_folder, const plan_revi
 [[nodiscard]] std::optional<plan_review::TunnelVerdict> plan_verdict(
     const std::filesystem::path& case_folder);
 
+// What speaks against bones without a plan, or that nobody can read it.
+[[nodiscard]] plan_review::TunnelVerdict judge_bones(const std::filesystem::path& case_folder);
+
+// "; wrong: femur: Wall: ... (and 2 to look at)", "; look: ..."; empty where it is fine, or null.
+[[nodiscard]] std::string in_words(const plan_review::TunnelVerdict* verdict);
 // "femur and tibia planned; wrong: femur: Wall: ... (and 2 to look at)", "...; look: ...", "...; not checked
-// yet" where verdict is null.
+// yet" where verdict is null; "no tunnel planned; look: femur: Bone: ...".
 [[nodiscard]] std::string plan_in_words(const library::CaseRecord& record,
                                         const plan_review::TunnelVerdict* verdict);
 

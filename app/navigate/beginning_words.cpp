@@ -95,16 +95,18 @@ std::vector<CardLine> time_out_lines(const operation::OperationState& state, con
                                      const plan_review::TunnelVerdict& verdict) {
   const operation::SourceSetup& source = *state.source;
   using Topic = CardLine::Topic;
-  return {{patient.empty() ? Severity::Caution : Severity::Quiet, "Patient",
-           patient.empty() ? "not known: the case names none" : patient, Topic::Patient},
-          {Severity::Quiet, "Knee",
-           std::string(bones::to_text(source.pipeline.side)) + ", " + std::string(bones::to_text(state.bone)),
-           Topic::Knee},
-          {state.plan || !verdict.is_fine() ? severity_of(verdict) : Severity::Caution, "Plan",
-           plan_and_verdict(state.plan, verdict), Topic::Plan},
-          {has_nominal_tool(source.pipeline) ? Severity::Caution : Severity::Quiet, "Camera and tools",
-           source.calibration, Topic::CameraAndTools},
-          medium_line(state)};
+  return {
+      {patient.empty() ? Severity::Caution : Severity::Quiet, "Patient",
+       patient.empty() ? "not known: the case names none" : patient, Topic::Patient},
+      {Severity::Quiet, "Knee",
+       std::string(bones::to_text(source.pipeline.side)) + ", " + std::string(bones::to_text(state.bone)) +
+           (verdict.side_note.empty() ? "" : "; " + verdict.side_note),
+       Topic::Knee},
+      {state.plan || !verdict.is_fine() ? severity_of(verdict) : Severity::Caution, "Plan",
+       plan_and_verdict(state.plan, verdict), Topic::Plan},
+      {has_nominal_tool(source.pipeline) ? Severity::Caution : Severity::Quiet, "Camera and tools",
+       source.calibration, Topic::CameraAndTools},
+      medium_line(state)};
 }
 
 // What is asked, and how it is answered, stands above it as the next step.

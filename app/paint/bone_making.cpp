@@ -105,7 +105,8 @@ void BoneMaking::save() {
   saving_.start(
       [import = result_, folder = folder_, side = side_, image_file = image_file_]() mutable {
         import.side = side;
-        import.image.reset();  // the labels stay where they are painted
+        import.side_source = importing::SideSource::None;  // what the case's side rests on, the case says
+        import.image.reset();                              // the labels stay where they are painted
         // Bones that are painted in an image are of its study, whatever other images the case has.
         import.origin = cases::study_of_image(folder, image_file);
         importing::add_to_case(folder, import, "", painting::bones_file(folder));

@@ -116,10 +116,12 @@ void draw_next(const widgets::Ui& ui, const NextStep& next) {
 // is as doubtful.
 void draw_doubts(const widgets::Ui& ui, const PlanPanel& panel) {
   const bones::BoneKind bone = panel.key.bone;
-  const auto doubts = panel.doubts.find(bone);
-  ui.log.note_state("bone_doubts", std::to_string(doubts == panel.doubts.end() ? 0 : doubts->second.size()));
-  for (const std::string& doubt : plan_review::doubts_but_side(panel.doubts, bone))
-    widgets::status_row(ui, widgets::Severity::Caution, "Bone", doubt);
+  const std::vector<std::string> others = plan_review::doubts_but_side(panel.doubts, bone);
+  ui.log.note_state("bone_doubts", std::to_string(others.size()));
+  for (const std::string& doubt : others) widgets::status_row(ui, widgets::Severity::Caution, "Bone", doubt);
+  const std::string side = plan_review::side_note(panel.doubts);
+  ui.log.note_state("side_note", side);
+  if (!side.empty()) widgets::status_row(ui, widgets::Severity::Quiet, "Side", side);
   const bool has_grid = panel.model.has_bone(bone) && panel.model.surroundings(bone).has_grid();
   const std::string grid =
       !has_grid ? ""

@@ -150,7 +150,8 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
     draw_bones(ui, rest);
   }
   std::size_t doubt_count = 0;
-  for (const auto& [bone, doubts] : bone_doubts_) doubt_count += doubts.size();
+  for (const auto& [bone, doubts] : bone_doubts_)
+    doubt_count += plan_review::doubts_but_side(bone_doubts_, bone).size();
   const StepState step{state_.key,
                        state_.placing == Placing::Entry,
                        state_.page == PanelPage::Landmarks,

@@ -305,6 +305,8 @@ double Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm, d
   };
   const std::string side = plan_review::side_doubt(content_.bone_doubts);
   if (!side.empty()) row("wrong", true, "Side: " + side);
+  if (const std::string note = plan_review::side_note(content_.bone_doubts); !note.empty())
+    row("note", false, "Side: " + note);
   for (const std::string& doubt : plan_review::doubts_but_side(content_.bone_doubts, kind))
     row("look", true, "Bone: " + doubt);
   if (const std::string doubt = grid_doubt(content_, kind); !doubt.empty())

@@ -84,6 +84,8 @@ std::vector<TunnelResult> results_of(const Content& content) {
 }
 
 void draw_plan_verdicts(FlowingPages& pages, const Content& content) {
+  if (const std::string side = plan_review::side_note(content.bone_doubts); !side.empty())
+    pages.sentence("The side: " + side, {.size_pt = 9});
   for (const auto& [key, measured] : content.review->tunnels()) {
     const auto checks = content.review->checks(key);
     const plan_review::TunnelVerdict verdict =

@@ -24,6 +24,13 @@ namespace arthronaut::start {
 [[nodiscard]] std::string whose_and_where(const library::CaseRecord& record, const std::string& patient,
                                           bool is_found_by_patient);
 
+// The sign of a case's row, and what its second line says of it; of a plan alone the line is its own.
+// verdict: of its plan, without one of its bones; null where nobody has looked.
+[[nodiscard]] widgets::Severity severity_of(const library::CaseRecord& record,
+                                            const plan_review::TunnelVerdict* verdict);
+[[nodiscard]] std::string state_in_words(const library::CaseRecord& record,
+                                         const plan_review::TunnelVerdict* verdict);
+
 class CaseList {
  public:
   // open: opens a case; an empty path is the built-in knee, the last row of a list that nothing narrows.

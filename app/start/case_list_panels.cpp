@@ -21,8 +21,8 @@ using plan_review::TunnelVerdict;
 
 // A tick says that every bone is planned and that nothing speaks against it; nobody has looked: no tick.
 Severity severity_of_plan(const CaseRecord& record, const TunnelVerdict* verdict) {
-  if (record.planned.empty() || verdict == nullptr) return Severity::Quiet;
-  if (!verdict->is_fine()) return Severity::Caution;
+  if (verdict == nullptr) return Severity::Quiet;
+  if (!verdict->is_fine()) return Severity::Caution;  // without a plan: what speaks against the bones
   return record.is_planned_whole() ? Severity::Good : Severity::Quiet;  // nor for half a plan
 }
 
@@ -32,28 +32,6 @@ std::string plan_words(const CaseRecord& record, const CasePictures& pictures) {
   if (verdict == nullptr && !record.planned.empty() && record.is_there && pictures.is_coming(record.folder))
     return record.plan_in_words() + "; being checked\u2026";
   return workstation_library::plan_in_words(record, verdict);
-}
-
-Severity severity_of(const CaseRecord& record, const TunnelVerdict* verdict) {
-  switch (record.state()) {
-    case CaseState::Missing:
-      return Severity::Caution;
-    case CaseState::Unreadable:
-      return Severity::Bad;
-    case CaseState::NotPlanned:
-      return Severity::Quiet;
-    case CaseState::Planned:
-      return severity_of_plan(record, verdict);
-    case CaseState::Navigated:
-    case CaseState::Drilled:
-      break;
-  }
-  // A tick says that a tunnel was drilled and nothing of the last operation is in doubt, not that it went as
-  // planned: its numbers stand beside it. What a CT alone shows is neither.
-  const library::SessionFacts* const last = record.last_session();
-  if (last == nullptr || last->is_simulated()) return Severity::Quiet;
-  if (last->is_in_doubt()) return Severity::Caution;
-  return last->is_drilled() ? Severity::Good : Severity::Quiet;
 }
 
 std::string doubts_in_words(const CaseRecord& record) {
@@ -78,6 +56,44 @@ void draw_picture(ImDrawList& draw, const widgets::VideoTexture* picture, const 
 }
 
 }  // namespace
+
+Severity severity_of(const CaseRecord& record, const TunnelVerdict* verdict) {
+  const bool is_doubted = verdict != nullptr && !verdict->is_fine();
+  switch (record.state()) {
+    case CaseState::Missing:
+      return Severity::Caution;
+    case CaseState::Unreadable:
+      return Severity::Bad;
+    case CaseState::NotPlanned:
+    case CaseState::Planned:
+      return severity_of_plan(record, verdict);
+    case CaseState::Navigated:
+    case CaseState::Drilled:
+      break;
+  }
+  // A tick says that a tunnel was drilled and nothing of plan and last operation is in doubt, not that it went
+  // as planned: its numbers stand beside it. What a CT alone shows is neither.
+  const library::SessionFacts* const last = record.last_session();
+  if (is_doubted) return Severity::Caution;
+  if (last == nullptr || last->is_simulated()) return Severity::Quiet;
+  if (last->is_in_doubt()) return Severity::Caution;
+  return last->is_drilled() ? Severity::Good : Severity::Quiet;
+}
+
+std::string state_in_words(const CaseRecord& record, const TunnelVerdict* verdict) {
+  const CaseState state = record.state();
+  const std::string words = capital(std::string(to_text(state)));
+  const std::string of_plan = workstation_library::in_words(verdict);
+  if (state == CaseState::NotPlanned) return words + of_plan;
+  const Severity severity = severity_of(record, verdict);
+  if (severity == Severity::Caution || severity == Severity::Bad)
+    return words + (record.is_simulated() ? ", simulated: " : ": ") + record.last_outcome() +
+           doubts_in_words(record) + (of_plan.empty() ? "" : "; plan:" + of_plan.substr(1));
+  const std::size_t count = record.sessions.size();
+  if (count == 0) return words;
+  return words + ", " + std::to_string(count) + (count == 1 ? " session" : " sessions, the last") +
+         (record.last_session()->is_simulated() ? " simulated: " : ": ") + record.last_outcome();
+}
 
 void CaseList::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("library", library_.is_looking() ? "looking" : "ready");
@@ -250,14 +266,8 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
   const TunnelVerdict* const verdict = pictures_.verdict_of(record.folder);
   const Severity severity = severity_of(record, verdict);
   widgets::draw_sign(draw, {x + ui.theme.px(10), at.y + ui.theme.px(48)}, ui.theme.px(9), severity);
-  const std::size_t count = record.sessions.size();
-  std::string what = capital(record.state() == CaseState::Planned ? plan_words(record, pictures_)
-                                                                  : std::string(to_text(record.state())));
-  if (record.state() != CaseState::Planned && (severity == Severity::Caution || severity == Severity::Bad))
-    what += ": " + record.last_outcome() + doubts_in_words(record);
-  else if (count > 0)
-    what += ", " + std::to_string(count) + (count == 1 ? " session" : " sessions, the last") +
-            (record.last_session()->is_simulated() ? " simulated: " : ": ") + record.last_outcome();
+  const std::string what = record.state() == CaseState::Planned ? capital(plan_words(record, pictures_))
+                                                                : state_in_words(record, verdict);
   widgets::draw_text(draw, ui.theme.body, x + ui.theme.px(28), at.y + ui.theme.px(35),
                      severity == Severity::Good || severity == Severity::Quiet ? widgets::kText
                                                                                : widgets::color_of(severity),
@@ -294,7 +304,9 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
   ImGui::Dummy({width, place.height});
   const TunnelVerdict* const verdict = pictures_.verdict_of(record->folder);
   const Severity severity = severity_of(*record, verdict);
-  if (record->state() != CaseState::Planned && (severity == Severity::Caution || severity == Severity::Bad))
+  const bool is_of_plan = record->state() == CaseState::Planned || record->state() == CaseState::NotPlanned;
+  if (!is_of_plan && !record->last_outcome().empty() &&
+      (severity == Severity::Caution || severity == Severity::Bad))
     widgets::status_row(ui, severity, capital(std::string(to_text(record->state()))), record->last_outcome());
   if (!record->part_problem.empty())
     widgets::status_row(ui, Severity::Caution, "Not readable",

@@ -99,8 +99,9 @@ void MadeBones::show(const importing::BoneImport& import) {
   is_there_ = false;
   // Of a CT, too: a fibula that hung on the tibia is taken off it, and the bones tell no side any more.
   has_slices_ = import.image.has_value();
+  has_bones_ = !import.bones.empty();
   if (has_slices_)
-    slices_.show(import.image->volume);
+    slices_.show(import);
   else
     slices_.clear();
   std::vector<geometry::TriangleMesh> meshes;
@@ -117,7 +118,13 @@ void MadeBones::show(const importing::BoneImport& import) {
 std::optional<Side> MadeBones::draw(const widgets::Ui& ui, const widgets::Rect& area,
                                     std::optional<Side> side) {
   widgets::Rect rest = area;
-  widgets::Rect sketches = rest.cut_bottom(ui.theme.px(230), ui.theme.px(8));
+  const float gap = ui.theme.px(8);
+  // Beside slices the sketches stand one above the other, and leave them all of the height.
+  if (has_slices_) (void)slices_.draw(ui, rest.cut_right((has_bones_ ? 0.62F : 0.7F) * rest.width, gap));
+  widgets::Rect sketches = rest.cut_bottom(!has_slices_ ? ui.theme.px(230)
+                                           : has_bones_ ? 0.55F * rest.height
+                                                        : rest.height,
+                                           gap);
   if (thinning_.is_ready()) {
     const Meshes meshes = thinning_.take();
     scene::SceneContent content;
@@ -138,8 +145,6 @@ std::optional<Side> MadeBones::draw(const widgets::Ui& ui, const widgets::Rect& 
     }
   }
   ui.log.note_state("made_bones", is_there_ ? "shown" : "none");
-  if (has_slices_)
-    (void)slices_.draw(ui, is_there_ ? rest.cut_right(0.58F * rest.width, ui.theme.px(8)) : rest);
   if (is_there_) {
     (void)pane_.draw(ui, "start.bones", rest);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -160,8 +165,8 @@ std::optional<Side> MadeBones::draw(const widgets::Ui& ui, const widgets::Rect& 
     put(right, 1);
   }
   std::optional<Side> clicked;
-  const float half = (sketches.width - ui.theme.px(8)) / 2;
-  const widgets::Rect first = sketches.cut_left(half, ui.theme.px(8));
+  const widgets::Rect first = has_slices_ ? sketches.cut_top((sketches.height - gap) / 2, gap)
+                                          : sketches.cut_left((sketches.width - gap) / 2, gap);
   for (const auto& [place, of] : {std::pair{first, Side::Right}, std::pair{sketches, Side::Left}}) {
     draw_sketch(ui, place, of, side == of);
     ImGui::SetCursorScreenPos(place.min());

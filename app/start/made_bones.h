@@ -22,6 +22,8 @@ class MadeBones {
   MadeBones(std::function<void()> make_current, std::function<void()> wake);
 
   void show(const importing::BoneImport& import);  // copies what it draws; may be empty
+  // Of a page's width, what it needs: slices are to be read.
+  [[nodiscard]] float wanted_share() const { return has_slices_ ? 0.56F : 0.4F; }
   // side: that is chosen. Returns the one that was clicked on.
   std::optional<bones::Side> draw(const widgets::Ui& ui, const widgets::Rect& area,
                                   std::optional<bones::Side> side);
@@ -32,7 +34,7 @@ class MadeBones {
   std::function<void()> wake_;
   widgets::ScenePane pane_;
   SideSlices slices_;
-  bool has_slices_ = false;
+  bool has_slices_ = false, has_bones_ = false;
   worker::Awaited<Meshes> thinning_;
   bool is_there_ = false;
 };

@@ -29,7 +29,13 @@ SideLine line_of(const importing::BoneImport& import, std::optional<bones::Side>
       import.side_source == SideSource::Shapes ? import.side : importing::side_by_shapes(import);
   if (was_said && shape && *shape != *side)
     return against(Severity::Caution, "the bones are shaped as in", *shape);
-  if (was_said) return {Severity::Good, told};
+  if (was_said || import.side_source == SideSource::Person) {
+    // A name that says the same has told it, too.
+    const bool is_named = is_guess(import.side_source) && import.side == side;
+    if (is_named || shape == side || importing::side_is_borne_out(import, *side))
+      return {Severity::Good, told};
+    return {Severity::Quiet, told + "; nothing in the images or the shape of the bones confirms it"};
+  }
   if (fibula && is_guess(import.side_source)) return {Severity::Good, told + ", and the fibula lies so"};
   if (is_guess(import.side_source) || import.side_source == SideSource::Shapes)
     return {Severity::Caution, told + ": is that so? Press R or L"};

@@ -243,8 +243,8 @@ void StartView::draw_result(const widgets::Ui& ui, const widgets::Rect& area) {
                           {"start.save", "start.swap_axes", "start.right", "start.left", "start.back"});
   else
     widgets::draw_buttons(ui, buttons, {"start.save", "start.right", "start.left", "start.back"});
-  if (const auto clicked = made_.draw(ui, rest.cut_right(0.4F * rest.width, ui.theme.px(12)), state_.side))
-    say_side(*clicked);
+  const widgets::Rect made = rest.cut_right(made_.wanted_share() * rest.width, ui.theme.px(12));
+  if (const auto clicked = made_.draw(ui, made, state_.side)) say_side(*clicked);
   widgets::begin_panel(ui, "start.result", rest);
   widgets::text_in(ui.theme.strong, widgets::kQuietText,
                    "Name of the case (no patient's name: it stands in exports)");

@@ -45,6 +45,11 @@ std::vector<bones::ImageCut> image_cuts_of(const BoneDoubts& doubts, bones::Bone
   return cuts;
 }
 
+bool is_note(const BoneDoubt& doubt) {
+  const auto* side = std::get_if<SideDoubt>(&doubt);
+  return side != nullptr && side->is_note();
+}
+
 fs::path bone_doubts_file(const fs::path& case_folder) { return case_folder / "bone_doubts.json"; }
 
 void put_doubts(nlohmann::ordered_json& bone, const std::vector<BoneDoubt>& doubts) {

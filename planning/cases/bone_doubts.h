@@ -28,6 +28,8 @@ using BoneDoubts = std::map<bones::BoneKind, std::vector<BoneDoubt>>;
 
 [[nodiscard]] std::string words_of(const BoneDoubt& doubt);
 [[nodiscard]] std::vector<std::string> words_of(const std::vector<BoneDoubt>& doubts);
+// See SideDoubt::is_note().
+[[nodiscard]] bool is_note(const BoneDoubt& doubt);
 
 [[nodiscard]] std::filesystem::path bone_doubts_file(const std::filesystem::path& case_folder);
 // Empty where there is no file. Throws IoError or InvalidInput (file, place, reason).

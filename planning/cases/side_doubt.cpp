@@ -9,12 +9,13 @@ namespace {
 
 using bones::Side;
 
-constexpr std::array<std::pair<SideWitness, std::string_view>, 5> kWitnesses{
+constexpr std::array<std::pair<SideWitness, std::string_view>, 6> kWitnesses{
     {{SideWitness::Fibula, "fibula"},
      {SideWitness::OneShape, "one_shape"},
      {SideWitness::BothShapes, "both_shapes"},
      {SideWitness::ShapesAlone, "shapes_alone"},
-     {SideWitness::ImageMark, "image_mark"}}};
+     {SideWitness::ImageMark, "image_mark"},
+     {SideWitness::PersonAlone, "person_alone"}}};
 
 std::string testimony(SideWitness witness, const std::string& told) {
   switch (witness) {
@@ -28,6 +29,8 @@ std::string testimony(SideWitness witness, const std::string& told) {
       return "that it is a " + told + " knee is told by the shape of its bones alone";
     case SideWitness::ImageMark:
       return "the images are marked as those of a " + told + " knee";
+    case SideWitness::PersonAlone:
+      return "a " + told + " knee, as said: nothing in the images or the shape of the bones confirms it";
   }
   return "";
 }
@@ -47,6 +50,7 @@ std::optional<SideWitness> side_witness_from_text(std::string_view text) {
 }
 
 std::string SideDoubt::words() const {
+  if (is_note()) return testimony(witness, std::string(bones::to_text(told)));
   return testimony(witness, std::string(bones::to_text(told))) +
          (told == said ? "" : ", but the side is " + std::string(bones::to_text(said))) +
          (looked_on.empty() ? ": check the side"

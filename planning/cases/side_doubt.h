@@ -9,8 +9,8 @@
 
 namespace arthronaut::cases {
 
-// ShapesAlone contradicts nothing: nothing else told the side.
-enum class SideWitness { Fibula, OneShape, BothShapes, ShapesAlone, ImageMark };
+// ShapesAlone and PersonAlone contradict nothing: nothing else told the side.
+enum class SideWitness { Fibula, OneShape, BothShapes, ShapesAlone, ImageMark, PersonAlone };
 [[nodiscard]] std::string_view to_text(SideWitness witness);
 // nullopt: names none.
 [[nodiscard]] std::optional<SideWitness> side_witness_from_text(std::string_view text);
@@ -18,11 +18,13 @@ enum class SideWitness { Fibula, OneShape, BothShapes, ShapesAlone, ImageMark };
 struct SideDoubt {
   SideWitness witness = SideWitness::Fibula;
   bones::Side told = bones::Side::Right;  // by the witness
-  bones::Side said = bones::Side::Right;  // of the case; `told` where the shapes alone told it
+  bones::Side said = bones::Side::Right;  // of the case; `told` where nothing contradicts it
   std::string looked_on = {};             // "2026-01-31": somebody looked and says so; empty: nobody did
 
   // Of a contradiction that nobody has looked at.
   [[nodiscard]] bool is_open() const { return told != said && looked_on.empty(); }
+  // Speaks against nothing, and is to be read all the same.
+  [[nodiscard]] bool is_note() const { return witness == SideWitness::PersonAlone; }
   [[nodiscard]] std::string words() const;
   bool operator==(const SideDoubt&) const = default;
 };

@@ -220,6 +220,8 @@ void import_ct(const Volume& volume, const BoneImportOptions& options, BoneImpor
   const segmentation::CtBones found = segmentation::bones_of_ct(volume, ct);
   result.lines.insert(result.lines.end(), found.notes.begin(), found.notes.end());
   result.side_by_fibula = found.side_by_fibula;
+  // Where it lies beside the other one is as good as a mark.
+  if (found.is_one_of_both && !result.side_in_images) result.side_in_images = options.side;
   for (const segmentation::CtBone& bone : found.bones) {
     result.bones.push_back(finished(bone.kind, volume.format, bone.mesh, &volume, tell));
     ImportedBone& imported = result.bones.back();

@@ -85,7 +85,7 @@ struct BoneImport {
   SideSource side_source = SideSource::None;
   // What each of these says, whatever told the side: another side is a doubt of the bones.
   std::optional<bones::Side> side_by_fibula;
-  std::optional<bones::Side> side_in_images;  // as they are marked
+  std::optional<bones::Side> side_in_images;  // as they are marked, or of both knees show it
   std::vector<std::string> lines;             // about the source
   // Whose bones they are, where the source says so (DICOM does). For identity.json alone: nothing else of the
   // import names a person, nor a file or folder, whose name often is the patient's.

@@ -188,11 +188,31 @@ bool makes_two_frames(const cases::Case& target, const BoneImport& import, cases
   return kinds.size() == 2 && cases::are_of_two_frames(studies);
 }
 
-// Those of the bones that were added take the place of what was said of the bones before them.
-void save_doubts_of(const fs::path& folder, const BoneImport& import, bones::Side side,
+// The bones whose doubts said that the side rests on a person's word alone; they say it no more.
+std::set<bones::BoneKind> take_side_notes(cases::BoneDoubts& doubts) {
+  std::set<bones::BoneKind> noted;
+  for (auto& [kind, of_bone] : doubts)
+    if (std::erase_if(of_bone, cases::is_note) > 0) noted.insert(kind);
+  return noted;
+}
+
+// Those of the bones that were added take the place of what was said of the bones before them. That its side
+// rests on a person's word alone is said until something bears the side out, whatever is added: of a side
+// that comes with its first bones or images, or with others in place of all its bones.
+void save_doubts_of(const fs::path& folder, const cases::Case& target, const BoneImport& import,
                     cases::BoneDoubts doubts) {
-  for (const ImportedBone& imported : import.bones)
-    doubts[imported.bone.kind] = doubts_with(import, imported, side);
+  std::set<bones::BoneKind> noted = take_side_notes(doubts), added;
+  for (const ImportedBone& imported : import.bones) {
+    added.insert(imported.bone.kind);
+    doubts[imported.bone.kind] = doubts_with(import, imported, target.side);
+  }
+  const bool is_all =
+      std::ranges::all_of(target.bones, [&](const auto& bone) { return added.contains(bone.first); });
+  if (added.empty()) added = {bones::BoneKind::Femur, bones::BoneKind::Tibia};  // as they will be painted
+  if (!noted.empty() || (is_all && side_note(import, target.side))) noted.merge(added);
+  if (!side_is_borne_out(import, target.side))
+    for (const bones::BoneKind kind : noted)
+      doubts[kind].emplace_back(cases::SideDoubt{cases::SideWitness::PersonAlone, target.side, target.side});
   cases::save_bone_doubts(folder, doubts);
 }
 
@@ -210,7 +230,7 @@ void save_new(const fs::path& folder, cases::Case& contents, const BoneImport& i
     const auto image = store_new_image(unfinished, contents, import);
     if (image) contents.images.push_back(*image);
     cases::save_case(unfinished, contents);
-    save_doubts_of(unfinished, import, contents.side, {});
+    save_doubts_of(unfinished, contents, import, {});
     if (!import.identity.is_empty()) cases::save_identity(unfinished, import.identity);
     save_studies_of(unfinished, contents, import, image, {}, {});
   });
@@ -233,7 +253,7 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
     forget_replaced(folder, target, import, studies, of_images);
     if (is_other_knee && image) target.images.clear();
     // Before its bone: of a doubt too many, after a crash, nobody drills wrongly.
-    save_doubts_of(folder, import, target.side, std::move(doubts));
+    save_doubts_of(folder, target, import, std::move(doubts));
     put_bones(target, import);
     if (image) target.images.push_back(*image);
     cases::save_case(folder, target);

@@ -15,7 +15,9 @@ namespace fs = std::filesystem;
 using bones::Side;
 using cases::SideDoubt;
 
-cases::BoneDoubt alone_told(Side side) { return SideDoubt{cases::SideWitness::ShapesAlone, side, side}; }
+cases::BoneDoubt alone_told(Side side, cases::SideWitness by = cases::SideWitness::ShapesAlone) {
+  return SideDoubt{by, side, side};
+}
 
 std::string knee_of(Side side) { return std::string(bones::to_text(side)) + " knee"; }
 
@@ -42,7 +44,9 @@ cases::BoneDoubts doubts_as(const cases::Case& knee, cases::BoneDoubts doubts, S
       const auto* asked = std::get_if<SideDoubt>(&doubt);
       return asked != nullptr && asked->told == side && asked->said != side;
     });
-    std::erase(of_bone, alone_told(knee.side));  // it spoke for the side that is left
+    // They spoke for the side that is left.
+    std::erase(of_bone, alone_told(knee.side));
+    std::erase(of_bone, alone_told(knee.side, cases::SideWitness::PersonAlone));
   }
   (void)settle(doubts, side);
   if (told == 0 && !knee.bones.empty())

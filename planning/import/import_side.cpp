@@ -94,6 +94,20 @@ std::vector<cases::BoneDoubt> doubts_with(const BoneImport& import, const Import
   return doubts;
 }
 
+bool side_is_borne_out(const BoneImport& import, bones::Side side) {
+  return import.side_in_images == side || import.side_by_fibula == side || side_by_shapes(import) == side;
+}
+
+std::optional<cases::SideDoubt> side_note(const BoneImport& import, bones::Side side,
+                                          bool is_said_by_person) {
+  if (!is_said_by_person && import.side_source != SideSource::Person) return std::nullopt;
+  const bool is_spoken_against = is_against(import.side_in_images, side) ||
+                                 is_against(import.side_by_fibula, side) ||
+                                 is_against(side_by_shapes(import), side);  // a doubt says so
+  if (is_spoken_against || side_is_borne_out(import, side)) return std::nullopt;
+  return cases::SideDoubt{cases::SideWitness::PersonAlone, side, side};
+}
+
 void say_side(BoneImport& import, bones::Side side) {
   // Known as it was known, unless it was the shapes alone that knew it.
   if (import.side == side && import.side_source != SideSource::Shapes) return;

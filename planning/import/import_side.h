@@ -32,6 +32,13 @@ void take_side_of_images(BoneImport& import, std::optional<bones::Side> marked, 
 // where the shapes alone told the same one, that is none any more.
 void say_side(BoneImport& import, bones::Side side);
 
+// Of a side that a person said and no mark, fibula or shape bears out: that is no doubt, and stands with the
+// case all the same. nullopt otherwise.
+[[nodiscard]] std::optional<cases::SideDoubt> side_note(const BoneImport& import, bones::Side side,
+                                                        bool is_said_by_person = false);
+// Whether mark, fibula or shapes tell that side.
+[[nodiscard]] bool side_is_borne_out(const BoneImport& import, bones::Side side);
+
 // Another bone of the same knee, from a file of its own. Who knows the side tells it to the other; false
 // where both know it and they differ, and nothing is changed.
 [[nodiscard]] bool add_bones(BoneImport& import, BoneImport more);

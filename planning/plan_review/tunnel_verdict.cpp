@@ -24,6 +24,15 @@ bool contradicts_side(const cases::BoneDoubt& doubt) {
   return side != nullptr && side->is_open();
 }
 
+// The first doubt of the side that is like that, in words; empty without one.
+template <typename IsLike>
+std::string side_words(const cases::BoneDoubts& doubts, IsLike is_like) {
+  for (const auto& [bone, of_bone] : doubts)
+    for (const cases::BoneDoubt& doubt : of_bone)
+      if (is_like(doubt)) return words_of(doubt);
+  return "";
+}
+
 TunnelVerdict verdict_but_side(const tunnels::Tunnel& tunnel, const std::vector<tunnels::PlanCheck>& checks,
                                const cases::BoneDoubts& doubts, const std::string& grid_doubt) {
   TunnelVerdict verdict{.wrong = tunnels::wrong_in_words(checks)};
@@ -55,6 +64,7 @@ std::string TunnelVerdict::in_short() const {
 TunnelVerdict verdict_of(const tunnels::Tunnel& tunnel, const std::vector<tunnels::PlanCheck>& checks,
                          const cases::BoneDoubts& doubts, const std::string& grid_doubt) {
   TunnelVerdict verdict = verdict_but_side(tunnel, checks, doubts, grid_doubt);
+  verdict.side_note = side_note(doubts);
   if (const std::string side = side_doubt(doubts); !side.empty())
     verdict.wrong.insert(verdict.wrong.begin(), "Side: " + side);
   return verdict;
@@ -85,6 +95,15 @@ TunnelVerdict verdict_of_plan(const cases::Case& knee, const CheckedPlan& checks
   return plan;
 }
 
+TunnelVerdict verdict_of_bones(const cases::BoneDoubts& doubts) {
+  TunnelVerdict verdict;
+  if (const std::string side = side_doubt(doubts); !side.empty()) verdict.wrong.push_back("Side: " + side);
+  for (const auto& [kind, of_bone] : doubts)
+    for (const std::string& doubt : doubts_but_side(doubts, kind))
+      verdict.look.push_back(std::string(bones::to_text(kind)) + ": Bone: " + doubt);
+  return verdict;
+}
+
 landmarks::GridState grid_state(const cases::Case& knee, bones::BoneKind kind) {
   const KnownLandmarks known = known_of(knee, kind);
   return landmarks::grid_state(kind, known.at_mm, known.states);
@@ -95,12 +114,9 @@ std::string grid_doubt(const cases::Case& knee, bones::BoneKind kind) {
   return landmarks::grid_doubt(kind, known.at_mm, known.states);
 }
 
-std::string side_doubt(const cases::BoneDoubts& doubts) {
-  for (const auto& [bone, of_bone] : doubts)
-    for (const cases::BoneDoubt& doubt : of_bone)
-      if (contradicts_side(doubt)) return words_of(doubt);
-  return "";
-}
+std::string side_doubt(const cases::BoneDoubts& doubts) { return side_words(doubts, contradicts_side); }
+
+std::string side_note(const cases::BoneDoubts& doubts) { return side_words(doubts, cases::is_note); }
 
 std::string entry_doubt(const tunnels::Tunnel& tunnel, const cases::BoneDoubts& doubts) {
   const auto of_bone = doubts.find(tunnel.bone);
@@ -124,7 +140,7 @@ std::vector<std::string> doubts_but_side(const cases::BoneDoubts& doubts, bones:
   std::vector<std::string> others;
   if (const auto of_bone = doubts.find(bone); of_bone != doubts.end())
     for (const cases::BoneDoubt& doubt : of_bone->second)
-      if (!contradicts_side(doubt)) others.push_back(words_of(doubt));
+      if (!contradicts_side(doubt) && !is_note(doubt)) others.push_back(words_of(doubt));
   return others;
 }
 

@@ -17,6 +17,7 @@ struct TunnelVerdict {
   // "Wall: -3.5 mm ...": of checks. What cannot be drilled like this; what is to be looked at, where also the
   // doubts about bone and grid stand.
   std::vector<std::string> wrong = {}, look = {};
+  std::string side_note = {};  // see below; of one tunnel's verdict
 
   [[nodiscard]] bool is_wrong() const { return !wrong.empty(); }
   // Nothing speaks against it. What was not checked has not failed.
@@ -42,12 +43,17 @@ using CheckedPlan = std::map<tunnels::TunnelKey, std::vector<tunnels::PlanCheck>
 [[nodiscard]] TunnelVerdict verdict_of_plan(const cases::Case& knee, const CheckedPlan& checks,
                                             const cases::BoneDoubts& doubts);
 
+// Of bones without a plan: the side is wrong, what else is doubted of them is to be looked at.
+[[nodiscard]] TunnelVerdict verdict_of_bones(const cases::BoneDoubts& doubts);
+
 // Of the grid of a case's bone: how well it is looked after, and what speaks against it, in words that follow
 // "Grid: "; empty where all that it follows from is confirmed.
 [[nodiscard]] landmarks::GridState grid_state(const cases::Case& knee, bones::BoneKind kind);
 [[nodiscard]] std::string grid_doubt(const cases::Case& knee, bones::BoneKind kind);
 // The first of the doubts by which the bones are of the other knee than their case; empty where none is.
 [[nodiscard]] std::string side_doubt(const cases::BoneDoubts& doubts);
+// That the side rests on a person's word alone, which speaks against nothing; empty where it does not.
+[[nodiscard]] std::string side_note(const cases::BoneDoubts& doubts);
 // That the tunnel's mouth reaches a hole that was filled in when the bone was made, or where the images end
 // within the bone; empty where it reaches neither.
 [[nodiscard]] std::string entry_doubt(const tunnels::Tunnel& tunnel, const cases::BoneDoubts& doubts);

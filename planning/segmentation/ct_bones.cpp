@@ -116,6 +116,7 @@ void keep_one_knee(Found& found, const CtBonesOptions& options, CtBones& result)
   const auto is_other = [&](double x) { return is_left ? x < gaps.back() : x > gaps.front(); };
   std::erase_if(all, [&](const Candidate& c) { return is_other(c.profile.center_mm.x()); });
   std::erase_if(found.slender, [&](const PieceExtent& s) { return is_other(s.center_mm.x()); });
+  result.is_one_of_both = true;
   result.notes.push_back("more than one knee is seen: the bones farthest on the patient's " +
                          std::string(bones::to_text(*options.side)) + " were taken");
 }

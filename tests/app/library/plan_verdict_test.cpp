@@ -96,6 +96,12 @@ TEST(PlanVerdict, IsNotFineWhileAnythingIsToBeLookedAt) {
   const auto other_side = judge_plan(turned_without_landmarks(), doubts);
   EXPECT_THAT(plan_in_words(record, &other_side),
               testing::HasSubstr("femur and tibia planned; wrong: Side: the fibula lies on the left"));
+  record.planned.clear();
+  const auto bones_alone = judge_plan(cases::Case(), doubts);
+  EXPECT_THAT(plan_in_words(record, &bones_alone),
+              testing::HasSubstr("no tunnel planned; wrong: Side: the fibula lies on the left"));
+  EXPECT_EQ(plan_in_words(record, nullptr), "no tunnel planned");
+  record.planned = record.bones;
   const plan_review::TunnelVerdict fine;
   EXPECT_EQ(plan_in_words(record, &fine), "femur and tibia planned");
 }

@@ -37,7 +37,26 @@ TEST(SideLineTest, AFibulaAndAPersonAreSure) {
   EXPECT_EQ(fibula.severity, Severity::Good);
   EXPECT_EQ(fibula.text, "left, by the fibula");
   EXPECT_EQ(side_line(import_of(SideSource::Fibula), Side::Left, true).severity, Severity::Good);
-  EXPECT_EQ(side_line(import_of(SideSource::Person), Side::Right, true).text, "right, as you say");
+  importing::BoneImport seen = import_of(SideSource::Person);
+  seen.side_by_fibula = Side::Right;
+  EXPECT_EQ(side_line(seen, Side::Right, true).text, "right, as you say");
+  EXPECT_EQ(side_line(seen, Side::Right, true).severity, Severity::Good);
+}
+
+// No tick for a key that was pressed: it is chosen, and nothing that could be looked at says so.
+TEST(SideLineTest, APersonAloneIsBelievedButHasNoTick) {
+  for (const SideLine& line : {side_line(import_of(SideSource::None), Side::Right, true),
+                               side_line(import_of(SideSource::SourceName), Side::Right, true),
+                               side_line(import_of(SideSource::Person), Side::Right, false)}) {
+    EXPECT_EQ(line.severity, Severity::Quiet) << line.text;
+    EXPECT_TRUE(line.text.starts_with("right")) << line.text;
+    EXPECT_NE(line.text.find("nothing in the images or the shape of the bones confirms it"),
+              std::string::npos)
+        << line.text;
+  }
+  EXPECT_FALSE(side_line(import_of(SideSource::None), Side::Right, true).needs_choice);
+  EXPECT_EQ(side_line(import_of(SideSource::SourceName), Side::Left, true).severity, Severity::Good)
+      << "the name had told it, too";
 }
 
 // A name that the fibula bears out is sure; and whoever then says the other side is told of the fibula.

@@ -30,6 +30,7 @@ TEST(BoneDoubts, ComeBackAndWithoutAnyTheFileGoes) {
         bones::ImageCut{.at_mm = {7, 8, 9}, .out = {-1, 0, 0}, .area_mm2 = 101},
         SideDoubt{SideWitness::Fibula, Side::Left, Side::Right},
         SideDoubt{SideWitness::ShapesAlone, Side::Left, Side::Left},
+        SideDoubt{SideWitness::PersonAlone, Side::Left, Side::Left},
         SideDoubt{SideWitness::ImageMark, Side::Right, Side::Left, "2026-01-31"}}}};
   save_bone_doubts(folder.path(), doubts);
   EXPECT_EQ(load_bone_doubts(folder.path()), doubts);

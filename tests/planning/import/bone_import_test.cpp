@@ -251,6 +251,34 @@ TEST(BoneImport, Hazard46ABoneThatTheEdgeOfTheImagesCutsRaisesADoubt) {
   EXPECT_THAT(doubts_at("whole.nrrd"), Not(Contains(HasSubstr("cut off flat"))));
 }
 
+std::vector<std::string> doubts_of_first(const BoneImport& import) {
+  return cases::words_of(doubts_with(import, import.bones.front(), import.side));
+}
+
+// A person alone is believed, and what he said is told from what the images show. Once anything of them says
+// the same or another side, that stands in its place.
+TEST(BoneImport, ASideThatNothingBearsOutIsNotedAsSaid) {
+  BoneImport import;
+  import.bones.resize(1);
+  EXPECT_FALSE(side_note(import, bones::Side::Right)) << "nobody said anything";
+  EXPECT_TRUE(side_note(import, bones::Side::Right, true)) << "it is being said";
+  say_side(import, bones::Side::Right);
+  ASSERT_TRUE(side_note(import, bones::Side::Right));
+  EXPECT_EQ(side_note(import, bones::Side::Right)->words(),
+            "a right knee, as said: nothing in the images or the shape of the bones confirms it");
+  EXPECT_TRUE(doubts_of_first(import).empty()) << "it speaks against nothing";
+  for (const bones::Side told : {bones::Side::Right, bones::Side::Left}) {
+    BoneImport marked = import, with_fibula = import, with_shape = import;
+    marked.side_in_images = with_fibula.side_by_fibula = told;
+    with_shape.bones[0].shape_was_judged = true;
+    with_shape.bones[0].side_by_shape = told;
+    for (const BoneImport& witnessed : {marked, with_fibula, with_shape}) {
+      EXPECT_FALSE(side_note(witnessed, bones::Side::Right));
+      EXPECT_EQ(doubts_of_first(witnessed).empty(), told == bones::Side::Right);
+    }
+  }
+}
+
 // A person is believed, but what the fibula says against it is not forgotten.
 TEST(BoneImport, ASideThatIsSaidAgainstTheFibulaStaysADoubt) {
   BoneImport import;

@@ -9,6 +9,7 @@
 #include "planning/cases/study.h"
 #include "planning/geometry/error.h"
 #include "planning/images/volume_writer.h"
+#include "planning/plan_review/tunnel_verdict.h"
 #include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
 #include "tests/planning/geometry/shapes.h"
@@ -191,6 +192,38 @@ TEST(CaseImport, Hazard46WhatSpokeAgainstABoneStaysWithTheCase) {
   EXPECT_EQ(cases::load_bone_doubts(folder / "a"), of_femur) << "a tibia changes nothing of it";
   add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
   EXPECT_TRUE(cases::load_bone_doubts(folder / "a").empty());
+}
+
+// That the side rests on a person's word alone stays with the case, whatever comes in place of its bones,
+// until something bears it out.
+TEST(CaseImport, Hazard52ASideThatWasOnlySaidIsNotedUntilSomethingBearsItOut) {
+  const TemporaryFolder folder;
+  const auto note = [&] { return plan_review::side_note(cases::load_bone_doubts(folder / "a")); };
+  BoneImport said = imported(BoneKind::Femur);
+  said.side_source = SideSource::Person;
+  add_to_case(folder / "a", said, "", "bone.stl");
+  EXPECT_THAT(note(), HasSubstr("a right knee, as said"));
+  EXPECT_TRUE(plan_review::verdict_of_bones(cases::load_bone_doubts(folder / "a")).is_fine());
+  add_to_case(folder / "a", imported(BoneKind::Femur, std::nullopt), "", "bone.stl");
+  EXPECT_THAT(note(), HasSubstr("a right knee, as said")) << "another femur that tells no side";
+  BoneImport tibia = imported(BoneKind::Tibia, std::nullopt);
+  tibia.side_by_fibula = Side::Right;
+  add_to_case(folder / "a", tibia, "", "ct");
+  EXPECT_EQ(note(), "");
+  add_to_case(folder / "a", said, "", "bone.stl");
+  EXPECT_EQ(note(), "") << "what was borne out before is not less so";
+}
+
+// Of images whose bones will be painted.
+TEST(CaseImport, ASideThatWasOnlySaidOfImagesIsNotedOfTheBonesPaintedInThem) {
+  const TemporaryFolder folder;
+  BoneImport images;
+  images.side = Side::Left;
+  images.side_source = SideSource::Person;
+  add_to_case(folder / "a", images, "", "mr");
+  add_to_case(folder / "a", imported(BoneKind::Tibia, std::nullopt), "", "bones.nrrd");
+  const cases::BoneDoubts doubts = cases::load_bone_doubts(folder / "a");
+  EXPECT_THAT(words_of(doubts.at(BoneKind::Tibia)), ElementsAre(HasSubstr("a left knee, as said")));
 }
 
 // Images alone make a case without bones, in which they are painted; the study is that of both.

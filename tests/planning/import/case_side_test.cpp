@@ -105,6 +105,15 @@ TEST_F(CaseSide, WhatToldTheOldSideIsNoWordForTheNewOne) {
   EXPECT_THAT(doubts(), ElementsAre("cut off above", HasSubstr("it was a right knee")));
 }
 
+// Of another side it is no word any more; said once more of the same one it is as little borne out as before.
+TEST_F(CaseSide, ASideThatWasOnlySaidStaysOnlySaid) {
+  doubt(SideWitness::PersonAlone, Side::Right, Side::Right);
+  (void)say_side_of_case(folder_.path(), Side::Right);
+  EXPECT_THAT(doubts(), ElementsAre("cut off above", HasSubstr("a right knee, as said")));
+  (void)say_side_of_case(folder_.path(), Side::Left);
+  EXPECT_THAT(doubts(), ElementsAre("cut off above", HasSubstr("somebody says that it is a left knee")));
+}
+
 // What a CT after the operation showed is of the plan that would go.
 TEST_F(CaseSide, ACaseThatWasComparedKeepsItsSide) {
   files::write_atomically(folder_ / "achieved.json", "{}");

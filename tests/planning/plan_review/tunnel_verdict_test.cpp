@@ -47,6 +47,29 @@ TEST(TunnelVerdict, ASideInDoubtIsWrongForBothBones) {
   EXPECT_EQ(tibia.look, std::vector<std::string>{"Bone: the images end within it"}) << "and not twice";
 }
 
+// A side that a person alone said speaks against nothing, and is not lost.
+TEST(TunnelVerdict, ASideThatWasOnlySaidIsANoteAndNoDoubt) {
+  const cases::SideDoubt said{cases::SideWitness::PersonAlone, bones::Side::Left, bones::Side::Left};
+  const cases::BoneDoubts doubts{{kTibia, {said}}};
+  EXPECT_EQ(side_doubt(doubts), "");
+  EXPECT_EQ(side_note(doubts), said.words());
+  for (const tunnels::Tunnel& tunnel : {kOfFemur, kOfTibia}) {
+    EXPECT_TRUE(verdict_of(tunnel, {}, doubts, "").is_fine());
+    EXPECT_EQ(verdict_of(tunnel, {}, doubts, "").side_note, said.words());
+  }
+  EXPECT_TRUE(verdict_of_bones(doubts).is_fine());
+  EXPECT_EQ(side_note({{kTibia, {"cut off", kOtherSide}}}), "");
+}
+
+// Without a plan: what was said of the bones when they were made.
+TEST(TunnelVerdict, BonesWithoutAPlanAreAsDoubtfulAsTheyWereMade) {
+  const TunnelVerdict verdict =
+      verdict_of_bones({{kFemur, {"the images end within it"}}, {kTibia, {kOtherSide}}});
+  EXPECT_EQ(verdict.wrong, std::vector<std::string>{"Side: " + kOtherSide.words()});
+  EXPECT_EQ(verdict.look, std::vector<std::string>{"femur: Bone: the images end within it"});
+  EXPECT_TRUE(verdict_of_bones({}).is_fine());
+}
+
 // Where a hole was filled in nobody has seen bone: an entry there is wrong, one beside it is not, and the
 // hole is to be looked at either way. Its mouth counts, not only its middle.
 TEST(TunnelVerdict, AnEntryOnAHoleThatWasFilledIsToldFromOneBesideIt) {

@@ -267,6 +267,7 @@ TEST(CtBones, ARailOfTheTableIsNoFibula) {
   const CtBones found = bones_of_ct(test::known_ct({knee()[0], knee()[1], rail}, options));
   ASSERT_EQ(found.bones.size(), 2U);
   EXPECT_FALSE(found.side_by_fibula.has_value());
+  EXPECT_FALSE(found.is_one_of_both);
 }
 
 // As in a scan that begins within the condyles: what is there of a femur is no femur to plan on.
@@ -294,8 +295,9 @@ TEST(CtBones, BothKneesAreAskedAbout) {
   EXPECT_THAT(test::message_of<InvalidInput>([&] { (void)bones_of_ct(volume); }), HasSubstr("--side"));
   CtBonesOptions asked;
   asked.side = bones::Side::Left;
-  for (const CtBone& bone : bones_of_ct(volume, asked).bones)
-    EXPECT_GT(geometry::bounds_of(bone.mesh).min_mm.x(), 80);
+  const CtBones found = bones_of_ct(volume, asked);
+  EXPECT_TRUE(found.is_one_of_both) << "where it lies bears out what was asked for";
+  for (const CtBone& bone : found.bones) EXPECT_GT(geometry::bounds_of(bone.mesh).min_mm.x(), 80);
 }
 
 // What lies between two knees, as a hand or a support, is part of neither: each side gives the outermost.
