@@ -72,12 +72,14 @@ void check_shapes(BoneImport& import, bool fibula_was_seen) {
   for (auto& [bone, result] : looked_at) {
     const landmarks::Proposal proposal = result.get();
     if (!proposal.is_usable()) continue;
-    if (std::string lying = lying_doubt(bone->bone.mesh, bone->bone.kind, proposal); !lying.empty())
-      bone->doubts.push_back(std::move(lying));
     ++judged;
     bone->shape_was_judged = !fibula_was_seen;
     if (!fibula_was_seen) bone->side_by_shape = proposal.side_by_shape;
-    if (looks_backwards(proposal.axes)) backwards.push_back(bone);
+    // Of one that lies nobody sees its front from above.
+    if (std::string lying = lying_doubt(bone->bone.mesh, bone->bone.kind, proposal); !lying.empty())
+      bone->doubts.push_back(std::move(lying));
+    else if (looks_backwards(proposal.axes))
+      backwards.push_back(bone);
   }
   // A coarse shape alone may be taken for turned; bones of one file are turned together.
   if (backwards.size() == judged) {
