@@ -9,6 +9,8 @@
 #include <set>
 #include <thread>
 
+#include "planning/cases/bone_doubts.h"
+#include "planning/files/atomic_file.h"
 #include "planning/phantom/phantom_case.h"
 #include "tests/temporary_folder.h"
 
@@ -39,6 +41,30 @@ TEST(CaseOpening, GivesTheCaseOnce) {
   EXPECT_EQ(opening.model()->knee().name, "test");
   EXPECT_EQ(opening.folder(), folder.path());
   EXPECT_EQ(opening.failure(), "");
+}
+
+// The model knows from the start where the images end within a bone; doubts that nobody can read keep no case
+// from being opened.
+TEST(CaseOpening, Hazard46KnowsWhereTheImagesEnd) {
+  using Verdict = tunnels::PlanCheck::Verdict;
+  const test::TemporaryFolder folder;
+  const cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "test");
+  cases::save_case(folder.path(), knee);
+  const tunnels::Tunnel& tunnel = knee.plan.tunnels.at(bones::BoneKind::Femur);
+  cases::save_bone_doubts(
+      folder.path(),
+      {{bones::BoneKind::Femur,
+        {bones::ImageCut{
+            .at_mm = tunnel.entry_mm + 10 * tunnel.direction, .out = tunnel.direction, .area_mm2 = 500}}}});
+  const auto length = [&] {
+    CaseOpening opening(folder.path(), [] {});
+    EXPECT_EQ(take_until_done(opening), 1) << opening.failure();
+    return opening.model()->checks(bones::BoneKind::Femur).front();
+  };
+  EXPECT_EQ(length().name, "Length");
+  EXPECT_EQ(length().verdict, Verdict::NotChecked);
+  files::write_atomically(cases::bone_doubts_file(folder.path()), "{");
+  EXPECT_EQ(length().verdict, Verdict::Fine);
 }
 
 // One that cannot be opened says why, and the window is woken all the same.

@@ -319,6 +319,20 @@ TEST_F(PlanCommand, Hazard46SaysWhatSpokeAgainstTheBone) {
   EXPECT_THAT(made.errors, HasSubstr("the femur: the images end within it"));
 }
 
+// Where a tunnel leaves a bone that its images cut off nobody knows, nor how long it is.
+TEST_F(PlanCommand, Hazard46ATunnelThatLeavesWhereTheImagesEndIsNotChecked) {
+  const tunnels::Tunnel& tunnel = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  cases::save_bone_doubts(
+      folder_ / "knee.arthro",
+      {{bones::BoneKind::Femur,
+        {bones::ImageCut{
+            .at_mm = tunnel.entry_mm + 10 * tunnel.direction, .out = tunnel.direction, .area_mm2 = 500}}}});
+  const std::string output = run({"plan", "--bone", "femur"}).output;
+  EXPECT_THAT(output, HasSubstr("mm inside bone, as far as the images go"));
+  EXPECT_THAT(output, HasSubstr("  ? Length: not checked: the tunnel leaves where the images end"));
+  EXPECT_THAT(output, HasSubstr("  ? Exit: not checked: the tunnel leaves where the images end"));
+}
+
 // What is placed by hand is done as it was asked: that it cannot be drilled is said wherever it goes, and is
 // no failure of the command.
 TEST_F(PlanCommand, AWrongPlanIsToldHoweverItWasMade) {
