@@ -23,6 +23,7 @@ TEST(CaseRow, NamesThePatientWhereHeIsKnown) {
 TEST(CaseRow, WhatIsDoubtedOfBonesOrPlanHasATriangleInEveryState) {
   const plan_review::TunnelVerdict fine, look{.look = {"femur: Bone: the images end within it"}};
   library::CaseRecord record;
+  record.folder = "/data/Knee 1.arthro";
   record.bones = {bones::BoneKind::Femur};
   EXPECT_EQ(severity_of(record, &look), widgets::Severity::Caution);
   EXPECT_EQ(state_in_words(record, &look), "Not planned; look: femur: Bone: the images end within it");
