@@ -247,10 +247,10 @@ void add_pivot_command(CLI::App& app, Context& context) {
                             .makes = "tools.json"});
     // Any marker of a body stands for it.
     if (!arguments->tools.empty()) {
-      tools::ToolSet tools = tools::read_tools_file(arguments->tools);
-      arguments->marker_id = strokes::body_id_of(arguments->marker_id, tools);
-      if (arguments->world_id) arguments->world_id = strokes::body_id_of(*arguments->world_id, tools);
-      if (!arguments->tools_output.empty()) (void)tool_in(tools, *arguments);
+      tools::ToolSet known = tools::read_tools_file(arguments->tools);
+      arguments->marker_id = strokes::body_id_of(arguments->marker_id, known);
+      if (arguments->world_id) arguments->world_id = strokes::body_id_of(*arguments->world_id, known);
+      if (!arguments->tools_output.empty()) (void)tool_in(known, *arguments);
     }
     arguments->spin ? calibrate_axis(context, *arguments) : calibrate_tip(context, *arguments);
   });

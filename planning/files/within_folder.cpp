@@ -3,6 +3,7 @@
 namespace arthronaut::files {
 
 std::string within_folder(const std::filesystem::path& folder, std::string reason) {
+  if (folder.empty()) return reason;
   const std::string prefix = (folder / "").string();  // with the stroke: "." stands in any sentence
   for (auto at = reason.find(prefix); at != std::string::npos; at = reason.find(prefix, at))
     reason.erase(at, prefix.size());

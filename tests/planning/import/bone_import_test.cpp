@@ -251,10 +251,6 @@ TEST(BoneImport, Hazard46ABoneThatTheEdgeOfTheImagesCutsRaisesADoubt) {
   EXPECT_THAT(doubts_at("whole.nrrd"), Not(Contains(HasSubstr("cut off flat"))));
 }
 
-std::vector<std::string> doubts_of_first(const BoneImport& import) {
-  return cases::words_of(doubts_with(import, import.bones.front(), import.side));
-}
-
 // A person alone is believed, and what he said is told from what the images show. Once anything of them says
 // the same or another side, that stands in its place.
 TEST(BoneImport, ASideThatNothingBearsOutIsNotedAsSaid) {
