@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "navigation/operation/achieved_tunnel.h"
+#include "navigation/provenance/provenance.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/recording/declined_resume.h"
 #include "navigation/recording/drilled_by_word.h"
@@ -51,18 +52,20 @@ void follow_said(const RecordedSession& session, std::vector<SaidDrilled>& said)
   const auto forget = [&](const std::string& tunnel) {
     std::erase_if(said, [&](const SaidDrilled& one) { return one.tunnel == tunnel; });
   };
-  std::int64_t end_ns = session.frames().empty() ? 0 : session.frames().back().timestamp_ns;
   for (const SessionEvent& event : session.events()) {
-    end_ns = std::max(end_ns, event.timestamp_ns);
     if (event.kind == kDrilledEvent) forget(name_of_tunnel_in(event.text, bone));
     if (event.kind == kSaidTooEarlyEvent) forget(event.text);
   }
-  // The pictures have a clock of their own, which shows the end when that was written.
-  const auto end = last_written(session.folder());
+  // The pictures have a clock of their own, which began with the record. A copy of it has newer files.
+  const std::int64_t begin_ns = session.frames().empty() ? 0 : session.frames().front().timestamp_ns;
+  const auto days = provenance::days_between("1970-01-01T00:00:00Z", session.header().started_utc);
   for (const DrilledByWord& one : drilled_by_word(session.events(), bone)) {
     forget(one.tunnel);
-    said.push_back({one.tunnel, end - std::chrono::duration_cast<std::chrono::system_clock::duration>(
-                                          std::chrono::nanoseconds(end_ns - one.timestamp_ns))});
+    const std::chrono::duration<double> since_1970(86400 * days.value_or(0) +
+                                                   1e-9 * static_cast<double>(one.timestamp_ns - begin_ns));
+    said.push_back(
+        {one.tunnel, std::chrono::system_clock::time_point(
+                         std::chrono::duration_cast<std::chrono::system_clock::duration>(since_1970))});
   }
 }
 
