@@ -11,4 +11,9 @@ TEST(WithinFolder, LeavesOutTheFolderAlone) {
   EXPECT_EQ(within_folder("Knee", "Knee.arthro/a.json: is broken"), "Knee.arthro/a.json: is broken");
 }
 
+// A record that has no folder yet: nothing is taken away.
+TEST(WithinFolder, LeavesWordsAsTheyAreWithoutAFolder) {
+  EXPECT_EQ(within_folder({}, "/knees/a.arthro/plan.json: broken"), "/knees/a.arthro/plan.json: broken");
+}
+
 }  // namespace arthronaut::files
