@@ -71,8 +71,8 @@ Severity severity_of(const CaseRecord& record, const TunnelVerdict* verdict) {
     case CaseState::Drilled:
       break;
   }
-  // A tick says that a tunnel was drilled and nothing of plan and last operation is in doubt, not that it went
-  // as planned: its numbers stand beside it. What a CT alone shows is neither.
+  // A tick says that a tunnel was drilled and nothing of plan and last operation is in doubt, not that it
+  // went as planned: its numbers stand beside it. What a CT alone shows is neither.
   const library::SessionFacts* const last = record.last_session();
   if (is_doubted) return Severity::Caution;
   if (last == nullptr || last->is_simulated()) return Severity::Quiet;
