@@ -49,14 +49,15 @@ widgets::Severity severity_of_save(open_case::PlanStatus::Save save) {
 }
 
 void draw_numbers(const widgets::Ui& ui, const tunnels::Tunnel& tunnel,
-                  const tunnels::TunnelGeometry& geometry) {
+                  const tunnels::TunnelGeometry& geometry, bool leaves_images) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(100);
   widgets::Rect row{at.x, at.y, width, height};
   const widgets::Rect left = row.cut_left(width / 2);
   const bool inside = geometry.enters_bone;
-  widgets::number_block(ui, left, "Length in bone", inside ? widgets::fixed(geometry.length_mm, 1) : "\u2013",
-                        "mm", widgets::Severity::Quiet);
+  widgets::number_block(ui, left, leaves_images ? "As far as images go" : "Length in bone",
+                        inside ? widgets::fixed(geometry.length_mm, 1) : "\u2013", "mm",
+                        leaves_images ? widgets::Severity::Caution : widgets::Severity::Quiet);
   widgets::number_block(ui, row, "Diameter", widgets::fixed(tunnel.diameter_mm, 1), "mm",
                         widgets::Severity::Quiet);
   ImGui::Dummy({width, height});
@@ -143,14 +144,14 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
   if (const std::string entry = plan_review::entry_doubt(*tunnel, panel.doubts); !entry.empty())
     widgets::status_row(ui, widgets::Severity::Bad, "Entry", entry);
   const tunnels::TunnelGeometry& geometry = panel.model.measured(panel.key);
-  draw_numbers(ui, *tunnel, geometry);
   const auto& image_cuts = panel.model.surroundings(panel.key.bone).image_cuts;
+  const bool leaves_images = geometry.enters_bone && bones::images_end_at(image_cuts, geometry.exit_mm);
+  draw_numbers(ui, *tunnel, geometry, leaves_images);
   if (geometry.enters_bone)
-    widgets::text_in(
-        ui.theme.body, widgets::kText,
-        (bones::images_end_at(image_cuts, geometry.exit_mm) ? "Leaves the images " : "Leaves the bone ") +
-            place_from_entry(geometry.exit_mm - geometry.entry_on_surface_mm,
-                             panel.model.axes(panel.key.bone)));
+    widgets::text_in(ui.theme.body, widgets::kText,
+                     (leaves_images ? "Leaves the images " : "Leaves the bone ") +
+                         place_from_entry(geometry.exit_mm - geometry.entry_on_surface_mm,
+                                          panel.model.axes(panel.key.bone)));
   ImGui::Dummy({0, ui.theme.px(4)});
   const auto checks = plan_review::as_side_is_doubted(panel.model.checks(panel.key), side);
   bool has_doubts = false;
