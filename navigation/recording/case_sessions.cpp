@@ -34,7 +34,7 @@ std::optional<KnownRegistration> registration_of(const std::filesystem::path& fo
   } else {
     LastRegistration last;
     last.follow(RecordedSession(folder));
-    known.refusal = last.refusal();
+    if (!last.tells_of_none() || !last.alarm().empty()) known.refusal = last.refusal();
   }
   return known;
 }

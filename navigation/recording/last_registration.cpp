@@ -31,10 +31,8 @@ void LastRegistration::follow(const RecordedSession& session, const SessionEvent
 }
 
 void LastRegistration::take(const registration::RegistrationRecord& record) {
-  if (!record.registration.has_pose) {  // the marker was placed anew
-    *this = {};
-    return;
-  }
+  tells_of_one_ = true;
+  if (!record.registration.has_pose) return forget();  // the marker was placed anew
   // An alarm is over when what guided guides again, not when something else takes its place.
   if (record.registration.reliable) return take(record.registration, record.of.value_or(of_));
   doubt_ = doubt_of(record.registration);
@@ -42,7 +40,7 @@ void LastRegistration::take(const registration::RegistrationRecord& record) {
 
 void LastRegistration::take(const operation::Command& command) {
   // What it takes away is written a moment later, and a program may have ended in between.
-  if (std::holds_alternative<operation::MarkerPlacedAnew>(command)) *this = {};
+  if (std::holds_alternative<operation::MarkerPlacedAnew>(command)) forget();
   const auto* given = std::get_if<operation::GiveRegistration>(&command);
   if (given != nullptr && given->registration.reliable) take(given->registration, given->of);
   const auto* resume = std::get_if<operation::ResumeOperation>(&command);
@@ -51,9 +49,16 @@ void LastRegistration::take(const operation::Command& command) {
 
 void LastRegistration::take(const registration::RegistrationSummary& registration,
                             const registration::Provenance& of) {
-  *this = {};
+  forget();
   good_ = registration;
   of_ = of;
+  tells_of_one_ = true;
+}
+
+void LastRegistration::forget() {
+  const bool tells_of_one = tells_of_one_;
+  *this = {};
+  tells_of_one_ = tells_of_one;
 }
 
 }  // namespace arthronaut::recording
