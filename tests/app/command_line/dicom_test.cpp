@@ -127,18 +127,19 @@ TEST_F(DicomCommand, TheSameCaseGivesTheSameBytes) {
   EXPECT_EQ(written, contents_of(folder_ / "b"));
 }
 
-// What goes into the archive is told as `plan --export` tells it: a tunnel that misses its bone, and bones of
-// the other knee.
+// What goes into the archive is told as `plan --export` tells it: a tunnel out through the joint surface, and
+// bones of the other knee.
 TEST_F(DicomCommand, TellsAPlanThatIsWrong) {
   take_phantom();
   const fs::path folder = folder_ / "knee.arthro";
   cases::Case knee = cases::load_case(folder);
-  auto& tunnel = knee.plan.tunnels.at(bones::BoneKind::Femur);
-  tunnel.direction.x() = -tunnel.direction.x();  // across the notch
+  knee.plan.tunnels.at(bones::BoneKind::Femur).direction =
+      Eigen::Vector3d(-0.77, 0.3, 0.44).normalized();  // out at the back
   cases::save_case(folder, knee);
   const auto wrong = run("wrong");
   EXPECT_EQ(wrong.exit_code, 0) << wrong.errors;
-  EXPECT_THAT(wrong.output, HasSubstr("Wrong, and written all the same: femur: "));
+  EXPECT_THAT(wrong.output,
+              HasSubstr("Wrong, and written all the same: femur: Exit: through the joint surface"));
   cases::save_bone_doubts(
       folder, {{bones::BoneKind::Femur,
                 {cases::SideDoubt{cases::SideWitness::Fibula, bones::Side::Left, bones::Side::Right}}}});
