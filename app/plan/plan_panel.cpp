@@ -55,7 +55,7 @@ void draw_numbers(const widgets::Ui& ui, const tunnels::Tunnel& tunnel,
   widgets::Rect row{at.x, at.y, width, height};
   const widgets::Rect left = row.cut_left(width / 2);
   const bool inside = geometry.enters_bone;
-  widgets::number_block(ui, left, leaves_images ? "As far as images go" : "Length in bone",
+  widgets::number_block(ui, left, leaves_images ? "Within images" : "Length in bone",
                         inside ? widgets::fixed(geometry.length_mm, 1) : "\u2013", "mm",
                         leaves_images ? widgets::Severity::Caution : widgets::Severity::Quiet);
   widgets::number_block(ui, row, "Diameter", widgets::fixed(tunnel.diameter_mm, 1), "mm",

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -141,7 +142,8 @@ TEST_F(PlanWindow, SlicesFollowTheTunnel) {
   const double depth_mm =
       (tunnels::measure(tunnel, femur).thinnest_mm - tunnel.entry_mm).dot(tunnel.direction);
   const auto depth_of_cross_mm = [&] {
-    std::istringstream words(app.state("cross"));
+    // As it is printed: with the minus sign of a figure.
+    std::istringstream words(std::regex_replace(app.state("cross"), std::regex("\u2212"), "-"));
     Eigen::Vector3d cross_mm;
     words >> cross_mm.x() >> cross_mm.y() >> cross_mm.z();
     return (cross_mm - tunnel.entry_mm).dot(tunnel.direction);
