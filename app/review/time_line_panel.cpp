@@ -302,8 +302,8 @@ std::optional<std::size_t> draw_time_line(const widgets::Ui& ui, const widgets::
   }
   Row graph{row.y, 1.5F * row.height};
   const float line_px = ui.theme.body->FontSize;
-  draw_name(ui, draw, inner.x, {graph.y - line_px / 2, graph.height}, "Axis offset to 6 mm");
-  draw_name(ui, draw, inner.x, {graph.y + line_px / 2, graph.height}, "red: beyond");
+  draw_name(ui, draw, inner.x, {graph.y - line_px / 2, graph.height}, "Axis offset");
+  draw_name(ui, draw, inner.x, {graph.y + line_px / 2, graph.height}, "red: over 6 mm");
   draw_offsets(ui, draw, scale, graph, screen);
   next(1.5F);
   draw_name(ui, draw, inner.x, row, "What happened");

@@ -9,8 +9,7 @@ namespace {
 TEST(CalibrationWords, TellWhatIsKnownAndWhatIsNot) {
   CalibrationRecord record;
   record.calibration.refractive_index = 1;
-  EXPECT_EQ(in_words(record),
-            "scope not recorded, calibrated on a day not recorded in air, RMS not recorded");
+  EXPECT_EQ(in_words(record), "scope not recorded, calibrated in air, date not recorded, RMS not recorded");
   record.scope_name = "Scope 3";
   record.head_name = "head B";
   record.date_utc = "2026-02-03T10:00:00Z";
