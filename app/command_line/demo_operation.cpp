@@ -233,7 +233,8 @@ class Demo {
   bool drill() {
     step("Drill: the guide is led to the plan, and the tunnel is drilled");
     const theatre::NavigationSummary summary = navigate(Phase::Drill, "drill");
-    context_.say(format("          guidance in %ld of %ld frames", summary.frames_with_guidance,
+    context_.say(format("          guidance in %ld of %ld frames",
+                        summary.guidance_counts.of(guidance::GuidanceState::Valid),
                         summary.statistics.frame_count));
     if (!summary.drilled.tunnel) {
       context_.say_unreliable("the drilled tunnel",

@@ -109,6 +109,9 @@ void export_dicom(Context& context, const DicomArguments& arguments) {
                                      .is_deidentified = arguments.is_deidentified};
   if (contents.knee.bones.empty())
     throw InvalidInput(arguments.case_folder, "case.json", "holds no bone to export");
+  const cases::BoneDoubts bone_doubts = cases::load_bone_doubts(arguments.case_folder);
+  auto verdict = workstation_library::plan_verdict(arguments.case_folder);
+  if (!verdict) verdict = workstation_library::judge_plan(contents.knee, bone_doubts);
   contents.moment_utc = moment_of(arguments.case_folder, contents.knee);
   contents.studies = cases::load_studies(arguments.case_folder);
   if (!arguments.is_deidentified) contents.identity = cases::load_identity(arguments.case_folder);
@@ -121,9 +124,7 @@ void export_dicom(Context& context, const DicomArguments& arguments) {
   for (const fs::path& file : summary.files) context.say("Wrote " + file.string());
   // As `plan --export` has it: what speaks against the plan is told and no doubt about what was written,
   // unless it is of the other knee.
-  const cases::BoneDoubts bone_doubts = cases::load_bone_doubts(arguments.case_folder);
-  for (const std::string& wrong : workstation_library::judge_plan(contents.knee, bone_doubts).wrong)
-    context.say("Wrong, and written all the same: " + wrong);
+  for (const std::string& wrong : verdict->wrong) context.say("Wrong, and written all the same: " + wrong);
   std::vector<std::string> doubts = summary.doubts;
   if (const std::string side = plan_review::side_doubt(bone_doubts); !side.empty())
     doubts.insert(doubts.begin(), side);

@@ -41,8 +41,8 @@ void say_guidance(const Context& context, const theatre::NavigationSummary& summ
   context.say(
       format("guidance in %ld of %ld frames; the last: guide to entry %.2f mm, axis to entry %.2f mm, "
              "angle %.2f deg",
-             summary.frames_with_guidance, summary.statistics.frame_count, g.tip_to_entry_mm,
-             g.axis_to_entry_mm, g.angle_deg));
+             summary.guidance_counts.of(guidance::GuidanceState::Valid), summary.statistics.frame_count,
+             g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg));
   if (!why_not.empty()) context.say("  frames without it: " + why_not);
   const auto part = [&](landmarks::AnatomicalDirection direction) {
     const double value_mm = g.offset_in_mm(direction);

@@ -2,6 +2,7 @@
 
 #include "app/widgets/controls.h"
 #include "navigation/registration/verdict/confidence.h"
+#include "navigation/sources/camera_modes.h"
 
 namespace arthronaut::navigate {
 
@@ -81,8 +82,7 @@ std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction ac
   switch (trouble) {
     case theatre::SourceTrouble::NoPicture:
       // Somebody has to do something about it: no waiting ends that. What it was stands in the panel.
-      return changed_to_px ? "format changed to " + std::to_string(changed_to_px->x()) + " x " +
-                                 std::to_string(changed_to_px->y()) +
+      return changed_to_px ? "format changed to " + sources::size_in_words(*changed_to_px) +
                                  ": set the processor back, or choose the camera (K)"
                            : "wait: no picture comes";
     case theatre::SourceTrouble::Plain:

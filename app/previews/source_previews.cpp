@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "navigation/sources/camera_modes.h"
 #include "navigation/worker/worker.h"
 #include "planning/files/format.h"
 
@@ -46,7 +47,7 @@ std::string words_of(const Preview& preview) {
   if (preview.is_open_here) return "is open now";
   if (preview.does_not_answer()) return "does not answer";
   if (preview.picture == nullptr) return kBeingOpened;
-  const std::string size = std::to_string(preview.size_px.x()) + " x " + std::to_string(preview.size_px.y());
+  const std::string size = sources::size_in_words(preview.size_px);
   const std::string known =
       preview.frames_per_second > 0 ? size + files::format(", %.1f/s", preview.frames_per_second) : size;
   return preview.remark.empty() ? known : known + "; " + preview.remark;

@@ -22,8 +22,7 @@ void draw_registration(FlowingPages& pages, const registration::RegistrationSumm
   for (const auto& assumption : registration.assumptions) pages.sentence("– assumed: " + assumption);
   pages.sentence(
       "A small distance of the points does not prove a small error at the tunnel: the predicted error is the "
-      "figure "
-      "to go by.",
+      "figure to go by.",
       {.size_pt = 8, .ink = kGray});
 }
 

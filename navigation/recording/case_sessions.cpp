@@ -32,9 +32,12 @@ std::optional<KnownRegistration> registration_of(const std::filesystem::path& fo
   if (!known.registration.reliable) {
     known.refusal = doubt_of(known.registration);
   } else {
+    const RecordedSession session(folder);
     LastRegistration last;
-    last.follow(RecordedSession(folder));
-    if (!last.tells_of_none() || !last.alarm().empty()) known.refusal = last.refusal();
+    last.follow(session);
+    // A record that tells of none says nothing against the file beside it.
+    if (std::ranges::any_of(session.events(), is_registration) || !last.alarm().empty())
+      known.refusal = last.refusal();
   }
   return known;
 }

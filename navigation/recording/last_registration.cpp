@@ -31,8 +31,10 @@ void LastRegistration::follow(const RecordedSession& session, const SessionEvent
 }
 
 void LastRegistration::take(const registration::RegistrationRecord& record) {
-  tells_of_one_ = true;
-  if (!record.registration.has_pose) return forget();  // the marker was placed anew
+  if (!record.registration.has_pose) {  // the marker was placed anew
+    *this = {};
+    return;
+  }
   // An alarm is over when what guided guides again, not when something else takes its place.
   if (record.registration.reliable) return take(record.registration, record.of.value_or(of_));
   doubt_ = doubt_of(record.registration);
@@ -40,7 +42,7 @@ void LastRegistration::take(const registration::RegistrationRecord& record) {
 
 void LastRegistration::take(const operation::Command& command) {
   // What it takes away is written a moment later, and a program may have ended in between.
-  if (std::holds_alternative<operation::MarkerPlacedAnew>(command)) forget();
+  if (std::holds_alternative<operation::MarkerPlacedAnew>(command)) *this = {};
   const auto* given = std::get_if<operation::GiveRegistration>(&command);
   if (given != nullptr && given->registration.reliable) take(given->registration, given->of);
   const auto* resume = std::get_if<operation::ResumeOperation>(&command);
@@ -49,16 +51,9 @@ void LastRegistration::take(const operation::Command& command) {
 
 void LastRegistration::take(const registration::RegistrationSummary& registration,
                             const registration::Provenance& of) {
-  forget();
+  *this = {};
   good_ = registration;
   of_ = of;
-  tells_of_one_ = true;
-}
-
-void LastRegistration::forget() {
-  const bool tells_of_one = tells_of_one_;
-  *this = {};
-  tells_of_one_ = tells_of_one;
 }
 
 }  // namespace arthronaut::recording

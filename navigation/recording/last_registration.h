@@ -22,8 +22,6 @@ class LastRegistration {
   [[nodiscard]] const registration::Provenance& of() const { return of_; }
   [[nodiscard]] bool was_verified() const { return was_verified_; }
   [[nodiscard]] const std::string& alarm() const { return alarm_; }
-  // Of none at all, not even of one that was taken away: they say nothing of what else is known of one.
-  [[nodiscard]] bool tells_of_none() const { return !tells_of_one_; }
   // Why it may not: "it was in doubt at the end: ...", "nothing was registered"; empty: it may.
   [[nodiscard]] std::string refusal() const;
 
@@ -32,12 +30,11 @@ class LastRegistration {
   void take(const registration::RegistrationRecord& record);
   void take(const operation::Command& command);
   void take(const registration::RegistrationSummary& registration, const registration::Provenance& of);
-  void forget();
 
   std::optional<registration::RegistrationSummary> good_;
   registration::Provenance of_;
   std::string alarm_, doubt_;
-  bool was_verified_ = false, tells_of_one_ = false;
+  bool was_verified_ = false;
 };
 
 }  // namespace arthronaut::recording

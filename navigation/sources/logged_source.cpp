@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "navigation/sources/camera_modes.h"
 #include "planning/log/log.h"
 
 namespace arthronaut::sources {
@@ -13,9 +14,8 @@ class LoggedSource final : public FrameSource {
  public:
   explicit LoggedSource(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {
     const SourceInfo& opened = source_->info();
-    log::info("source opened: " + opened.name + ", " + std::to_string(opened.image_size_px.x()) + " x " +
-              std::to_string(opened.image_size_px.y()) + ", " + std::to_string(opened.frames_per_second) +
-              " frames/s" + (opened.is_live() ? ", live" : ""));
+    log::info("source opened: " + opened.name + ", " + size_in_words(opened.image_size_px) + ", " +
+              std::to_string(opened.frames_per_second) + " frames/s" + (opened.is_live() ? ", live" : ""));
   }
   ~LoggedSource() override {
     if (!has_ended_) log::info("source closed: " + told());

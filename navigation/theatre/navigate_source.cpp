@@ -112,10 +112,7 @@ class Navigation {
       // That nothing stands is the medium's doing, not the lens'.
       if (!frame.intrinsics_are_known) --summary_.statistics.frames_with_unknown_lens;
     }
-    if (frame.guidance.is_valid()) {
-      ++summary_.frames_with_guidance;
-      summary_.last_guidance = frame.guidance;
-    }
+    if (frame.guidance.is_valid()) summary_.last_guidance = frame.guidance;
     follow_registration();
     pass_on(step.picture, state);
     if (!observer_.pedal) return true;

@@ -68,7 +68,7 @@ struct NavigationSummary {
   std::optional<registration::RegistrationSummary> registration;
   operation::Standing standing = operation::Standing::None;
   bool registration_was_found = false;  // here, not given
-  long frames_with_tip = 0, frames_with_guidance = 0;
+  long frames_with_tip = 0;
   guidance::GuidanceCounts guidance_counts;  // of all frames
   // Frames in which a registration stood, and those of them whose picture was seen to show the bone where it
   // lay.

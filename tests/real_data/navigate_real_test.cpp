@@ -95,16 +95,18 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
   const std::shared_ptr<sources::FrameSource> guide_video = sources::open_video(guide_clip / "clip.mkv");
   const theatre::NavigationSummary guided = theatre::navigate_source(guide_video, drill, {}, observer);
   EXPECT_EQ(scratched.frames_in_other_medium + guided.frames_in_other_medium, 0);
-  ASSERT_GT(guided.frames_with_guidance, 30);  // of 40: the guide is free in all of them
+  ASSERT_GT(guided.guidance_counts.of(guidance::GuidanceState::Valid),
+            30);  // of 40: the guide is free in all of them
   const std::size_t last = gt.row_count() - 1;
   std::printf(
       "guide_wet: guidance in %ld of %ld frames; rms error: tip to entry %.3f mm, axis to entry %.3f mm, "
       "angle %.3f deg\n  last frame: tip to entry %.2f mm (true %.2f), axis to entry %.2f mm (true %.2f), "
       "angle %.2f deg (true %.2f)\n",
-      guided.frames_with_guidance, guided.statistics.frame_count, root_mean_square(tip_errors),
-      root_mean_square(offset_errors), root_mean_square(angle_errors), guided.last_guidance.tip_to_entry_mm,
-      gt.number(last, "tip_to_entry_mm"), guided.last_guidance.axis_to_entry_mm,
-      gt.number(last, "axis_to_entry_mm"), guided.last_guidance.angle_deg, gt.number(last, "angle_deg"));
+      guided.guidance_counts.of(guidance::GuidanceState::Valid), guided.statistics.frame_count,
+      root_mean_square(tip_errors), root_mean_square(offset_errors), root_mean_square(angle_errors),
+      guided.last_guidance.tip_to_entry_mm, gt.number(last, "tip_to_entry_mm"),
+      guided.last_guidance.axis_to_entry_mm, gt.number(last, "axis_to_entry_mm"),
+      guided.last_guidance.angle_deg, gt.number(last, "angle_deg"));
 }
 
 // In the wrong medium nothing is navigated, and that is what is said: not the lens, not a probe that drew
@@ -120,7 +122,7 @@ TEST(NavigateReal, Hazard27TheMediumIsTheReason) {
     const std::shared_ptr<sources::FrameSource> video = sources::open_video(clip / "clip.mkv");
     const theatre::NavigationSummary summary = theatre::navigate_source(video, options);
     EXPECT_GT(2 * summary.frames_in_other_medium, summary.statistics.frame_count) << name;
-    EXPECT_EQ(summary.frames_with_guidance, 0) << name;
+    EXPECT_EQ(summary.guidance_counts.of(guidance::GuidanceState::Valid), 0) << name;
     ASSERT_EQ(summary.reasons.size(), 1U) << name;
     EXPECT_NE(summary.reasons.front().find("not as in air"), std::string::npos) << summary.reasons.front();
     EXPECT_EQ(summary.statistics.frames_with_unknown_lens, 0) << name;
