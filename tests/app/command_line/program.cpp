@@ -73,16 +73,16 @@ std::string all_of(int terminal) {
 }
 
 // Nothing is sent to a program that has ended.
-void interrupt_when(const std::function<bool()>& is_time, pid_t child) {
+void interrupt_when(const std::function<bool()>& is_time, pid_t child, int signal) {
   siginfo_t ended{};
   while (!is_time()) {
     ended.si_pid = 0;
     if (::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT) != 0 ||
         ended.si_pid != 0)
       return;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  ::kill(child, SIGINT);
+  ::kill(child, signal);
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const Progr
   ProgramResult result;
   if (limits.errors_on_terminal) result.errors = all_of(terminal.ours);
   int status = 0;
-  if (limits.interrupts_when) interrupt_when(limits.interrupts_when, child);
+  if (limits.interrupts_when) interrupt_when(limits.interrupts_when, child, limits.interrupted_by);
   ::waitpid(child, &status, 0);
   ::close(output);
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <csignal>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -22,6 +23,7 @@ struct ProgramLimits {
   std::filesystem::path data_home = {};
   // Ctrl+C once this is true; asked all the while.
   std::function<bool()> interrupts_when = {};
+  int interrupted_by = SIGINT;  // SIGKILL: it is given no time to tidy up
   // Standard error is a terminal: progress is shown.
   bool errors_on_terminal = false;
   std::filesystem::path output = {};  // where standard output goes in place of ProgramResult::output
