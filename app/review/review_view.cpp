@@ -228,7 +228,8 @@ void ReviewView::draw_numbers(const widgets::Ui& ui, widgets::Rect area) {
       widgets::text_centered(ui, target, ui.theme.strong, widgets::kQuietText,
                              "The bone has another surface by now, and other axes.");
     else
-      draw_bullseye(ui, target, screen(), model_->axes(bone));
+      // Those of then: landmarks may have been moved since.
+      draw_bullseye(ui, target, screen(), open_->review.session->options.axes.value_or(model_->axes(bone)));
   }
   draw_moment(ui, area, screen());
 }
