@@ -43,12 +43,6 @@ std::string other_patient_of(const images::Volume& volume, const std::filesystem
   return of_case && cases::is_another_patient(*of_case, images) ? images.in_words() : "";
 }
 
-void doubt(postop::Comparison& comparison, const std::string& reason) {
-  comparison.bone.reliable = comparison.tunnel.reliable = false;
-  for (auto* const reasons : {&comparison.bone.reasons, &comparison.tunnel.reasons})
-    reasons->insert(reasons->begin(), reason);
-}
-
 // Why it is not relied on, in the order in which it is told; empty: nobody says.
 std::string first_doubt(const postop::Comparison& one) {
   if (!one.bone.reliable && !one.bone.reasons.empty()) return one.bone.reasons.front();
@@ -72,23 +66,35 @@ std::map<tunnels::TunnelKey, postop::AchievedPlace> places_of(cases::Case knee,
 
 void compare_all(const cases::Case& knee, const std::vector<tunnels::Tunnel>& plan,
                  const PostopQuestion& question, PostopAnswer& answer) {
-  const auto tell = [&](const std::string& what, std::size_t done) {
-    if (question.on_progress)
-      question.on_progress(what, static_cast<double>(done) / static_cast<double>(plan.size()));
+  // By hundredths: the search tells more often than anybody can see.
+  double told = -1;
+  const auto tell = [&](const std::string& what, double done) {
+    const double share = done / static_cast<double>(plan.size());
+    if (!question.on_progress || share < told + 0.01) return;
+    told = share;
+    question.on_progress(what, share);
   };
   const auto stops = [&] { return answer.was_stopped = question.stops && question.stops(); };
   tell("Finding the bones in the images", 0);
   const postop::PostopImages images(answer.images);
   for (const tunnels::Tunnel& tunnel : plan) {
     if (stops()) return;
-    tell("Comparing the " + tunnels::name_of(tunnel.key()), answer.comparisons.size());
+    const std::string what = "Comparing the " + tunnels::name_of(tunnel.key());
+    const auto done = static_cast<double>(answer.comparisons.size());
+    tell(what, done);
     std::vector<tunnels::Tunnel> others;
     for (const tunnels::Tunnel& other : plan)
       if (other.bone == tunnel.bone && other.bundle != tunnel.bundle) others.push_back(other);
-    answer.comparisons[tunnel.key()] = images.compare(knee.bones.at(tunnel.bone).mesh, tunnel, others);
+    const auto goes_on = [&](double share) {
+      tell(what, done + share);
+      return !stops();
+    };
+    auto comparison = images.compare(knee.bones.at(tunnel.bone).mesh, tunnel, others, goes_on);
+    if (answer.was_stopped) return;
+    answer.comparisons[tunnel.key()] = std::move(comparison);
   }
   answer.places = places_of(knee, answer.comparisons);
-  tell("Compared", plan.size());
+  tell("Compared", static_cast<double>(plan.size()));
 }
 
 }  // namespace
@@ -110,7 +116,7 @@ std::vector<BetterKept> better_kept_in(const std::filesystem::path& file, const 
     if (!std::filesystem::is_regular_file(file)) return better;
     for (const auto& [key, kept] : postop::read_achieved_file(file)) {
       const auto now = answer.comparisons.find(key);
-      if (now == answer.comparisons.end() || !is_relied_on(kept) || is_relied_on(now->second)) continue;
+      if (now == answer.comparisons.end() || is_relied_on(now->second, relied_on(kept))) continue;
       if (!answer.planned.contains(key) || postop::is_against(kept.tunnel, key, answer.planned))
         better.push_back({key, first_doubt(now->second)});
     }
@@ -160,17 +166,18 @@ PostopAnswer compare_with_postop(const PostopQuestion& question) {
   };
   answer.images = question.read ? question.read(options) : postop::read_postop(question.source, options);
   if ((answer.was_stopped = question.stops && question.stops())) return answer;
+  answer.other_patient = other_patient_of(answer.images, question.case_folder);
+  if (question.refuses_another_patient && !answer.other_patient.empty()) return answer;
   try {
     compare_all(knee, plan, question, answer);
   } catch (const InvalidInput& error) {
     throw InvalidInput(question.source, "", error.what());
   }
-  answer.other_patient = other_patient_of(answer.images, question.case_folder);
   if (!answer.other_patient.empty()) {
-    for (auto& [key, comparison] : answer.comparisons) doubt(comparison, kOtherPatient);
+    for (auto& [key, comparison] : answer.comparisons) postop::doubt(comparison, kOtherPatient);
   }
   if (const std::string other_side = other_side_of(answer.images, knee); !other_side.empty())
-    for (auto& [key, comparison] : answer.comparisons) doubt(comparison, other_side);
+    for (auto& [key, comparison] : answer.comparisons) postop::doubt(comparison, other_side);
   return answer;
 }
 

@@ -27,8 +27,11 @@ struct PostopQuestion {
   std::function<images::Volume(const postop::PostopSourceOptions& options)> read = {};
   // What goes on, and how much of it is done, 0 to 1. May be empty.
   std::function<void(const std::string& what, double share)> on_progress = {};
-  // Asked between two steps, of 3 to 10 s each; true ends it. May be empty.
+  // Asked many times a second while bones are sought, and between two tunnels; true ends it. May be empty.
   std::function<bool()> stops = {};
+  // Images that say that they are of another patient than the case are not searched: whose they are is all
+  // that is answered. For those who would keep nothing of them.
+  bool refuses_another_patient = false;
 };
 
 struct PostopAnswer {
@@ -39,8 +42,8 @@ struct PostopAnswer {
   std::map<tunnels::TunnelKey, tunnels::Tunnel> planned;  // what each was compared with
   images::Volume images;                                  // as they were read
   bool was_stopped = false;                               // then there may be fewer comparisons
-  std::string
-      other_patient;  // whose the images are where that is another patient than the case's; else empty
+  // Whose the images are where that is another patient than the case's; else empty.
+  std::string other_patient;
   // Why it must not be relied on, each sentence beginning with the tunnel: "femur: ..."; empty: reliable.
   [[nodiscard]] std::vector<std::string> doubts() const;
 };
@@ -50,14 +53,15 @@ struct PostopAnswer {
 // that cannot be read or show no bone.
 [[nodiscard]] PostopAnswer compare_with_postop(const PostopQuestion& question);
 
-// A tunnel that a file holds relied on, against the same plan, and that is not relied on now.
+// A tunnel of which a file holds something relied on, against the same plan, that is not relied on now.
 struct BetterKept {
   tunnels::TunnelKey key;
   std::string why_not_now;  // may be empty
 };
 
-// Of what was compared, the tunnels that `file` holds relied on, against the same plan, and that are not
-// relied on now. None where there is no such file, or it is broken.
+// Of what was compared, the tunnels of which `file` holds something relied on, against the same plan, that is
+// not relied on now: all of it, or its entry, direction, diameter or length. None where there is no such
+// file, or it is broken.
 [[nodiscard]] std::vector<BetterKept> better_kept_in(const std::filesystem::path& file,
                                                      const PostopAnswer& answer);
 

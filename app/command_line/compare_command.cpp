@@ -74,11 +74,12 @@ void compare(Context& context, const CompareArguments& arguments) {
                                      arguments.bone,
                                      arguments.series,
                                      {arguments.labels.begin(), arguments.labels.end()}};
+  // What a case keeps of its own patient stays.
+  question.refuses_another_patient = !case_of_output.empty();
   question.on_progress = [&](const std::string&, double share) {
     progress.advance_to(static_cast<long>(100 * share));
   };
   const open_case::PostopAnswer answer = open_case::compare_with_postop(question);
-  // What a case keeps of its own patient stays.
   if (!case_of_output.empty() && !answer.other_patient.empty())
     throw InvalidInput(arguments.source, "",
                        "is of " + answer.other_patient + ": nothing is written into the case; -o elsewhere");
@@ -97,6 +98,8 @@ void compare(Context& context, const CompareArguments& arguments) {
         context.say(files::format("%s: found in the images, %.2f mm (rms) off their edges",
                                   tunnels::name_of(key).c_str(), comparison.bone.rms_mm));
       context.say(line_of(key, comparison.tunnel));
+      if (const std::string known = known_in_words(relied_on(comparison)); !known.empty())
+        context.say(tunnels::name_of(key) + ": reliable in part: " + known);
       if (const auto place = answer.places.find(key); place != answer.places.end())
         context.say(place_line(key, place->second));
     }

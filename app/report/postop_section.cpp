@@ -28,30 +28,45 @@ std::vector<std::string> column(const Content& content, const tunnels::TunnelKey
   const postop::AchievedTunnel& found = comparison.tunnel;
   using enum postop::ComparisonVerdict;
   const postop::ComparisonVerdict verdict = verdict_of(content, key);
-  std::vector<std::string> cells = {tunnels::name_of(key),
-                                    verdict == NotReliable ? "NOT RELIABLE" : std::string(to_text(verdict))};
+  const tunnels::Quantities known = relied_on(comparison);
+  using enum tunnels::Quantity;
+  // Where only a part is relied on each number of the rest says so itself.
+  const auto doubted = [&](std::string text, const tunnels::Quantities& needed) {
+    const bool is_doubted = verdict == ReliableInPart && !std::ranges::includes(known, needed);
+    return text == "\u2013" || !is_doubted ? text : text + "; NOT RELIABLE";
+  };
+  std::vector<std::string> cells = {tunnels::name_of(key), verdict == NotReliable ? "NOT RELIABLE"
+                                                           : verdict == ReliableInPart
+                                                               ? "RELIABLE IN PART: " + known_in_words(known)
+                                                               : std::string(to_text(verdict))};
   if (found.is_found) {
-    const bool is_of_plan = verdict == NotReliable || verdict == Reliable;
-    cells.push_back(format("%.2f mm ", found.offset_mm) + postop::sigma_in_words(found.entry_sigma_mm, 2));
-    cells.push_back(std::isfinite(found.offset_across_mm) ? format("%.2f mm", found.offset_across_mm)
-                                                          : "\u2013");
+    const bool is_of_plan = verdict == NotReliable || verdict == ReliableInPart || verdict == Reliable;
+    cells.push_back(doubted(
+        format("%.2f mm ", found.offset_mm) + postop::sigma_in_words(found.entry_sigma_mm, 2), {Entry}));
+    cells.push_back(
+        doubted(std::isfinite(found.offset_across_mm) ? format("%.2f mm", found.offset_across_mm) : "\u2013",
+                {Entry, Direction}));
     const auto place = content.places.find(key);
     const bool has_place = place != content.places.end();
-    const auto told = [&](std::string (&words)(const postop::AchievedPlace&)) {
+    const auto told = [&](std::string (&words)(const postop::AchievedPlace&),
+                          const tunnels::Quantities& needed) {
       const std::string text = has_place ? words(place->second) : std::string();
-      return text.empty() ? std::string("\u2013") : text;
+      return doubted(text.empty() ? std::string("\u2013") : text, needed);
     };
-    cells.push_back(told(postop::off_in_words));
-    cells.push_back(told(postop::grid_in_words));
-    cells.push_back(format("%.2f\u00B0 ", geometry::deg_from_rad(found.angle_rad)) +
-                    postop::sigma_in_words(geometry::deg_from_rad(found.direction_sigma_rad), 2));
-    cells.push_back(
+    cells.push_back(told(postop::off_in_words, {Entry}));
+    cells.push_back(told(postop::grid_in_words, {Entry}));
+    cells.push_back(doubted(format("%.2f\u00B0 ", geometry::deg_from_rad(found.angle_rad)) +
+                                postop::sigma_in_words(geometry::deg_from_rad(found.direction_sigma_rad), 2),
+                            {Direction}));
+    cells.push_back(doubted(
         format("%.1f mm", found.tunnel.diameter_mm) +
-        (is_of_plan ? format("; planned %.1f mm", content.knee.plan.tunnels.at(key).diameter_mm) : ""));
+            (is_of_plan ? format("; planned %.1f mm", content.knee.plan.tunnels.at(key).diameter_mm) : ""),
+        {Diameter}));
     const std::string widths = postop::widths_in_words(found.widths);
-    cells.push_back(widths.empty() ? "not seen" : widths);
-    cells.push_back(postop::length_in_words(found) + (is_of_plan ? planned_length(content, key) : ""));
-    cells.push_back(told(postop::wall_in_words));
+    cells.push_back(widths.empty() ? "not seen" : doubted(widths, {Diameter}));
+    cells.push_back(
+        doubted(postop::length_in_words(found) + (is_of_plan ? planned_length(content, key) : ""), {Length}));
+    cells.push_back(told(postop::wall_in_words, tunnels::all_quantities()));
     cells.push_back(format("%.0f %%", 100 * found.metal_share));
   } else {
     cells.insert(cells.end(), 10, "\u2013");

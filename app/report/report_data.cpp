@@ -183,6 +183,10 @@ ordered_json postoperative_of(const Content& content) {
     ordered_json node = {{"tunnel", tunnels::name_of(key)}, {"verdict", to_text(verdict)}};
     node["reliable"] = verdict == postop::ComparisonVerdict::Reliable;
     node["reasons"] = doubts_of(content, key);
+    node["reliable_quantities"] = ordered_json::array();
+    if (verdict != postop::ComparisonVerdict::OfAnEarlierPlan)
+      for (const tunnels::Quantity quantity : relied_on(comparison))
+        node["reliable_quantities"].push_back(tunnels::to_text(quantity));
     if (!comparison.kept_because.empty()) node["kept_because"] = comparison.kept_because;
     node["planned"] = nullptr;
     // Of an earlier plan the differences alone are known, not what they are from.
@@ -206,8 +210,11 @@ ordered_json postoperative_of(const Content& content) {
     node["widths"] = ordered_json::array();
     for (const postop::Width& width : found.widths)
       node["widths"].push_back({{"from_entry_mm", width.from_entry_mm}, {"diameter_mm", width.diameter_mm}});
-    if (const auto place = content.places.find(key); place != content.places.end())
+    if (const auto place = content.places.find(key); place != content.places.end()) {
       postop::put_place(node, place->second);
+      if (verdict == postop::ComparisonVerdict::Reliable && postop::is_wall_known(place->second))
+        node["reliable_quantities"].push_back("wall");
+    }
     node["off_navigation"] = nullptr;  // what was drilled, by the CT, from what navigation measured
     for (const TunnelResult& result : results)
       if (result.key == key && result.navigated_to_imaged)

@@ -14,6 +14,8 @@ namespace arthronaut::report {
 
 namespace {
 
+const tunnels::Quantities kAxis{tunnels::Quantity::Entry, tunnels::Quantity::Direction};
+
 std::string off_by(double entry_mm, double angle_deg) {
   return number(entry_mm, " mm") + ", " + number(angle_deg, "\u00B0");
 }
@@ -33,8 +35,14 @@ std::string by_ct(const Content& content, const TunnelResult& result) {
   const std::string words(to_text(verdict));
   const postop::AchievedTunnel& found = result.imaged->tunnel;
   if (!found.is_found) return words;
+  // Whatever is not known else: these two are what stands here.
+  const bool is_axis_known =
+      is_relied_on(*result.imaged, kAxis) && verdict != postop::ComparisonVerdict::OfAnEarlierPlan;
+  const std::string known = known_in_words(relied_on(*result.imaged));
   return off_by(found.offset_mm, geometry::deg_from_rad(found.angle_rad)) +
-         (verdict == postop::ComparisonVerdict::Reliable ? "" : "; " + words) +
+         (is_axis_known                                          ? ""
+          : verdict == postop::ComparisonVerdict::ReliableInPart ? "; " + words + ": " + known
+                                                                 : "; " + words) +
          (result.imaged->kept_because.empty() ? "" : "; kept from earlier images");
 }
 
@@ -75,7 +83,7 @@ std::vector<TunnelResult> results_of(const Content& content) {
     const bool is_of_this_bone =
         !content.is_of_another_surface || content.session->header().bone != result.key.bone;
     if (result.navigated != nullptr && !result.is_by_word && is_of_this_bone && result.imaged != nullptr &&
-        is_relied_on(*result.imaged))
+        is_relied_on(*result.imaged, kAxis))
       result.navigated_to_imaged =
           operation::compare(result.navigated->measured, result.imaged->tunnel.tunnel);
     in_order.push_back(result);

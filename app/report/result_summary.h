@@ -20,8 +20,8 @@ struct TunnelResult {
   const operation::AchievedTunnel* navigated = nullptr;
   bool is_by_word = false;  // the last that was said of it: drilled, and no pose shows where
   const postop::Comparison* imaged = nullptr;  // with a CT after the operation; null: none is kept
-  // From what navigation measured to what the CT shows, in the bone; where both are known, and the CT's is
-  // reliable. What neither can say by itself: how far the navigation was from the truth.
+  // From what navigation measured to what the CT shows, in the bone; where both are known, and where the axis
+  // runs is relied on in the CT. What neither can say by itself: how far the navigation was from the truth.
   std::optional<operation::TunnelDifference> navigated_to_imaged = {};
 };
 

@@ -13,7 +13,10 @@ CtWords ct_in_words(const postop::Comparison& comparison, const tunnels::Tunnel&
   if (!postop::is_against(found, planned)) return {Severity::Quiet, "compared with another plan than this"};
   const std::string text = "offset of the entry " + widgets::fixed(found.offset_mm, 1) + " mm, angle " +
                            widgets::fixed(geometry::deg_from_rad(found.angle_rad), 1) + "\u00B0";
-  if (postop::is_relied_on(comparison)) return {Severity::Quiet, text};
+  using enum tunnels::Quantity;
+  if (postop::is_relied_on(comparison, {Entry, Direction})) return {Severity::Quiet, text};
+  if (const std::string known = known_in_words(relied_on(comparison)); !known.empty())
+    return {Severity::Caution, text + "; reliable in part, " + known + why};
   return {Severity::Caution, text + "; not reliable" + why};
 }
 

@@ -13,7 +13,8 @@ struct CtWords {
   widgets::Severity severity = widgets::Severity::Quiet;  // Caution: not to be relied on
   std::string text;
 };
-// planned: what the tunnel was drilled by.
+// planned: what the tunnel was drilled by. What else of it is not known is no matter here: these words are of
+// entry and direction.
 [[nodiscard]] CtWords ct_in_words(const postop::Comparison& comparison, const tunnels::Tunnel& planned);
 
 }  // namespace arthronaut::review

@@ -29,8 +29,10 @@ struct AchievedRow {
   std::string offset, angle, diameter, length;            // "1.2 mm ± 0.2", "–" where nothing was found
   std::string grid, wall;                                 // empty where they are not known
   widgets::Severity severity = widgets::Severity::Quiet;  // Good: reliable; Caution: not; Bad: not found
-  std::string verdict;                                    // "reliable", "not reliable", "not found"
-  std::vector<std::string> reasons;                       // why not
+  // "reliable", "not reliable", "reliable in part: entry and direction; not the diameter", "not found"; each
+  // number that is not relied on in a part that is says so, too.
+  std::string verdict;
+  std::vector<std::string> reasons;  // why not
 };
 // planned_length_mm: inside the bone, along the plan; by the same keys, as the places are.
 [[nodiscard]] std::vector<AchievedRow> achieved_rows(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/images/volume_decoder.h"
 #include "planning/images/volume_file.h"
@@ -159,6 +160,8 @@ PostopRun::PostopRun(const std::filesystem::path& case_folder, const std::filesy
     : worker_(
           worker::Backlog::Lossless,
           [case_folder, source, series, writes, program](auto& inbox) {
+            // Before the work: a folder that cannot be written to, a disk that is full.
+            if (writes) files::refuse_unwritable(case_folder, achieved_file(case_folder));
             PostopProgress progress;
             open_case::PostopQuestion question{
                 .case_folder = case_folder, .source = source, .series = series};
@@ -168,6 +171,7 @@ PostopRun::PostopRun(const std::filesystem::path& case_folder, const std::filesy
               inbox.publish(progress);
             };
             question.stops = [&] { return inbox.stops(); };
+            question.refuses_another_patient = true;
             question.read = [&](const postop::PostopSourceOptions& options) {
               return read_beside(source, program, options, question.stops);
             };

@@ -5,8 +5,8 @@
 // The files are from elsewhere: they are looked through and read in a process of its own, with a limit on its
 // memory.
 //
-// Threads: made and asked on the window's thread; one worker computes. It ends within one step of the
-// comparison (3 to 10 s) after stop().
+// Threads: made and asked on the window's thread; one worker computes. It ends at once after stop() while it
+// reads or seeks a bone, and within some seconds while it measures a tunnel.
 #pragma once
 
 #include <filesystem>

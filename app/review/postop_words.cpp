@@ -23,6 +23,20 @@ void fill_found(const postop::AchievedTunnel& found, AchievedRow& row) {
     row.diameter += "; along the wall " + widths;
 }
 
+// Where only a part is relied on each number of the rest says so itself.
+void mark_unknown(const tunnels::Quantities& known, AchievedRow& row) {
+  const auto mark = [](bool is_known, std::string& text) {
+    if (!is_known && !text.empty()) text += "; NOT RELIABLE";
+  };
+  using enum tunnels::Quantity;
+  mark(known.contains(Entry), row.offset);
+  mark(known.contains(Entry), row.grid);
+  mark(known.contains(Direction), row.angle);
+  mark(known.contains(Diameter), row.diameter);
+  mark(known.contains(Length), row.length);
+  mark(false, row.wall);  // follows from all
+}
+
 }  // namespace
 
 std::vector<AchievedRow> achieved_rows(const Comparisons& comparisons,
@@ -46,12 +60,15 @@ std::vector<AchievedRow> achieved_rows(const Comparisons& comparisons,
                    : verdict == postop::ComparisonVerdict::Reliable ? widgets::Severity::Good
                                                                     : widgets::Severity::Caution;
     row.verdict = to_text(verdict);
+    const tunnels::Quantities known = relied_on(comparison);
+    if (verdict == postop::ComparisonVerdict::ReliableInPart) row.verdict += ": " + known_in_words(known);
     row.reasons = comparison.bone.reasons;
     if (const auto place = places.find(key); place != places.end() && tunnel.is_found && is_of_plan) {
       row.offset += ": " + postop::off_in_words(place->second);
       row.grid = postop::grid_in_words(place->second);
       row.wall = postop::wall_in_words(place->second);
     }
+    if (verdict == postop::ComparisonVerdict::ReliableInPart) mark_unknown(known, row);
     if (verdict == postop::ComparisonVerdict::OfAnEarlierPlan)
       row.reasons.insert(row.reasons.begin(), "the plan was changed since: compare again");
     if (!comparison.kept_because.empty())

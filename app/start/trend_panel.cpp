@@ -264,6 +264,14 @@ void CaseList::draw_trends(const widgets::Ui& ui, const widgets::Rect& area) {
             ": " + std::to_string(charted.points.size()) + " " + (charted.points.size() == 1 ? one : many) +
             " of " + std::to_string(found_.size()) + (found_.size() == 1 ? " listed case" : " listed cases");
     if (left_out > 0) words += "; " + std::to_string(left_out) + " simulated left out";
+    if (is_of_comparisons(trend)) {
+      const std::size_t unknown =
+          library::trend_of(
+              listed, trend,
+              {.with_simulated = view_.with_simulated, .bone = view_.trend_bone, .of_unknown = true})
+              .size();
+      if (unknown > 0) words += "; " + std::to_string(unknown) + " in which it is not reliable left out";
+    }
     words += limits_in_words(charted, std::to_string(library::kLeastForLimits) + " " + many);
   }
   ui.log.note_state("trend_points", std::to_string(charted.points.size()));

@@ -1,6 +1,8 @@
 #include "planning/files/whole_folder.h"
 
+#include <fcntl.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -42,6 +44,26 @@ void as_open_as_any_new_one(const fs::path& folder) {
   fs::create_directory(folder / "new", ignored);
   fs::permissions(folder, fs::status(folder / "new", ignored).permissions(), ignored);
   fs::remove(folder / "new", ignored);
+}
+
+// The system's number of why a file of as many bytes as a case's own files have cannot be written; 0: it can.
+// A full disk still makes empty folders and files.
+int why_no_bytes_fit(const fs::path& file) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (descriptor < 0) return errno;
+  const std::string bytes(65536, ' ');
+  std::size_t written = 0;
+  int reason = 0;
+  while (reason == 0 && written < bytes.size()) {
+    const ssize_t now = ::write(descriptor, bytes.data() + written, bytes.size() - written);
+    if (now > 0)
+      written += static_cast<std::size_t>(now);
+    else if (now == 0 || errno != EINTR)
+      reason = now == 0 ? ENOSPC : errno;
+  }
+  // Over a network it is told only here.
+  if (::close(descriptor) != 0 && reason == 0) reason = errno;
+  return reason;
 }
 
 }  // namespace
@@ -101,9 +123,13 @@ void refuse_unwritable(const fs::path& folder, const fs::path& file) {
   while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
   // Rights alone do not tell: of a medium that is read-only, or a file system that makes no folders.
   std::string probe = (there / ".arthronaut-XXXXXX").string();
-  if (!::mkdtemp(probe.data()))
-    throw IoError(file.empty() ? folder : file, std::string("cannot be written: ") + std::strerror(errno));
-  fs::remove(probe, error);
+  const auto refuse = [&](int reason) {
+    throw IoError(file.empty() ? folder : file, std::string("cannot be written: ") + std::strerror(reason));
+  };
+  if (!::mkdtemp(probe.data())) refuse(errno);
+  const int reason = why_no_bytes_fit(fs::path(probe) / "probe");
+  fs::remove_all(probe, error);
+  if (reason != 0) refuse(reason);
 }
 
 void refuse_taken(const fs::path& folder) {

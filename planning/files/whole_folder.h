@@ -25,8 +25,8 @@ void fill_folder(const std::filesystem::path& folder,
                  const std::vector<std::filesystem::path>& gone = {});
 
 // Before work whose result goes there: throws IoError, which names the folder, where nothing can be made in
-// `folder`, or, while it is not there, in the nearest one above it that is. A file that is to be written
-// there is named in its place.
+// `folder`, or, while it is not there, in the nearest one above it that is; or where the disk does not even
+// take 64 KB more. A file that is to be written there is named in its place. Leaves nothing.
 void refuse_unwritable(const std::filesystem::path& folder, const std::filesystem::path& file = {});
 
 // The same of a folder that a command makes: throws InvalidInput unless it is absent or empty.

@@ -161,6 +161,9 @@ std::vector<PostoperativeFacts> read_postoperative(const fs::path& case_folder) 
                      .angle_deg = optional_number(node, "angle_deg"),
                      .diameter_mm = optional_number(node, "diameter_mm"),
                      .is_reliable = node.boolean("reliable")});
+    if (facts.back().is_reliable || !node.has("reliable_quantities")) continue;
+    for (const std::string& name : node.texts("reliable_quantities"))
+      if (const auto quantity = tunnels::quantity_from_text(name)) facts.back().known.insert(*quantity);
   }
   return facts;
 }

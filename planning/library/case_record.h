@@ -14,6 +14,7 @@
 
 #include "planning/bones/bone.h"
 #include "planning/tunnels/tunnel.h"
+#include "planning/tunnels/tunnel_quantity.h"
 
 namespace arthronaut::library {
 
@@ -62,7 +63,12 @@ using SessionReader = std::function<SessionFacts(const std::filesystem::path& se
 struct PostoperativeFacts {
   tunnels::TunnelKey tunnel = bones::BoneKind::Femur;
   std::optional<double> entry_offset_mm, angle_deg, diameter_mm;  // empty: no tunnel was found
-  bool is_reliable = false;
+  bool is_reliable = false;                                       // all of it
+  tunnels::Quantities known = {};  // what may be relied on all the same, where not all of it may
+
+  [[nodiscard]] bool is_known(tunnels::Quantity quantity) const {
+    return is_reliable || known.contains(quantity);
+  }
 };
 
 enum class CaseState {

@@ -92,6 +92,9 @@ ordered_json to_json(const PostoperativeFacts& facts) {
   put(node, "entry_offset_mm", facts.entry_offset_mm);
   put(node, "angle_deg", facts.angle_deg);
   put(node, "diameter_mm", facts.diameter_mm);
+  if (facts.known.empty()) return node;
+  for (const tunnels::Quantity quantity : facts.known)
+    node["reliable_quantities"].push_back(tunnels::to_text(quantity));
   return node;
 }
 
@@ -103,6 +106,9 @@ PostoperativeFacts postoperative_from(const json& node) {
   take(node, "entry_offset_mm", facts.entry_offset_mm);
   take(node, "angle_deg", facts.angle_deg);
   take(node, "diameter_mm", facts.diameter_mm);
+  for (const json& name : node.value("reliable_quantities", json::array()))
+    if (const auto quantity = tunnels::quantity_from_text(name.get<std::string>()))
+      facts.known.insert(*quantity);
   return facts;
 }
 

@@ -14,13 +14,16 @@ namespace {
 
 constexpr const char* kColumns =
     "case,folder,side,state,created_utc,changed_utc,femur_planned,tibia_planned,session,started_utc,bone,"
-    "source_kind,outcome,finished,registration_reliable,registration_rms_mm,predicted_tre_mm,verified,alarms,"
-    "entry_offset_mm,angle_deg,depth_mm,registering_min,verifying_min,drilling_min,femur_postop_offset_mm,"
-    "femur_postop_angle_deg,femur_postop_reliable,tibia_postop_offset_mm,tibia_postop_angle_deg,"
-    "tibia_postop_reliable,femur_am_postop_offset_mm,femur_am_postop_angle_deg,femur_am_postop_reliable,"
-    "femur_pl_postop_offset_mm,femur_pl_postop_angle_deg,femur_pl_postop_reliable,tibia_am_postop_offset_mm,"
-    "tibia_am_postop_angle_deg,tibia_am_postop_reliable,tibia_pl_postop_offset_mm,tibia_pl_postop_angle_deg,"
-    "tibia_pl_postop_reliable,note,problem";
+    "source_kind,outcome,finished,registration_reliable,registration_rms_mm,predicted_tre_mm,verified,"
+    "alarms,entry_offset_mm,angle_deg,depth_mm,registering_min,verifying_min,drilling_min,"
+    "femur_postop_offset_mm,femur_postop_angle_deg,femur_postop_reliable,femur_postop_reliable_quantities,"
+    "tibia_postop_offset_mm,tibia_postop_angle_deg,tibia_postop_reliable,tibia_postop_reliable_quantities,"
+    "femur_am_postop_offset_mm,femur_am_postop_angle_deg,femur_am_postop_reliable,"
+    "femur_am_postop_reliable_quantities,femur_pl_postop_offset_mm,femur_pl_postop_angle_deg,"
+    "femur_pl_postop_reliable,femur_pl_postop_reliable_quantities,tibia_am_postop_offset_mm,"
+    "tibia_am_postop_angle_deg,tibia_am_postop_reliable,tibia_am_postop_reliable_quantities,"
+    "tibia_pl_postop_offset_mm,tibia_pl_postop_angle_deg,tibia_pl_postop_reliable,"
+    "tibia_pl_postop_reliable_quantities,note,problem";
 
 std::string cell(std::string text) { return files::csv_cell(std::move(text)); }
 std::string cell(const std::optional<double>& number) {
@@ -62,9 +65,10 @@ void add_postoperative(Row& row, const CaseRecord& record, const tunnels::Tunnel
   for (const PostoperativeFacts& facts : record.postoperative) {
     if (facts.tunnel != tunnel) continue;
     row.add(facts.entry_offset_mm).add(facts.angle_deg).add(facts.is_reliable);
+    row.add(in_words(facts.is_reliable ? tunnels::all_quantities() : facts.known));
     return;
   }
-  row.add_empty(3);
+  row.add_empty(4);
 }
 
 std::string row_of(const CaseRecord& record, const SessionFacts* session, const Identities* identities) {

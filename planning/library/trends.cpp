@@ -48,8 +48,11 @@ const SessionFacts* compared_session_of(const CaseRecord& record, bones::BoneKin
 void add_comparisons(const CaseRecord& record, Trend trend, const TrendOptions& options,
                      std::vector<TrendPoint>& points) {
   for (const PostoperativeFacts& facts : record.postoperative) {
-    const auto value = trend == Trend::AchievedOffset ? facts.entry_offset_mm : facts.angle_deg;
-    if (!value || !facts.is_reliable || (options.bone && facts.tunnel.bone != options.bone)) continue;
+    const bool is_offset = trend == Trend::AchievedOffset;
+    const auto value = is_offset ? facts.entry_offset_mm : facts.angle_deg;
+    const bool is_known = facts.is_known(is_offset ? tunnels::Quantity::Entry : tunnels::Quantity::Direction);
+    if (!value || is_known == options.of_unknown || (options.bone && facts.tunnel.bone != options.bone))
+      continue;
     const SessionFacts* session = compared_session_of(record, facts.tunnel.bone);
     // A bone that was never navigated is of what its case is: one that was only rehearsed is nobody's.
     const bool is_simulated = session != nullptr ? session->is_simulated() : record.is_simulated();

@@ -38,15 +38,17 @@ struct TrendPoint {
 struct TrendOptions {
   bool with_simulated = false;  // a simulation is no operation: it would make the spread look small
   std::optional<bones::BoneKind> bone = {};  // empty: either
+  bool of_unknown = false;  // of comparisons those whose number is not relied on, in place of the others
 };
 // What was measured after the operation, in a CT; the others are of sessions.
 [[nodiscard]] constexpr bool is_of_comparisons(Trend trend) {
   return trend == Trend::AchievedOffset || trend == Trend::AchievedAngle;
 }
 // In the order of time. Sessions that do not say the number, or whose header cannot be read, are left
-// out, as are comparisons that are not reliable. A comparison is of its bone's newest session
-// that drilled and is no simulation; without one, of the newest that is none; else of the newest one. That
-// says when it was and whether of a simulation; without any it is of the day on which the case was made.
+// out, as are comparisons in which that number is not relied on, whatever else is. A comparison is of its
+// bone's newest session that drilled and is no simulation; without one, of the newest that is none; else of
+// the newest one. That says when it was and whether of a simulation; without any it is of the day on which
+// the case was made.
 [[nodiscard]] std::vector<TrendPoint> trend_of(std::span<const CaseRecord> records, Trend trend,
                                                const TrendOptions& options = {});
 

@@ -32,6 +32,9 @@ ordered_json tunnel_json(const tunnels::TunnelKey& key, const AchievedTunnel& ac
   json["angle_deg"] = number(found, geometry::deg_from_rad(achieved.angle_rad));
   json["reliable"] = achieved.reliable;
   json["reasons"] = achieved.reasons;
+  json["reliable_quantities"] = ordered_json::array();
+  for (const tunnels::Quantity quantity : achieved.reliable ? tunnels::all_quantities() : achieved.known)
+    json["reliable_quantities"].push_back(tunnels::to_text(quantity));
   json["comes_out"] = found ? ordered_json(achieved.comes_out) : ordered_json();
   json["end_is_seen"] = found ? ordered_json(achieved.end_is_seen) : ordered_json();
   json["beyond_mm"] = found ? ordered_json(achieved.beyond_mm) : ordered_json();
@@ -92,6 +95,9 @@ AchievedTunnel tunnel_of(const files::JsonObject& node, const tunnels::TunnelKey
   achieved.reasons = node.texts("reasons");
   achieved.is_found = node.has("entry_mm");
   if (!achieved.is_found) return achieved;
+  if (!achieved.reliable && node.has("reliable_quantities"))
+    for (const std::string& name : node.texts("reliable_quantities"))
+      if (const auto quantity = tunnels::quantity_from_text(name)) achieved.known.insert(*quantity);
   achieved.tunnel = tunnels::read_tunnel(node, key);
   achieved.length_mm = node.number("length_mm");
   achieved.offset_mm = node.number("offset_mm");
@@ -165,8 +171,11 @@ void write_achieved_file(const std::filesystem::path& file,
   document["bones"] = ordered_json::array();
   for (const auto& [key, comparison] : comparisons) {
     document["tunnels"].push_back(tunnel_json(key, comparison.tunnel));
-    if (const auto place = places.find(key); place != places.end())
+    if (const auto place = places.find(key); place != places.end()) {
       put_place(document["tunnels"].back(), place->second);
+      if (comparison.tunnel.reliable && is_wall_known(place->second))
+        document["tunnels"].back()["reliable_quantities"].push_back("wall");
+    }
     if (comparison.kept_because.empty()) continue;
     document["tunnels"].back()["kept_because"] = comparison.kept_because;
     document["tunnels"].back()["bone_then"] = bone_json(key.bone, comparison.bone);

@@ -1,14 +1,17 @@
 // achieved.json, what comparisons found: format "arthronaut.achieved".
 //
 // Numbers of a tunnel or a bone that was not found are null; its "reliable" is false and its "reasons" say
-// why. Beside what was asked for: "comes_out", "end_is_seen", "beyond_mm", one sigma of entry, direction,
-// diameter and length, "widths" along the tunnel, each with its sigma, and the share of metal in it; of a
-// bone how much of its surface was seen and lies on an edge. Where the place is given: "off_plan", the
-// entry's way from the planned one along the bone's axes, "grid" in percent, "landmarks", what those are that
-// both follow from, "wall_mm" and "planned_wall_mm". These are for other programs; they follow from the bone
-// and are not read back. A tunnel of one bundle has "bundle", am or pl; a bone with two stands there once, as
-// the first found it. A tunnel that was kept when newer images were compared has "kept_because", and in
-// "bone_then" its bone as its own images showed it: "bones" are of the newer ones.
+// why. "reliable_quantities" are what may be relied on, each by itself: of a reliable tunnel all (entry,
+// direction, diameter, length, and the wall where its error is known), of another those that no reason is
+// about; without the key all or none. Beside what was asked for: "comes_out", "end_is_seen", "beyond_mm", one
+// sigma of entry, direction, diameter and length, "widths" along the tunnel, each with its sigma, and the
+// share of metal in it; of a bone how much of its surface was seen and lies on an edge. Where the place is
+// given: "off_plan", the entry's way from the planned one along the bone's axes, "grid" in percent,
+// "landmarks", what those are that both follow from, "wall_mm" and "planned_wall_mm". These are for other
+// programs; they follow from the bone and are not read back. A tunnel of one bundle has "bundle", am or pl; a
+// bone with two stands there once, as the first found it. A tunnel that was kept when newer images were
+// compared has "kept_because", and in "bone_then" its bone as its own images showed it: "bones" are of the
+// newer ones.
 #pragma once
 
 #include <filesystem>

@@ -118,6 +118,10 @@ AchievedPlace place_of(const AchievedTunnel& achieved, const tunnels::Tunnel& pl
   return place;
 }
 
+bool is_wall_known(const AchievedPlace& place) {
+  return place.wall_mm.has_value() && std::isfinite(place.wall_sigma_mm);
+}
+
 std::string off_in_words(const AchievedPlace& place) {
   constexpr double kNothing_mm = 0.05;  // rounds to 0.0
   std::array<std::pair<AnatomicalDirection, double>, 3> ways{

@@ -42,6 +42,8 @@ struct AchievedPlace {
                                      const tunnels::Tunnel& plan,
                                      const tunnels::PlanSurroundings& surroundings,
                                      landmarks::LandmarkState landmarks_are);
+// Whether a wall is told and how far it may be off, too.
+[[nodiscard]] bool is_wall_known(const AchievedPlace& place);
 // Precondition: the tunnel was found.
 [[nodiscard]] AchievedPlace place_of(const AchievedTunnel& achieved, const tunnels::Tunnel& plan,
                                      const tunnels::PlanSurroundings& surroundings,

@@ -2,7 +2,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
+#include <future>
+#include <iterator>
+#include <thread>
 
 #include "planning/images/voxel_mask.h"
 
@@ -112,15 +117,14 @@ void add_anchors(const Cells& cells, const images::VoxelPiece& piece, std::vecto
     add_middle_of(from, from + 2 * kAlong_mm);
 }
 
-// Distance and its slope at a place; far beyond the field the value of its border.
+// Distance and its slope at a place counted in cells; far beyond the field the value of its border.
 struct Slope {
   double distance_mm;
   Vector3d gradient;  // a mm in LPS
   bool is_in_view;
 };
 
-Slope slope_at(const BoneField& field, const Vector3d& p_in_lps) {
-  const Vector3d cell = field.cell_from_lps * p_in_lps;
+Slope slope_at(const BoneField& field, const Vector3d& cell) {
   Slope slope;
   slope.is_in_view = (cell.array() >= field.first_in_view.array()).all() &&
                      (cell.array() <= field.last_in_view.array()).all();
@@ -140,44 +144,59 @@ Slope slope_at(const BoneField& field, const Vector3d& p_in_lps) {
   const Vector3d by_cell((1 - f.z()) * ((1 - f.y()) * along_x(0) + f.y() * along_x(nx)) +
                              f.z() * ((1 - f.y()) * along_x(plane) + f.y() * along_x(plane + nx)),
                          (1 - f.z()) * (c10 - c00) + f.z() * (c11 - c01), high_z - low_z);
-  slope.gradient = field.cell_from_lps.linear().transpose() * by_cell;
+  slope.gradient.noalias() = field.cell_from_lps.linear().transpose() * by_cell;
   return slope;
 }
 
 constexpr double kMostCost_mm = 6, kOutOfViewCost_mm = 3.5;
 
 double cost_of(const BoneField& field, std::span<const SurfaceSample> samples, const RigidTransform& pose) {
+  const Eigen::Matrix3d cell_from_plan = field.cell_from_lps.linear() * pose.rotation.toRotationMatrix();
+  const Vector3d origin = field.cell_from_lps * pose.translation_mm;
   double sum = 0;
   for (const SurfaceSample& sample : samples) {
-    const Slope slope = slope_at(field, pose * sample.point_mm);
+    const Slope slope = slope_at(field, cell_from_plan * sample.point_mm + origin);
     sum += slope.is_in_view ? std::min(slope.distance_mm, kMostCost_mm) : kOutOfViewCost_mm;
   }
   return sum / static_cast<double>(samples.size());
 }
 
-// Downhill, with far samples counting less and less.
+Vector3d middle_of(std::span<const SurfaceSample> samples) {
+  Vector3d sum = Vector3d::Zero();
+  for (const SurfaceSample& sample : samples) sum += sample.point_mm;
+  return sum / static_cast<double>(samples.size());
+}
+
+// Downhill, with far samples counting less and less. Nearly all of the time of a search goes here: frames are
+// put together once a step, and of the normal matrix only the half that is read is summed.
 void descend(const BoneField& field, std::span<const SurfaceSample> samples, int steps, double first_scale_mm,
              double last_scale_mm, RigidTransform& pose) {
+  const Vector3d middle = middle_of(samples);
+  const Eigen::Matrix3d cell_from_turned = field.cell_from_lps.linear();
   for (int step = 0; step < steps; ++step) {
     const double scale =
         first_scale_mm * std::pow(last_scale_mm / first_scale_mm, step / std::max(1.0, steps - 1.0));
     geometry::Matrix6d normal = geometry::Matrix6d::Identity() * 1e-3;
     geometry::Vector6d right = geometry::Vector6d::Zero();
-    Vector3d center = Vector3d::Zero();
-    for (const SurfaceSample& sample : samples) center += pose * sample.point_mm;
-    center /= static_cast<double>(samples.size());
+    const Eigen::Matrix3d turned_from_plan = pose.rotation.toRotationMatrix();
+    const Vector3d center = turned_from_plan * middle + pose.translation_mm,
+                   center_in_cells = field.cell_from_lps * center;
     for (const SurfaceSample& sample : samples) {
-      const Vector3d q = pose * sample.point_mm;
-      const Slope slope = slope_at(field, q);
+      const Vector3d from_center = turned_from_plan * (sample.point_mm - middle);
+      const Slope slope = slope_at(field, cell_from_turned * from_center + center_in_cells);
       if (!slope.is_in_view && slope.distance_mm > scale) continue;
       const double ratio = slope.distance_mm / scale,
                    weight = 1 / ((1 + ratio * ratio) * (1 + ratio * ratio));
       geometry::Vector6d row;
-      row << slope.gradient, (q - center).cross(slope.gradient);
-      normal += weight * row * row.transpose();
-      right -= weight * slope.distance_mm * row;
+      row.head<3>() = slope.gradient;
+      row.tail<3>() = from_center.cross(slope.gradient);
+      for (int column = 0; column < 6; ++column) {
+        const double weighted = weight * row[column];
+        for (int line = column; line < 6; ++line) normal(line, column) += weighted * row[line];
+        right[column] -= weighted * slope.distance_mm;
+      }
     }
-    const geometry::Vector6d change = normal.ldlt().solve(right);
+    const geometry::Vector6d change = normal.ldlt().solve(right);  // reads the lower half
     const Vector3d turn = change.tail<3>();
     const double angle = turn.norm();
     const Eigen::Quaterniond rotation(angle > 1e-12 ? Eigen::AngleAxisd(std::min(angle, 0.35), turn / angle)
@@ -256,27 +275,58 @@ std::optional<BoneField> bone_field(const images::Volume& volume, double thresho
     }
   }
   field.is_cut = cut_mm2 > kLeastCut_mm2;
+  field.bone_mm3 = cell_mm3 * static_cast<double>(std::ranges::count(inside, std::uint8_t{1}));
   field.distance_mm = images::distances_mm(cells.size, surface, cells.spacing_mm);
   for (float& d : field.distance_mm) d = std::min(d, 60.0F);
   return field;
 }
 
-std::vector<CoarsePose> coarse_poses(const BoneField& field, std::span<const SurfaceSample> samples,
-                                     Turns turns) {
+std::vector<Vector3d> BoneField::anchors_near_an_end(double within_mm) const {
+  const Vector3d cell_mm = cell_from_lps.linear().rowwise().norm().cwiseInverse();
+  std::vector<Vector3d> near;
+  std::ranges::copy_if(anchors_mm, std::back_inserter(near), [&](const Vector3d& anchor) {
+    const Vector3d at = cell_from_lps * anchor;
+    return ((at - first_in_view).cwiseMin(last_in_view - at).cwiseProduct(cell_mm).array() < within_mm).any();
+  });
+  return near;
+}
+
+std::vector<CoarsePose> coarse_poses(const BoneField& field, std::span<const Vector3d> anchors_mm,
+                                     std::span<const SurfaceSample> samples, Turns turns,
+                                     const GoesOn& goes_on) {
   constexpr std::size_t kFew = 80, kMany = 400, kKept = 60, kReturned = 6;
+  constexpr unsigned kMostThreads = 4;  // a window wants its own
   const auto few = samples.first(std::min(kFew, samples.size())),
              many = samples.first(std::min(kMany, samples.size()));
-  Vector3d middle = Vector3d::Zero();
-  for (const SurfaceSample& sample : many) middle += sample.point_mm / static_cast<double>(many.size());
-  std::vector<CoarsePose> all;
-  for (const Eigen::Quaterniond& rotation : turns_to_try(turns)) {
-    for (const Vector3d& anchor : field.anchors_mm) {
-      CoarsePose start{{rotation, anchor - rotation * middle}, 0};
-      descend(field, few, 12, 20, 6, start.postop_from_plan);
-      start.cost_mm = cost_of(field, few, start.postop_from_plan);
-      all.push_back(start);
+  const Vector3d middle = middle_of(many);
+  // Each start goes its own way: as many at once as there are processors, in the order of the turns whatever
+  // thread took which. The caller's thread alone tells and asks.
+  const std::vector<Eigen::Quaterniond> rotations = turns_to_try(turns);
+  std::vector<CoarsePose> all(rotations.size() * anchors_mm.size());
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&](const std::function<bool()>& may_go_on) {
+    for (std::size_t i = 0; may_go_on() && (i = next++) < rotations.size();) {
+      for (std::size_t a = 0; a < anchors_mm.size(); ++a) {
+        CoarsePose& start = all[i * anchors_mm.size() + a];
+        start.postop_from_plan = {rotations[i], anchors_mm[a] - rotations[i] * middle};
+        descend(field, few, 12, 20, 6, start.postop_from_plan);
+        start.cost_mm = cost_of(field, few, start.postop_from_plan);
+      }
     }
+  };
+  bool is_ended = false;
+  {
+    std::vector<std::future<void>> helpers;
+    for (unsigned i = 1; i < std::clamp(std::thread::hardware_concurrency(), 1U, kMostThreads); ++i)
+      helpers.push_back(std::async(std::launch::async, work, [] { return true; }));
+    const auto count = static_cast<double>(rotations.size());
+    work([&] {
+      is_ended = !goes_on(std::min(1.0, static_cast<double>(next) / count));
+      if (is_ended) next = rotations.size();
+      return !is_ended;
+    });
   }
+  if (is_ended) return {};
   const auto by_cost = [](const CoarsePose& a, const CoarsePose& b) { return a.cost_mm < b.cost_mm; };
   std::stable_sort(all.begin(), all.end(), by_cost);
   if (all.size() > kKept) all.resize(kKept);

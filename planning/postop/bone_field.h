@@ -9,6 +9,7 @@
 
 #include "planning/geometry/rigid_transform.h"
 #include "planning/images/volume.h"
+#include "planning/postop/goes_on.h"
 #include "planning/postop/surface_samples.h"
 
 namespace arthronaut::postop {
@@ -19,9 +20,13 @@ struct BoneField {
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
   Eigen::Vector3d first_in_view, last_in_view;  // cells between which the volume lies
   bool is_cut = false;                          // whether bone goes on where the volume ends
+  double bone_mm3 = 0;                          // of all large pieces, what they enclose counted in
   std::vector<float> distance_mm;               // i runs fastest
   // Where the middle of a joint's end may lie, LPS: places along large pieces.
   std::vector<Eigen::Vector3d> anchors_mm;
+
+  // Those that lie so near to where the volume ends.
+  [[nodiscard]] std::vector<Eigen::Vector3d> anchors_near_an_end(double within_mm) const;
 };
 
 // nullopt: nothing large is above the threshold.
@@ -35,8 +40,11 @@ struct CoarsePose {
 // Which turns are tried: those near to the patient's lying as he did, or all others.
 enum class Turns { Small, Large };
 
-// The best poses of the samples, best first, each somewhere else than those before it.
+// The best poses of the samples from these anchors, best first, each somewhere else than those before it;
+// none where it was ended.
 [[nodiscard]] std::vector<CoarsePose> coarse_poses(const BoneField& field,
-                                                   std::span<const SurfaceSample> samples, Turns turns);
+                                                   std::span<const Eigen::Vector3d> anchors_mm,
+                                                   std::span<const SurfaceSample> samples, Turns turns,
+                                                   const GoesOn& goes_on);
 
 }  // namespace arthronaut::postop

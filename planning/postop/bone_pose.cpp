@@ -16,6 +16,8 @@ constexpr double kRadius_mm = 90;
 constexpr std::size_t kSamples = 3000;
 // Images that cut the bones off may hold no more of it than this about the planned entry.
 constexpr std::array kNear_mm{38.0, 30.0};
+// And it lies where they end then: so much farther from there, anchors stand for no such part.
+constexpr double kBesideEnd_mm = 20;
 // Less of the surface on an edge, edges more uneven, or a bone that would have to be longer or shorter to fit
 // is another bone. That all edges lie outside, or inside, by as much is another scanner or another threshold.
 constexpr double kLeastOnEdge = 0.85, kMostSpread_mm = 0.25, kMostBias_mm = 0.6, kMostStretch = 0.005;
@@ -46,7 +48,8 @@ double merit(const EdgePose& pose) {
 }  // namespace
 
 FoundBone find_bone(const images::VolumeSampler& postop, const BoneField& field,
-                    const geometry::TriangleMesh& bone, const Eigen::Vector3d& near_mm) {
+                    const geometry::TriangleMesh& bone, const Eigen::Vector3d& near_mm,
+                    const GoesOn& goes_on) {
   FoundBone found;
   const auto samples = surface_samples(bone, near_mm, kRadius_mm, kSamples);
   if (samples.empty()) {
@@ -54,27 +57,38 @@ FoundBone find_bone(const images::VolumeSampler& postop, const BoneField& field,
     return found;
   }
   double best = -1;
-  const auto seek = [&](std::span<const SurfaceSample> sought) {
+  bool is_ended = false;
+  // Of the searches that there may be: small and large turns, of all of it and of what is near.
+  const double searches = 2 * (1 + (field.is_cut ? static_cast<double>(kNear_mm.size()) : 0));
+  double searched = 0;
+  const auto goes_on_here = [&](double share) {
+    is_ended = goes_on && !goes_on((searched + share) / searches);
+    return !is_ended;
+  };
+  const auto seek = [&](std::span<const SurfaceSample> sought, std::span<const Eigen::Vector3d> anchors_mm) {
     for (const Turns turns : {Turns::Small, Turns::Large}) {
-      for (const CoarsePose& coarse : coarse_poses(field, sought, turns)) {
+      for (const CoarsePose& coarse : coarse_poses(field, anchors_mm, sought, turns, goes_on_here)) {
         const EdgePose pose = edge_pose(postop, samples, coarse.postop_from_plan);
         if (!(pose.in_view_share > 0) || merit(pose) <= best) continue;
         best = merit(pose);
         found.pose = pose;
       }
+      if (is_ended) return;
+      searched += 1;
       const bool is_whole = sought.size() == samples.size();
       if (best >= 0 && (is_whole ? is_settled(found.pose) : lies_on_edges(found.pose))) return;
     }
   };
-  seek(samples);
+  seek(samples, field.anchors_mm);
   for (const double radius_mm : kNear_mm) {
-    if (!field.is_cut || (best >= 0 && lies_on_edges(found.pose))) break;
+    if (is_ended || !field.is_cut || (best >= 0 && lies_on_edges(found.pose))) break;
     std::vector<SurfaceSample> near;
     std::ranges::copy_if(samples, std::back_inserter(near), [&](const SurfaceSample& sample) {
       return (sample.point_mm - near_mm).norm() < radius_mm;
     });
-    if (!near.empty()) seek(near);
+    if (!near.empty()) seek(near, field.anchors_near_an_end(radius_mm + kBesideEnd_mm));
   }
+  if (is_ended) return {};
   found.reasons.clear();
   const EdgePose& pose = found.pose;
   if (best < 0 || pose.on_edge_share < kNothingOnEdge) {

@@ -26,8 +26,10 @@ struct FoundBone {
   std::vector<std::string> reasons = {"the bone was not looked for"};  // why it is not reliable
 };
 
-// `near_mm`: the planned entry. The surface within 90 mm of it is what is looked for.
+// `near_mm`: the planned entry. The surface within 90 mm of it is what is looked for. `goes_on`: may be
+// empty; where it ends the search the bone was not looked for.
 [[nodiscard]] FoundBone find_bone(const images::VolumeSampler& postop, const BoneField& field,
-                                  const geometry::TriangleMesh& bone, const Eigen::Vector3d& near_mm);
+                                  const geometry::TriangleMesh& bone, const Eigen::Vector3d& near_mm,
+                                  const GoesOn& goes_on = {});
 
 }  // namespace arthronaut::postop

@@ -18,6 +18,10 @@ namespace {
 constexpr double kSeenOfStretch = 0.5, kMetalOfStretch = 0.3, kMostWidthSigma_mm = 0.5;
 // Thin cortex about empty marrow is no brighter than this in the mean, and soft tissue is darker.
 constexpr double kFaintBone_hu = 110;
+// Where all that is brighter than that encloses no more than so much beyond what is as bright as bone, it is
+// the same bones: whatever was not found among those is not found among these. A joint's end of a bone has 60
+// cm^3 and more.
+constexpr double kMoreOfFaint_mm3 = 15000;
 
 AchievedBone told(const FoundBone& found) {
   AchievedBone bone;
@@ -38,10 +42,22 @@ double offset_across_mm(const tunnels::Tunnel& achieved, const tunnels::Tunnel& 
   return (achieved.entry_mm + along_mm * achieved.direction - plan.entry_mm).norm();
 }
 
+void take_trust(AchievedTunnel& achieved, const std::string& reason) {
+  achieved.reliable = false;
+  achieved.known.clear();
+  achieved.reasons.insert(achieved.reasons.begin(), reason);
+}
+
 AchievedTunnel told(const DrilledTunnel& drilled, const FoundBone& bone, const tunnels::Tunnel& plan) {
   AchievedTunnel achieved;
   achieved.is_found = drilled.is_found;
-  achieved.reasons = drilled.reasons;
+  achieved.reasons.clear();
+  achieved.known = tunnels::all_quantities();
+  for (const Doubt& one : drilled.doubts) {
+    achieved.reasons.push_back(one.reason);
+    for (const tunnels::Quantity quantity : one.about) achieved.known.erase(quantity);
+  }
+  achieved.reliable = drilled.is_found && drilled.doubts.empty();
   if (drilled.is_found) {
     achieved.tunnel = drilled.tunnel;
     achieved.length_mm = drilled.length_mm;
@@ -65,9 +81,8 @@ AchievedTunnel told(const DrilledTunnel& drilled, const FoundBone& bone, const t
     }
   }
   if (!bone.reliable)
-    achieved.reasons.insert(achieved.reasons.begin(),
-                            "where the " + std::string(bones::to_text(plan.bone)) + " lies is not reliable");
-  achieved.reliable = drilled.reliable && bone.reliable;
+    take_trust(achieved, "where the " + std::string(bones::to_text(plan.bone)) + " lies is not reliable");
+  if (achieved.reliable) achieved.known.clear();
   return achieved;
 }
 
@@ -94,11 +109,28 @@ bool is_relied_on(const Comparison& comparison) {
          comparison.tunnel.reliable;
 }
 
+tunnels::Quantities relied_on(const Comparison& comparison) {
+  if (is_relied_on(comparison)) return tunnels::all_quantities();
+  const bool is_found = comparison.bone.is_found && comparison.bone.reliable && comparison.tunnel.is_found;
+  return is_found ? comparison.tunnel.known : tunnels::Quantities{};
+}
+
+bool is_relied_on(const Comparison& comparison, const tunnels::Quantities& quantities) {
+  return std::ranges::includes(relied_on(comparison), quantities);
+}
+
+void doubt(Comparison& comparison, const std::string& reason) {
+  comparison.bone.reliable = false;
+  comparison.bone.reasons.insert(comparison.bone.reasons.begin(), reason);
+  take_trust(comparison.tunnel, reason);
+}
+
 ComparisonVerdict verdict_of(const Comparison& comparison, bool is_of_the_plan) {
   if (!comparison.bone.is_found) return ComparisonVerdict::BoneNotFound;
   if (!comparison.tunnel.is_found) return ComparisonVerdict::TunnelNotFound;
   if (!is_of_the_plan) return ComparisonVerdict::OfAnEarlierPlan;
-  return is_relied_on(comparison) ? ComparisonVerdict::Reliable : ComparisonVerdict::NotReliable;
+  if (is_relied_on(comparison)) return ComparisonVerdict::Reliable;
+  return relied_on(comparison).empty() ? ComparisonVerdict::NotReliable : ComparisonVerdict::ReliableInPart;
 }
 
 std::string_view to_text(ComparisonVerdict verdict) {
@@ -111,6 +143,8 @@ std::string_view to_text(ComparisonVerdict verdict) {
       return "of an earlier plan";
     case ComparisonVerdict::NotReliable:
       return "not reliable";
+    case ComparisonVerdict::ReliableInPart:
+      return "reliable in part";
     case ComparisonVerdict::Reliable:
       return "reliable";
   }
@@ -144,14 +178,23 @@ PostopImages::PostopImages(PostopImages&&) noexcept = default;
 PostopImages& PostopImages::operator=(PostopImages&&) noexcept = default;
 
 Comparison PostopImages::compare(const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan,
-                                 std::span<const tunnels::Tunnel> others) const {
+                                 std::span<const tunnels::Tunnel> others, const GoesOn& goes_on) const {
   Comparison comparison;
   const SeenBones& seen = prepared_->bones;
-  FoundBone found = find_bone(prepared_->sampler, seen.field, bone, plan.entry_mm);
-  if (!found.is_found && seen.threshold_hu > kFaintBone_hu) {
-    if (const auto faint = bone_field(prepared_->volume, kFaintBone_hu))
-      found = find_bone(prepared_->sampler, *faint, bone, plan.entry_mm);
+  bool is_ended = false;
+  const auto half = [&](double first) {
+    return [&, first](double share) {
+      is_ended = goes_on && !goes_on(first + 0.5 * share);
+      return !is_ended;
+    };
+  };
+  FoundBone found = find_bone(prepared_->sampler, seen.field, bone, plan.entry_mm, half(0));
+  if (!found.is_found && !is_ended && seen.threshold_hu > kFaintBone_hu) {
+    const auto faint = bone_field(prepared_->volume, kFaintBone_hu);
+    if (faint && faint->bone_mm3 > kMoreOfFaint_mm3 + seen.field.bone_mm3)
+      found = find_bone(prepared_->sampler, *faint, bone, plan.entry_mm, half(0.5));
   }
+  if (is_ended) return comparison;
   comparison.bone = told(found);
   if (!found.is_found) {
     comparison.tunnel.reasons = {"the " + std::string(bones::to_text(plan.bone)) +

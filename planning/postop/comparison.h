@@ -32,7 +32,9 @@
 #include "planning/bones/bone.h"
 #include "planning/geometry/rigid_transform.h"
 #include "planning/images/volume.h"
+#include "planning/postop/goes_on.h"
 #include "planning/tunnels/tunnel.h"
+#include "planning/tunnels/tunnel_quantity.h"
 
 namespace arthronaut::postop {
 
@@ -62,10 +64,12 @@ struct AchievedTunnel {
          direction_sigma_rad = std::numeric_limits<double>::infinity(),
          diameter_sigma_mm = std::numeric_limits<double>::infinity(),
          length_sigma_mm = std::numeric_limits<double>::infinity();
-  double metal_share = 0;     // of what is inside it
-  std::vector<Width> widths;  // where its wall is seen
-  bool reliable = false;
+  double metal_share = 0;                                         // of what is inside it
+  std::vector<Width> widths;                                      // where its wall is seen
+  bool reliable = false;                                          // all of it
   std::vector<std::string> reasons = {"compare was not called"};  // why it is not reliable
+  // What of it may be relied on all the same, where not all of it may: the reasons are about the rest.
+  tunnels::Quantities known = {};
 };
 
 // Whether the differences are those to this plan, and not to one of before: to what files round.
@@ -92,13 +96,27 @@ struct Comparison {
   std::string kept_because = {};
 };
 
-// Whether its numbers stand, whatever became of the plan since.
+// Whether its numbers stand, all of them, whatever became of the plan since.
 [[nodiscard]] bool is_relied_on(const Comparison& comparison);
+// Which of them do. How much bone is left beside the tunnel follows from all.
+[[nodiscard]] tunnels::Quantities relied_on(const Comparison& comparison);
+// The same of these: where an axis runs is both its entry and its direction.
+[[nodiscard]] bool is_relied_on(const Comparison& comparison, const tunnels::Quantities& quantities);
+// Takes all trust from it, for a reason that is told first.
+void doubt(Comparison& comparison, const std::string& reason);
 
-enum class ComparisonVerdict { BoneNotFound, TunnelNotFound, OfAnEarlierPlan, NotReliable, Reliable };
+enum class ComparisonVerdict {
+  BoneNotFound,
+  TunnelNotFound,
+  OfAnEarlierPlan,
+  NotReliable,
+  ReliableInPart,
+  Reliable
+};
 // is_of_the_plan: its differences are those to the plan that is there, on the bone that is there.
 [[nodiscard]] ComparisonVerdict verdict_of(const Comparison& comparison, bool is_of_the_plan);
-// "bone not found in the images", "no tunnel found", "of an earlier plan", "not reliable", "reliable"
+// "bone not found in the images", "no tunnel found", "of an earlier plan", "not reliable", "reliable in
+// part", "reliable"
 [[nodiscard]] std::string_view to_text(ComparisonVerdict verdict);
 
 struct ComparisonOptions {
@@ -117,10 +135,12 @@ class PostopImages {
   PostopImages& operator=(PostopImages&&) noexcept;
 
   // `bone`: closed, outward, as it was planned on. Never throws on poor images: read the reasons. The same
-  // input gives the same result. 3 to 10 s.
+  // input gives the same result. 3 to 10 s. Where `goes_on` ended it nothing was found, and compare was not
+  // called by what the reasons say.
   // `others`: the bone's other planned tunnel, where there are two. What lies nearer to it is taken for it.
   [[nodiscard]] Comparison compare(const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan,
-                                   std::span<const tunnels::Tunnel> others = {}) const;
+                                   std::span<const tunnels::Tunnel> others = {},
+                                   const GoesOn& goes_on = {}) const;
 
  private:
   struct Prepared;

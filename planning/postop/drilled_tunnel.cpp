@@ -54,7 +54,7 @@ struct Candidate {
   double length_sigma_mm = std::numeric_limits<double>::infinity();
   double seen_share = 0, metal_share = 0, clear_mm = 0, bend_mm = 0;
   bool goes_on = false, is_by_screw = false;
-  std::vector<std::string> doubts;
+  std::vector<Doubt> doubts;
 
   [[nodiscard]] double entry_sigma_mm() const { return fit.entry_sigma_mm * passage.entry_per_across(); }
   [[nodiscard]] double merit() const {
@@ -211,71 +211,76 @@ class Finder {
     c.seen_share = weight > 0 ? seen / weight : 0;
     c.metal_share = metal;
     c.clear_mm = c.end.from_entry_mm * weight / static_cast<double>(c.fit.stretches.size());
-    auto& doubts = c.doubts;
+    using enum tunnels::Quantity;
+    const auto doubt = [&](std::string reason, tunnels::Quantities about = tunnels::all_quantities()) {
+      c.doubts.push_back({std::move(reason), std::move(about)});
+    };
     if (c.seen_share < kLeastSeen)
-      doubts.push_back(files::format("only %.0f %% of its wall are seen, %.0f %% are needed",
-                                     100 * c.seen_share, 100 * kLeastSeen));
+      doubt(files::format("only %.0f %% of its wall are seen, %.0f %% are needed", 100 * c.seen_share,
+                          100 * kLeastSeen));
     if (c.clear_mm < kShortest_mm)
-      doubts.push_back(files::format("only %.0f mm of it are free of metal, %.0f mm are needed", c.clear_mm,
-                                     kShortest_mm));
+      doubt(files::format("only %.0f mm of it are free of metal, %.0f mm are needed", c.clear_mm,
+                          kShortest_mm));
     // Whether it fills the tunnel is not to be seen: what it shines over beside it looks as bright as bone.
-    if (c.is_by_screw)
-      doubts.emplace_back("only its screw is seen: the tunnel may be wider, and lie beside it");
+    if (c.is_by_screw) doubt("only its screw is seen: the tunnel may be wider, and lie beside it");
     const bool by_metal = c.metal_share > kSomeMetal;
     const auto most_sigma = [&](double asked) { return largest_sigma(asked, kMostChance, c.fit.freedom); };
     const double most_entry = most_sigma(by_metal ? kAskedEntryByMetal_mm : kAskedEntry_mm),
                  most_deg = most_sigma(by_metal ? kAskedDirectionByMetal_deg : kAskedDirection_deg),
                  sigma_deg = geometry::deg_from_rad(c.fit.direction_sigma_rad);
+    // About all of it: width and length are measured along the axis. A socket was told 1.2 mm too long, known
+    // to 0.07 mm, along an axis that was known to 0.40 deg and off by 1.5 deg.
     if (!(c.entry_sigma_mm() <= most_entry))
-      doubts.push_back(
+      doubt(
           files::format("its entry is known to %.2f mm, %.2f mm are needed", c.entry_sigma_mm(), most_entry));
     if (!(sigma_deg <= most_deg))
-      doubts.push_back(
-          files::format("its direction is known to %.2f deg, %.2f deg are needed", sigma_deg, most_deg));
+      doubt(files::format("its direction is known to %.2f deg, %.2f deg are needed", sigma_deg, most_deg));
     const double most_wide = c.fit.profile.has_rim() ? kMostSigmaByRim_mm : kMostDiameterSigma_mm;
     if (!(c.fit.diameter_sigma_mm <= most_wide))
-      doubts.push_back(files::format("its diameter is known to %.2f mm, %.2f mm are needed",
-                                     c.fit.diameter_sigma_mm, most_wide));
+      doubt(files::format("its diameter is known to %.2f mm, %.2f mm are needed", c.fit.diameter_sigma_mm,
+                          most_wide),
+            {Diameter});
     if (!c.is_by_screw && c.fit.profile.layer_mm > 0)
-      doubts.push_back(files::format(
+      doubt(files::format(
           "the wall that is seen is the outer side of a layer of some %.1f mm that is less dense than "
           "the bone: which of its sides was drilled is not seen, and its diameter is not known",
           c.fit.profile.layer_mm));
     if (!c.is_by_screw && !c.fit.profile.has_rim() && c.fit.profile.plain_blur_mm > kMostBlur_mm)
-      doubts.push_back(
+      doubt(
           files::format("the images are blurred by %.2f mm (sigma), %.2f mm are borne: it may be "
                         "wider than it looks",
                         c.fit.profile.plain_blur_mm, kMostBlur_mm));
     if (c.bend_mm > kMostBend_mm)
-      doubts.push_back(files::format("it is not straight: pieces of it lie %.1f mm off its axis", c.bend_mm));
+      doubt(files::format("it is not straight: pieces of it lie %.1f mm off its axis", c.bend_mm));
     // Its edge is as round as the tunnel's wall, which may lie close beside it.
     const auto plug = std::find_if(c.fit.stretches.begin(), c.fit.stretches.end(), [&](const Stretch& s) {
       return !c.is_by_screw && !c.fit.profile.has_rim() && s.metal_share < kMetalOfPiece &&
              s.seen_share > kPlugSeen && s.inside_hu > std::max(s.outside_hu, kMostSoft_hu);
     });
     if (plug != c.fit.stretches.end())
-      doubts.push_back(
+      doubt(
           files::format("%.0f mm from its entry it holds what is denser than the bone around "
                         "it, as a plug of bone: the wall that is seen may be the plug's",
                         plug->from_entry_mm));
     const double diameter = 2 * c.fit.radius_mm;
     if (diameter < kLeastDiameter_mm || diameter > kMostDiameter_mm)
-      doubts.push_back(files::format("its diameter of %.1f mm is none of a tunnel", diameter));
-    if (c.goes_on) doubts.emplace_back("its wall goes on beyond where it seems to end");
+      doubt(files::format("its diameter of %.1f mm is none of a tunnel", diameter));
+    if (c.goes_on) doubt("its wall goes on beyond where it seems to end", {Length});
     if (!c.end.is_narrowing_seen)
-      doubts.push_back(
-          files::format("%.0f mm from its entry it gets %.1f mm wide: whether it ends there is not seen",
-                        c.end.narrowing->from_entry_mm, c.end.narrowing->thinner_mm));
+      doubt(files::format("%.0f mm from its entry it gets %.1f mm wide: whether it ends there is not seen",
+                          c.end.narrowing->from_entry_mm, c.end.narrowing->thinner_mm),
+            {Diameter, Length});
     if (c.end.is_seen && !(c.length_sigma_mm <= kMostLengthSigma_mm))
-      doubts.push_back(
-          std::isfinite(c.length_sigma_mm)
-              ? files::format("where it ends is known to %.1f mm, %.1f mm are needed", c.length_sigma_mm,
-                              kMostLengthSigma_mm)
-              : std::string(
-                    "how well it is seen where it ends is not known: too little marrow lies beside it"));
+      doubt(std::isfinite(c.length_sigma_mm)
+                ? files::format("where it ends is known to %.1f mm, %.1f mm are needed", c.length_sigma_mm,
+                                kMostLengthSigma_mm)
+                : std::string(
+                      "how well it is seen where it ends is not known: too little marrow lies beside it"),
+            {Length});
     if (!c.end.is_seen)
-      doubts.emplace_back(c.end.leaves_images ? "the images end before it does: how long it is is not known"
-                                              : "where it ends is not seen");
+      doubt(c.end.leaves_images ? "the images end before it does: how long it is is not known"
+                                : "where it ends is not seen",
+            {Length});
   }
 
   const images::Volume& volume_;
@@ -323,7 +328,7 @@ DrilledTunnel told(const Candidate& candidate, const tunnels::Tunnel& plan) {
   drilled.seen_share = candidate.seen_share;
   drilled.metal_share = candidate.metal_share;
   drilled.stretches = candidate.fit.stretches;
-  drilled.reasons = candidate.doubts;
+  drilled.doubts = candidate.doubts;
   return drilled;
 }
 
@@ -339,11 +344,11 @@ DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTr
   }
   DrilledTunnel none;
   if (candidates.empty()) {
-    none.reasons = {
-        files::format("no tunnel is seen within %.0f mm and %.0f deg of the plan: no bore there is open at "
-                      "the bone's surface and stands out from the bone around it; one that is plugged with "
-                      "bone is not seen",
-                      kSearched_mm, kSearched_deg)};
+    none.doubts = {
+        {files::format("no tunnel is seen within %.0f mm and %.0f deg of the plan: no bore there is open at "
+                       "the bone's surface and stands out from the bone around it; one that is plugged with "
+                       "bone is not seen",
+                       kSearched_mm, kSearched_deg)}};
     return none;
   }
   const auto off_plan = [&](const Candidate& c) { return (c.passage.entry_mm - plan.entry_mm).norm(); };
@@ -363,25 +368,24 @@ DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTr
   for (const Candidate& other : bores) {
     if (other.seen_share < kLeastSeen || &other == &chosen) continue;
     if (planned_nearer(other.passage.entry_mm) != nullptr) continue;  // that one was to be expected
-    drilled.reasons.push_back(files::format("another tunnel opens %.1f mm beside it, farther from the plan",
-                                            (other.passage.entry_mm - chosen.passage.entry_mm).norm()));
+    drilled.doubts.push_back({files::format("another tunnel opens %.1f mm beside it, farther from the plan",
+                                            (other.passage.entry_mm - chosen.passage.entry_mm).norm())});
     break;
   }
   if (const tunnels::Tunnel* nearer = planned_nearer(chosen.passage.entry_mm); nearer != nullptr)
-    drilled.reasons.push_back("it lies nearer to the planned tunnel " + tunnels::name_of(nearer->key()) +
-                              " than to this one: which of the two it is cannot be told");
+    drilled.doubts.push_back({"it lies nearer to the planned tunnel " + tunnels::name_of(nearer->key()) +
+                              " than to this one: which of the two it is cannot be told"});
   else if (const auto mouth = finder.mouth_nearer(plan, chosen, others))
-    drilled.reasons.push_back(
-        files::format("the bone is open %.1f mm beside it, too, nearer to the plan, where no bore is seen: "
-                      "it may be another tunnel than the planned one, e.g. of an operation before",
-                      (*mouth - chosen.passage.entry_mm).norm()));
+    drilled.doubts.push_back(
+        {files::format("the bone is open %.1f mm beside it, too, nearer to the plan, where no bore is seen: "
+                       "it may be another tunnel than the planned one, e.g. of an operation before",
+                       (*mouth - chosen.passage.entry_mm).norm())});
   const double off_axis_mm = plan.direction.cross(chosen.passage.entry_mm - plan.entry_mm).norm();
   if (off_axis_mm > kMostOffAxis_mm)
-    drilled.reasons.push_back(
-        files::format("its entry is %.1f mm beside the planned axis, farther than drilling errs (%.0f mm): "
-                      "it may be another tunnel, e.g. of an operation before",
-                      off_axis_mm, kMostOffAxis_mm));
-  drilled.reliable = drilled.reasons.empty();
+    drilled.doubts.push_back(
+        {files::format("its entry is %.1f mm beside the planned axis, farther than drilling errs (%.0f mm): "
+                       "it may be another tunnel, e.g. of an operation before",
+                       off_axis_mm, kMostOffAxis_mm)});
   return drilled;
 }
 

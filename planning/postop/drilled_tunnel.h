@@ -7,8 +7,15 @@
 
 #include "planning/postop/drilled_mouth.h"
 #include "planning/postop/tunnel_fit.h"
+#include "planning/tunnels/tunnel_quantity.h"
 
 namespace arthronaut::postop {
+
+// Why it is not reliable, and what of it: what is told of other quantities stands.
+struct Doubt {
+  std::string reason;
+  tunnels::Quantities about = tunnels::all_quantities();
+};
 
 struct DrilledTunnel {
   bool is_found = false;       // false: the numbers are meaningless
@@ -23,8 +30,7 @@ struct DrilledTunnel {
   double seen_share = 0;           // of its wall
   double metal_share = 0;          // of what is inside it
   std::vector<Stretch> stretches;  // from the entry to the end
-  bool reliable = false;
-  std::vector<std::string> reasons = {"no tunnel was looked for"};
+  std::vector<Doubt> doubts = {{"no tunnel was looked for"}};
 };
 
 // `bone`: the plan's, before the operation. `others`: what else was planned in it; a tunnel that lies nearer

@@ -278,6 +278,7 @@ TEST_F(Schemas, DescribeTheListOfCases) {
   records[0].sessions = {session, library::SessionFacts{}};
   records[0].postoperative = {{.entry_offset_mm = 1, .angle_deg = 2, .diameter_mm = 9},
                               library::PostoperativeFacts()};
+  records[0].postoperative[0].known = {tunnels::Quantity::Entry};
   records[0].postoperative[1].tunnel = bones::BoneKind::Tibia;
   records[1].is_there = false;
   records[2].problem = "case.json: broken";
@@ -325,6 +326,7 @@ TEST_F(Schemas, DescribeWhatWasAchieved) {
   const fs::path file = folder_ / "achieved.json";
   postop::Comparison found;
   found.bone.is_found = found.tunnel.is_found = true;
+  found.tunnel.known = {tunnels::Quantity::Entry, tunnels::Quantity::Direction};
   found.tunnel.widths = {{.from_entry_mm = 2, .diameter_mm = 9.5, .sigma_mm = 0.1},
                          {.from_entry_mm = 6, .diameter_mm = 9.5}};
   postop::write_achieved_file(
@@ -334,7 +336,7 @@ TEST_F(Schemas, DescribeWhatWasAchieved) {
   EXPECT_EQ(test::undescribed(written, "achieved"), "");
   EXPECT_TRUE(written.at("tunnels").at(1).at("entry_mm").is_null());
   for (const char* key : {"/tunnels/0/offset_mm", "/tunnels/1/reasons", "/tunnels/0/grid/0/planned_percent",
-                          "/bones/0/rms_mm", "/bones"}) {
+                          "/tunnels/0/reliable_quantities/1", "/bones/0/rms_mm", "/bones"}) {
     json broken = written;
     broken[json::json_pointer(key)] = "none";
     EXPECT_NE(test::undescribed(broken, "achieved"), "") << key;

@@ -246,6 +246,24 @@ TEST_F(CompareCommand, TakesAMeshOfTheDrilledBone) {
   EXPECT_NEAR(found.at("diameter_mm").get<double>(), 9, 0.2);
 }
 
+// A full disk, and a folder that nothing may be written into, are told before minutes of work.
+TEST_F(CompareCommand, WhatCannotBeWrittenIsToldBeforeTheWork) {
+  test::write_file(folder_ / "postop.nrrd", "is not even looked at");
+  std::filesystem::create_directory(folder_ / "out");
+  const std::vector<std::string> words{"compare",  folder_ / "knee.arthro",
+                                       "--postop", folder_ / "postop.nrrd",
+                                       "-o",       folder_ / "out/achieved.json"};
+  for (const test::ProgramLimits& limits :
+       {test::ProgramLimits{.file_size_bytes = 1000}, test::ProgramLimits{.as_nobody = true}}) {
+    if (limits.as_nobody && ::geteuid() != 0) continue;  // not root: the folder is the tester's own
+    const auto result = run_program(words, limits);
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.errors, AllOf(HasSubstr("out/achieved.json: cannot be written: "),
+                                     HasSubstr(limits.as_nobody ? "Permission denied" : "File too large")));
+    EXPECT_TRUE(std::filesystem::is_empty(folder_ / "out"));
+  }
+}
+
 // Refused with file and reason, before any work; nothing is written.
 TEST_F(CompareCommand, RefusesWhatCannotBeCompared) {
   test::write_file(folder_ / "broken.nrrd", "NRRD0004\ntype: short\n");

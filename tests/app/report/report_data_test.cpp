@@ -162,6 +162,17 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
   const auto csv_file = pdf().parent_path() / "report.csv";
   write(csv_file);
   expect_contains(files::read_text(csv_file), "postoperative/1/achieved/diameter_mm,8.4\n");
+  // What is known by itself is named, and each other number says that it is not.
+  doubted.known = {tunnels::Quantity::Entry, tunnels::Quantity::Direction};
+  postop::write_achieved_file(achieved_file, comparisons);
+  write(pdf());
+  text = pdf_text();
+  for (const char* const part : {"RELIABLE IN PART: entry and", "NOT RELIABLE"}) expect_contains(text, part);
+  write(json_file);
+  const auto part = nlohmann::json::parse(files::read_text(json_file)).at("postoperative").at(1);
+  EXPECT_EQ(part.at("verdict"), "reliable in part");
+  EXPECT_FALSE(part.at("reliable").get<bool>());
+  EXPECT_EQ(part.at("reliable_quantities"), nlohmann::json({"entry", "direction"}));
   // Without landmarks the same percentages as everywhere, by what the shape proposes, and that is said.
   const auto placed = knee_.landmarks;
   knee_.landmarks.clear();

@@ -46,6 +46,17 @@ TEST(CtBeside, IsNeverSurerThanTheComparison) {
   EXPECT_EQ(ct_in_words(doubted, planned()).text,
             "offset of the entry 3.0 mm, angle 4.0\u00B0; not reliable: metal fills it");
   EXPECT_EQ(ct_in_words(doubted, planned()).severity, Severity::Caution);
+  // These words are of entry and direction: that it is not known how wide it is is no matter here.
+  using enum tunnels::Quantity;
+  doubted.tunnel.known = {Entry, Direction, Length};
+  EXPECT_EQ(ct_in_words(doubted, planned()).text, ct_in_words(found(), planned()).text);
+  EXPECT_EQ(ct_in_words(doubted, planned()).severity, Severity::Quiet);
+  doubted.tunnel.known = {Entry};
+  EXPECT_EQ(
+      ct_in_words(doubted, planned()).text,
+      "offset of the entry 3.0 mm, angle 4.0\u00B0; reliable in part, entry; not the direction, diameter "
+      "and length: metal fills it");
+  EXPECT_EQ(ct_in_words(doubted, planned()).severity, Severity::Caution);
   doubted.tunnel.is_found = false;
   EXPECT_EQ(ct_in_words(doubted, planned()).text, "the tunnel was not found: metal fills it");
 }

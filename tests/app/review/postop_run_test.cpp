@@ -10,9 +10,12 @@
 
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
+#include "planning/cases/identity.h"
 #include "planning/files/atomic_file.h"
+#include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/postop/achieved_file.h"
+#include "tests/full_disk.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::review {
@@ -107,6 +110,57 @@ TEST(PostopRun, ATunnelThatIsReliedOnStaysKept) {
   open_case::PostopAnswer of_another_plan = answer(false);
   of_another_plan.planned[bones::BoneKind::Femur].entry_mm = {0, 0, 5};
   EXPECT_TRUE(keep(of_another_plan, folder.path()));
+}
+
+// What is relied on in part stays before what is relied on in less.
+TEST(PostopRun, APartThatIsReliedOnStaysKept) {
+  using enum tunnels::Quantity;
+  const test::TemporaryFolder folder;
+  const auto answer = [](const tunnels::Quantities& known) {
+    open_case::PostopAnswer made;
+    postop::Comparison& femur = made.comparisons[bones::BoneKind::Femur];
+    femur.bone.is_found = femur.bone.reliable = femur.tunnel.is_found = true;
+    femur.tunnel.known = known;
+    return made;
+  };
+  EXPECT_TRUE(keep(answer({Entry, Direction}), folder.path()));
+  EXPECT_FALSE(keep(answer({}), folder.path()));
+  EXPECT_FALSE(keep(answer({Entry, Length}), folder.path()));
+  EXPECT_TRUE(keep(answer({Entry, Direction, Length}), folder.path()));
+}
+
+// Before minutes of work, not after them.
+TEST(PostopRun, AFullDiskIsToldBeforeTheImagesAreRead) {
+  const test::TemporaryFolder folder;
+  {
+    const test::FullDisk full;
+    PostopRun run(folder.path(), folder / "is not even looked for", "1.2.3", true, [] {});
+    while (!run.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_THAT(run.error(), HasSubstr("achieved.json: cannot be written"));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+// Images that name somebody else were searched to their end before that was said.
+TEST(PostopRun, ImagesOfAnotherPatientAreNotSearched) {
+  const test::TemporaryFolder folder;
+  cases::save_case(folder.path(),
+                   phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Phantom"));
+  cases::save_identity(folder.path(), {"Beispiel^Bert", "1234", "19500101"});
+  open_case::PostopQuestion question{.case_folder = folder.path(), .source = "ct"};
+  question.refuses_another_patient = true;
+  question.read = [](const postop::PostopSourceOptions&) {
+    images::Volume volume;  // not even large enough for a bone: a search would throw
+    volume.size = {8, 8, 8};
+    volume.values.assign(512, 0.0F);
+    volume.patient = {"Muster^Anna", "4711", "19900131"};
+    return volume;
+  };
+  const open_case::PostopAnswer answer = open_case::compare_with_postop(question);
+  EXPECT_THAT(answer.other_patient, HasSubstr("Muster"));
+  EXPECT_TRUE(answer.comparisons.empty());
+  question.refuses_another_patient = false;
+  EXPECT_THROW((void)open_case::compare_with_postop(question), InvalidInput);
 }
 
 // One poorer tunnel kept a whole comparison out of the case, the good one beside it, too.

@@ -84,6 +84,28 @@ TEST(PostopWords, SayWhatWasFoundAndHowSure) {
   EXPECT_EQ(rows[0].grid + rows[0].wall, "");
 }
 
+// Where a part is relied on, that part is named and each number of the rest says that it is not.
+TEST(PostopWords, SayWhichPartIsReliable) {
+  using enum tunnels::Quantity;
+  Comparisons comparisons = some();
+  postop::AchievedTunnel& femur = comparisons.at(bones::BoneKind::Femur).tunnel;
+  femur.reliable = false;
+  femur.reasons = {"its diameter is known to 0.11 mm, 0.10 mm are needed"};
+  femur.known = {Entry, Direction, Length};
+  tunnels::Tunnel plan = femur.tunnel;
+  plan.entry_mm += 1.23 * Eigen::Vector3d::UnitX();
+  plan.direction = Eigen::AngleAxisd(geometry::rad_from_deg(2.5), Eigen::Vector3d::UnitX()) * plan.direction;
+  const Places places{{bones::BoneKind::Femur, {.planned_wall_mm = 2, .wall_mm = 1.6}}};
+  const AchievedRow row = achieved_rows(comparisons, {{bones::BoneKind::Femur, plan}}, {}, places).front();
+  EXPECT_EQ(row.verdict, "reliable in part: entry, direction and length; not the diameter");
+  EXPECT_EQ(row.severity, widgets::Severity::Caution);
+  EXPECT_THAT(row.diameter, HasSubstr("; NOT RELIABLE"));
+  EXPECT_THAT(row.wall, HasSubstr("; NOT RELIABLE")) << "it follows from the diameter, too";
+  for (const std::string& sure : {row.offset, row.angle, row.length})
+    EXPECT_THAT(sure, testing::Not(HasSubstr("NOT RELIABLE")));
+  EXPECT_THAT(row.reasons, testing::Contains(HasSubstr("its diameter is known to 0.11 mm")));
+}
+
 // What is in the numbers, and what is in none of them.
 TEST(PostopWords, SayWhatIsNotKnown) {
   const Comparisons comparisons = some();
@@ -194,6 +216,32 @@ TEST(AchievedFile, ASigmaThatItDoesNotSayIsNotKnown) {
     EXPECT_TRUE(again.at("entry_sigma_mm").is_null());
     EXPECT_TRUE(again.at("direction_sigma_deg").is_null());
   }
+}
+
+// Other programs read "reliable" as before: of all of it. What may be relied on by itself stands beside it.
+TEST(AchievedFile, KeepsWhatIsKnownByItself) {
+  using enum tunnels::Quantity;
+  const test::TemporaryFolder folder;
+  const auto file = folder / "achieved.json";
+  Comparisons written = some();
+  postop::AchievedTunnel& femur = written.at(bones::BoneKind::Femur).tunnel;
+  const Places places{{bones::BoneKind::Femur, {.wall_mm = 1.6, .wall_sigma_mm = 0.1}}};
+  const auto names = [&] {
+    postop::write_achieved_file(file, written, places);
+    return nlohmann::json::parse(files::read_text(file)).at("tunnels").at(0).at("reliable_quantities");
+  };
+  EXPECT_EQ(names(), nlohmann::json({"entry", "direction", "diameter", "length", "wall"}));
+  femur.reliable = false;
+  femur.known = {Entry, Direction};
+  EXPECT_EQ(names(), nlohmann::json({"entry", "direction"}));
+  const Comparisons read = postop::read_achieved_file(file);
+  EXPECT_FALSE(read.at(bones::BoneKind::Femur).tunnel.reliable);
+  EXPECT_EQ(relied_on(read.at(bones::BoneKind::Femur)), femur.known);
+  // By an older program nothing of what is not reliable as a whole is known.
+  auto older = nlohmann::json::parse(files::read_text(file));
+  older.at("tunnels").at(0).erase("reliable_quantities");
+  files::write_atomically(file, older.dump());
+  EXPECT_TRUE(relied_on(postop::read_achieved_file(file).at(bones::BoneKind::Femur)).empty());
 }
 
 // What a comparison kept in the case is shown again with every number and every reason.

@@ -8,6 +8,7 @@
 #include "planning/files/atomic_file.h"
 #include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
+#include "tests/full_disk.h"
 #include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
@@ -115,6 +116,19 @@ TEST(WholeFolder, OneThatIsTakenIsToldBeforeTheWork) {
   EXPECT_THROW(refuse_taken(parent / "there/mine"), InvalidInput);
   EXPECT_EQ(test::message_of<IoError>([&] { refuse_unwritable(parent / "there/mine", "report.pdf"); }),
             "report.pdf: cannot be written: Not a directory");
+}
+
+// A full disk makes empty folders and files: only bytes tell.
+TEST(WholeFolder, AFullDiskIsToldBeforeTheWork) {
+  const test::TemporaryFolder folder;
+  EXPECT_NO_THROW(refuse_unwritable(folder.path()));
+  std::string message;
+  {
+    const test::FullDisk full;
+    message = test::message_of<IoError>([&] { refuse_unwritable(folder.path(), folder / "achieved.json"); });
+  }
+  EXPECT_EQ(message, (folder / "achieved.json").string() + ": cannot be written: File too large");
+  EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
 }  // namespace

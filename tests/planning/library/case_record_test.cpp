@@ -119,9 +119,14 @@ TEST_F(CaseRecordTest, ReadsWhatTheComparisonFound) {
   test::make_case(knee_);
   test::write_text(knee_ / "achieved.json", R"({"format": "arthronaut.achieved", "version": 1, "bones": [],
     "tunnels": [{"bone": "femur", "offset_mm": 1.5, "angle_deg": 2.5, "diameter_mm": 9, "reliable": true},
-                {"bone": "tibia", "offset_mm": null, "angle_deg": null, "diameter_mm": null, "reliable": false}]})");
+                {"bone": "tibia", "offset_mm": null, "angle_deg": null, "diameter_mm": null, "reliable": false},
+                {"bone": "tibia", "bundle": "am", "offset_mm": 1, "angle_deg": 2, "diameter_mm": 7, "reliable": false,
+                 "reliable_quantities": ["entry", "direction"]}]})");
   const CaseRecord record = read();
-  ASSERT_EQ(record.postoperative.size(), 2U);
+  ASSERT_EQ(record.postoperative.size(), 3U);
+  EXPECT_TRUE(record.postoperative[2].is_known(tunnels::Quantity::Entry));
+  EXPECT_FALSE(record.postoperative[2].is_known(tunnels::Quantity::Diameter));
+  EXPECT_TRUE(record.postoperative[0].is_known(tunnels::Quantity::Diameter));
   EXPECT_EQ(record.postoperative[0].entry_offset_mm, 1.5);
   EXPECT_TRUE(record.postoperative[0].is_reliable);
   EXPECT_FALSE(record.postoperative[1].entry_offset_mm.has_value());

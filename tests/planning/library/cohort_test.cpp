@@ -41,7 +41,8 @@ std::vector<CaseRecord> two_cases() {
                                .entry_offset_mm = 3,
                                .angle_deg = 4,
                                .diameter_mm = 6,
-                               .is_reliable = false}};
+                               .is_reliable = false,
+                               .known = {tunnels::Quantity::Entry, tunnels::Quantity::Direction}}};
   records[1].name = "B";
   records[1].folder = "/cases/B.arthro";
   records[1].problem = "case.json: broken";
@@ -94,6 +95,8 @@ TEST(CohortTest, IsARowASession) {
   EXPECT_EQ(rows[0]["femur_postop_offset_mm"], "");
   EXPECT_EQ(rows[0]["femur_pl_postop_offset_mm"], "3.000");
   EXPECT_EQ(rows[0]["femur_pl_postop_reliable"], "no");
+  EXPECT_EQ(rows[0]["femur_pl_postop_reliable_quantities"], "entry and direction");
+  EXPECT_EQ(rows[0]["tibia_postop_reliable_quantities"], "entry, direction, diameter and length");
   EXPECT_EQ(rows[0]["femur_am_postop_offset_mm"], "");
   EXPECT_EQ(rows[2]["state"], "unreadable");
   EXPECT_EQ(rows[2]["session"], "");

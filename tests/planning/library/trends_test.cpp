@@ -102,6 +102,23 @@ TEST(TrendTest, GoesThroughTheComparisonsWithACt) {
   EXPECT_EQ(trend_of(records, Trend::AchievedAngle)[0].value, 4);
 }
 
+// A CT in which only the diameter is not known says the entry's offset; one in which the direction is not
+// says no angle, and is counted as left out.
+TEST(TrendTest, TakesEachNumberThatIsKnownByItself) {
+  using enum tunnels::Quantity;
+  std::vector<CaseRecord> records(2);
+  records[0].postoperative = {found(BoneKind::Femur, 2.5, 4, false)};
+  records[0].postoperative[0].known = {Entry, Direction};
+  records[1].postoperative = {found(BoneKind::Femur, 1.5, 3, false)};
+  records[1].postoperative[0].known = {Entry};
+  EXPECT_EQ(trend_of(records, Trend::AchievedOffset).size(), 2U);
+  ASSERT_EQ(trend_of(records, Trend::AchievedAngle).size(), 1U);
+  EXPECT_EQ(trend_of(records, Trend::AchievedAngle)[0].value, 4);
+  EXPECT_EQ(trend_of(records, Trend::AchievedOffset, {.of_unknown = true}).size(), 0U);
+  ASSERT_EQ(trend_of(records, Trend::AchievedAngle, {.of_unknown = true}).size(), 1U);
+  EXPECT_EQ(trend_of(records, Trend::AchievedAngle, {.of_unknown = true})[0].value, 3);
+}
+
 // What is rehearsed or looked at after an operation hid its comparison, or dated it wrongly.
 TEST(TrendTest, AComparisonIsOfTheOperation) {
   std::vector<CaseRecord> records(1);

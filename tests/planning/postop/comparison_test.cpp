@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "planning/geometry/error.h"
@@ -270,6 +271,52 @@ TEST_F(Achieved, AFaintBoneIsFound) {
   const Comparison comparison = compared(BoneKind::Tibia, volume);
   EXPECT_TRUE(comparison.bone.is_found) << testing::PrintToString(comparison.bone.reasons);
   expect_near(comparison.tunnel, truth);
+}
+
+// A socket that ends 1 mm before the far cortex: where it ends is not seen. Where it begins, which way it
+// runs and how wide it is were not relied on for that.
+TEST_F(Achieved, WhatIsNotSeenTakesNothingFromTheRest) {
+  using enum tunnels::Quantity;
+  const Tunnel tunnel = moved(BoneKind::Femur, {2, 2}, {4, -3});
+  const double out_mm = tunnels::measure(tunnel, surface(BoneKind::Femur)).length_mm;
+  const Comparison found =
+      compared(BoneKind::Femur, ct(BoneKind::Femur, {{.tunnel = tunnel, .to_mm = out_mm - 1}}));
+  expect_near(found.tunnel, tunnel);
+  EXPECT_FALSE(found.tunnel.reliable);
+  EXPECT_FALSE(is_relied_on(found));
+  EXPECT_EQ(relied_on(found), (tunnels::Quantities{Entry, Direction, Diameter}))
+      << testing::PrintToString(found.tunnel.reasons);
+  EXPECT_EQ(verdict_of(found, true), ComparisonVerdict::ReliableInPart);
+  EXPECT_EQ(verdict_of(found, false), ComparisonVerdict::OfAnEarlierPlan);
+  // Whose bone it is is asked of all of it.
+  Comparison of_another = found;
+  doubt(of_another, "of another patient");
+  EXPECT_TRUE(relied_on(of_another).empty());
+  EXPECT_EQ(of_another.tunnel.reasons.front(), "of another patient");
+}
+
+// A bone that is not there was sought a second time, among all that is brighter than soft tissue, though that
+// is the same bones. The search says how far it is, and ends when it is told to.
+TEST_F(Achieved, ABoneThatIsNotThereIsSoughtOnce) {
+  const auto volume = ct({BoneKind::Femur}, {}, test::half_fine());
+  const PostopImages images(volume);
+  std::vector<double> shares;
+  const Comparison missing =
+      images.compare(mesh(BoneKind::Tibia), plan(BoneKind::Tibia), {}, [&](double share) {
+        shares.push_back(share);
+        return true;
+      });
+  EXPECT_FALSE(missing.bone.is_found);
+  ASSERT_FALSE(shares.empty());
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_LE(shares.back(), 0.5);
+  EXPECT_GT(shares.back(), 0.4);
+  int asked = 0;
+  const Comparison ended =
+      images.compare(mesh(BoneKind::Tibia), plan(BoneKind::Tibia), {}, [&](double) { return ++asked < 10; });
+  EXPECT_EQ(asked, 10);
+  EXPECT_FALSE(ended.bone.is_found);
+  EXPECT_THAT(ended.bone.reasons, Contains(HasSubstr("not called")));
 }
 
 TEST_F(Achieved, NoBoneAtAllIsRefused) {
