@@ -42,8 +42,6 @@ Finding say(FemoralExit exit) {
       return {Verdict::Wrong, "out of the medial side: the wrong side"};
     case FemoralExit::IntoNotch:
       return {Verdict::Wrong, "into the notch"};
-    case FemoralExit::Above:
-      return {Verdict::Wrong, "up the shaft and out of its cut end"};
     case FemoralExit::JointSurface:
       break;
   }

@@ -39,12 +39,11 @@ enum class FemoralExit {
   MedialSide,    // of where it began, or out of a face that looks medially
   JointSurface,  // condyle or groove
   IntoNotch,     // more bone lies laterally of it
-  Above,         // the shaft's cut end
 };
 // Joint surface: less than half the bone's width above its lowest point, out of a face that looks downwards
 // (by more than 30 deg), or one that looks neither laterally nor medially (within 45 deg of straight on).
 // Into the notch: from 0.5 mm above the surface straight laterally there is a tenth of the bone's width of
-// bone or more. Above: out of a face that looks up by more than 60 deg, in the upper half of what is there.
+// bone or more.
 [[nodiscard]] FemoralExit femoral_exit(const geometry::Surface& femur, const TunnelGeometry& tunnel,
                                        const landmarks::AnatomicalAxes& axes, const BoneExtents& extents);
 
