@@ -1,6 +1,7 @@
 #include "app/case/case_opening.h"
 
 #include <cstdlib>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -25,12 +26,12 @@ std::filesystem::path built_in_case_folder() {
 
 namespace {
 
-// What cannot be read Plan and Navigate tell.
-cases::BoneDoubts doubts_there(const std::filesystem::path& folder) {
+// What cannot be read Plan and Navigate tell: then nobody knows where the bones are unseen.
+std::optional<cases::BoneDoubts> doubts_there(const std::filesystem::path& folder) {
   try {
     return cases::load_bone_doubts(folder);
   } catch (const std::runtime_error&) {
-    return {};
+    return std::nullopt;
   }
 }
 
@@ -50,10 +51,12 @@ void load(OpenedCase& opened, const std::stop_token& stop, const Tell& tell) {
     opened.model = std::make_unique<PlanModel>(std::move(knee), stop, [&tell](double done) {
       if (tell) tell(kReadingShare + (1 - kReadingShare) * done);
     });
-    const cases::BoneDoubts doubts = doubts_there(opened.folder);
+    const auto doubts = doubts_there(opened.folder);
     for (const bones::BoneKind kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
-      if (auto cuts = cases::image_cuts_of(doubts, kind); opened.model->has_bone(kind) && !cuts.empty())
-        opened.model->set_image_cuts(kind, std::move(cuts));
+      if (opened.model->has_bone(kind))
+        opened.model->set_unseen(kind,
+                                 doubts ? cases::unseen_parts_of(*doubts, opened.model->knee().bones.at(kind))
+                                        : bones::UnseenParts{.was_looked_for = false});
     opened.model->set_measurements(cases::load_measurements(opened.folder));
   }
   opened.identity = cases::load_identity(opened.folder);

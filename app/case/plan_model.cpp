@@ -82,15 +82,15 @@ void PlanModel::use_landmarks(bones::BoneKind kind) {
   BoneModel& bone = bones_.at(kind);
   bone.axes = landmarks::anatomical_axes(kind, knee_.side, landmarks(kind), mesh);
   bone.joint_bounds = scene::joint_bounds(mesh, kind, bone.axes);
-  auto image_cuts = std::move(bone.review.surroundings.image_cuts);  // the bone's, whatever its landmarks
+  auto unseen = std::move(bone.review.surroundings.unseen);  // the bone's, whatever its landmarks
   bone.review = plan_review::review_bone(mesh, kind, knee_.side, landmarks(kind), bone.review.surface);
-  bone.review.surroundings.image_cuts = std::move(image_cuts);
+  bone.review.surroundings.unseen = std::move(unseen);
   plan_review::put_bone(knee_surroundings_, kind, bone.review);
 }
 
-void PlanModel::set_image_cuts(bones::BoneKind kind, std::vector<bones::ImageCut> cuts) {
+void PlanModel::set_unseen(bones::BoneKind kind, bones::UnseenParts unseen) {
   BoneModel& bone = bones_.at(kind);
-  bone.review.surroundings.image_cuts = std::move(cuts);
+  bone.review.surroundings.unseen = std::move(unseen);
   plan_review::put_bone(knee_surroundings_, kind, bone.review);
   ++revision_;
 }
@@ -138,7 +138,8 @@ default_plan::DefaultTunnel PlanModel::default_tunnel(const tunnels::TunnelKey& 
        .states = landmark_states(kind),
        // Both bundles of a bone are made at once: each leaves the other's default its room, whatever is
        // there.
-       .proposal = bone.proposal ? &*bone.proposal : nullptr},
+       .proposal = bone.proposal ? &*bone.proposal : nullptr,
+       .unseen = bone.review.surroundings.unseen},
       knee_.side,
       {.bundle = key.bundle, .diameter_mm = tunnels::usual_diameter_mm(key.bundle), .stop = stop});
 }

@@ -110,8 +110,8 @@ class PlanModel {
   // A tunnel by norms and landmarks; read the outcome. Takes a moment.
   [[nodiscard]] default_plan::DefaultTunnel default_tunnel(const tunnels::TunnelKey& key,
                                                            const std::stop_token& stop = {}) const;
-  // Where the images end within the bone (cases::image_cuts_of). Precondition: has_bone(kind).
-  void set_image_cuts(bones::BoneKind kind, std::vector<bones::ImageCut> cuts);
+  // Where nobody has seen the bone (cases::unseen_parts_of). Precondition: has_bone(kind).
+  void set_unseen(bones::BoneKind kind, bones::UnseenParts unseen);
   void set_landmarks(bones::BoneKind kind, landmarks::Landmarks landmarks, landmarks::LandmarkStates states);
   // Where the femur is cut open to see the lateral wall of its notch; nullopt without a femur.
   [[nodiscard]] std::optional<scene::CutPlane> notch_cut() const;

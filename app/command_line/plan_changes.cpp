@@ -72,7 +72,8 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
 // reads it, as a report, has the grid that was planned by. Throws InvalidInput where there is no default;
 // `verdict` says how far it may be relied on, `by_shape` what the shape gave where it was asked.
 tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee, bones::BoneKind kind,
-                               const std::shared_ptr<const geometry::Surface>& surface, PlanVerdict& verdict,
+                               const std::shared_ptr<const geometry::Surface>& surface,
+                               const cases::BoneDoubts& doubts, PlanVerdict& verdict,
                                plan_review::ProposedBone& by_shape) {
   const Progress progress("Making the default plan", 0);
   landmarks::Landmarks& marks = knee.landmarks[kind];
@@ -86,6 +87,7 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee
   }
   default_plan::BoneInput input{
       .bone = &bone, .surface = surface.get(), .landmarks = marks, .states = states};
+  input.unseen = cases::unseen_parts_of(doubts, bone);
   if (by_shape.surface) input.proposal = &by_shape.proposal;
   const norms::Bundle bundle = norms::bundle_from_text(arguments.type);
   input.beside = default_plan::beside({kind, bundle}, knee.plan.tunnels);
@@ -151,14 +153,15 @@ void remove_tunnel(const PlanArguments& arguments, cases::Case& knee) {
 }
 
 // By hand or by default.
-void place_tunnel(const PlanArguments& arguments, ChangedPlan& changed) {
+void place_tunnel(const PlanArguments& arguments, const cases::BoneDoubts& doubts, ChangedPlan& changed) {
   const auto bone = changed.knee.bones.find(key_of(arguments).bone);
   if (bone == changed.knee.bones.end())
     throw InvalidInput(arguments.case_folder, "case.json", "holds no " + arguments.bone);
   const geometry::TriangleMesh& mesh = bone->second.mesh;
   const auto surface = std::make_shared<const geometry::Surface>(mesh);
   put(arguments.by_default
-          ? default_tunnel(arguments, changed.knee, bone->first, surface, changed.verdict, changed.proposed)
+          ? default_tunnel(arguments, changed.knee, bone->first, surface, doubts, changed.verdict,
+                           changed.proposed)
           : planned_tunnel(arguments, changed.knee, *surface, changed.verdict.entry_moved_mm, changed.notes),
       bones::mesh_sha256(mesh), changed.knee, changed.notes);
 }
@@ -173,7 +176,7 @@ bool is_asked_for(const PlanArguments& arguments, bones::BoneKind bone) {
   return arguments.bone.empty() || arguments.bone == bones::to_text(bone);
 }
 
-ChangedPlan changed_plan(const PlanArguments& arguments, cases::Case knee) {
+ChangedPlan changed_plan(const PlanArguments& arguments, cases::Case knee, const cases::BoneDoubts& doubts) {
   ChangedPlan changed{std::move(knee)};
   if (!arguments.markups.empty()) {
     take_markups(arguments, changed.knee, changed.notes);
@@ -184,7 +187,7 @@ ChangedPlan changed_plan(const PlanArguments& arguments, cases::Case knee) {
   } else if (arguments.removes) {
     remove_tunnel(arguments, changed.knee);
   } else if (arguments.places()) {
-    place_tunnel(arguments, changed);
+    place_tunnel(arguments, doubts, changed);
   }
   return changed;
 }

@@ -8,6 +8,7 @@
 
 #include "app/command_line/kept_versions.h"
 #include "app/command_line/plan_report.h"
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/plan_review/proposed_landmarks.h"
 
@@ -37,7 +38,9 @@ struct ChangedPlan {
   plan_review::ProposedBone proposed = {};  // of the bone that a default plan was made of
   std::vector<std::string> notes = {};      // to be said once it is so on the disk
 };
-// The case as it becomes; nothing is written. Throws InvalidInput where what is asked for cannot be.
-[[nodiscard]] ChangedPlan changed_plan(const PlanArguments& arguments, cases::Case knee);
+// The case as it becomes; nothing is written. doubts: what spoke against its bones. Throws InvalidInput where
+// what is asked for cannot be.
+[[nodiscard]] ChangedPlan changed_plan(const PlanArguments& arguments, cases::Case knee,
+                                       const cases::BoneDoubts& doubts);
 
 }  // namespace arthronaut::command_line

@@ -49,9 +49,6 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
       if (!side.empty()) context.say("  x Side: " + side);
       if (const std::string note = plan_review::side_note(doubts); !note.empty())
         context.say("    Side: " + note);
-      if (const std::string entry = plan_review::entry_doubt(knee.plan.tunnels.at(key), doubts);
-          !entry.empty())
-        context.say("  x Entry: " + entry);
       for (const std::string& doubt : plan_review::doubts_but_side(doubts, key.bone))
         context.say("  ! Bone: " + doubt);
     }
@@ -137,7 +134,7 @@ void run_plan(PlanArguments& arguments, Context& context) {
   const cases::Plan before = knee.plan;
   // Before anything is written: a file that cannot be read leaves the plan as it was.
   const cases::BoneDoubts doubts = cases::load_bone_doubts(arguments.case_folder);
-  ChangedPlan changed = changed_plan(arguments, std::move(knee));
+  ChangedPlan changed = changed_plan(arguments, std::move(knee), doubts);
   if (arguments.places()) arguments.names_type = true;  // what was placed is shown
   if (arguments.changes()) save_changed(arguments, before, changed);
   if (!arguments.as_json)

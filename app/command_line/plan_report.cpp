@@ -67,9 +67,11 @@ const char* state_of_grid(const cases::Case& knee, const plan_review::CaseReview
 PlanVerdict judged(const cases::Case& knee, const plan_review::CaseReview& review,
                    const tunnels::TunnelKey& key, const cases::BoneDoubts& doubts, PlanVerdict verdict) {
   std::vector<std::string>& reasons = verdict.reasons;
-  if (const std::string entry = plan_review::entry_doubt(knee.plan.tunnels.at(key), doubts); !entry.empty())
-    reasons.push_back("the entry: " + entry);
   for (std::string& wrong : tunnels::wrong_in_words(review.checks(key))) reasons.push_back(std::move(wrong));
+  if (const std::string unseen =
+          review.bone(key.bone).surroundings.unseen.reached(review.tunnels().at(key).geometry.exit_mm);
+      verdict.source.empty() && !unseen.empty())  // of a default its own reasons say so
+    reasons.push_back("the exit: nobody has seen bone there, " + unseen);
   if (auto doubt = plan_review::landmark_doubt(review.landmark_check(key.bone)))
     reasons.push_back(*std::move(doubt));
   if (const auto of_bone = doubts.find(key.bone); of_bone != doubts.end())
@@ -93,7 +95,7 @@ void describe_tunnel(const Context& context, const cases::Case& knee, const plan
   if (!verdict.source.empty()) context.say("  default    " + verdict.place + " [" + verdict.source + "]");
   if (measured.enters_bone) {
     const bool leaves_images =
-        bones::images_end_at(review.bone(key.bone).surroundings.image_cuts, measured.exit_mm);
+        bones::images_end_at(review.bone(key.bone).surroundings.unseen.image_cuts, measured.exit_mm);
     context.say(files::format("  length     %.2f mm inside bone", measured.length_mm) +
                 (leaves_images ? ", as far as the images go" : ""));
     context.say("  exit       " + coordinates(measured.exit_mm, 3) + " mm" +

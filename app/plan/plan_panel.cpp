@@ -141,10 +141,8 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
                      "No tunnel yet. Press P and click on the bone where it is to begin.");
     return;
   }
-  if (const std::string entry = plan_review::entry_doubt(*tunnel, panel.doubts); !entry.empty())
-    widgets::status_row(ui, widgets::Severity::Bad, "Entry", entry);
   const tunnels::TunnelGeometry& geometry = panel.model.measured(panel.key);
-  const auto& image_cuts = panel.model.surroundings(panel.key.bone).image_cuts;
+  const auto& image_cuts = panel.model.surroundings(panel.key.bone).unseen.image_cuts;
   const bool leaves_images = geometry.enters_bone && bones::images_end_at(image_cuts, geometry.exit_mm);
   draw_numbers(ui, *tunnel, geometry, leaves_images);
   if (geometry.enters_bone)

@@ -16,11 +16,11 @@ bool is_wrong(const open_case::PlanModel& model, const tunnels::TunnelKey& key) 
                              [](const tunnels::PlanCheck& check) { return check.verdict == Verdict::Wrong; });
 }
 
-// "A, B and C".
+// "\"A\", \"B\" and \"C\"": a landmark's title may hold a comma.
 std::string listed(const std::vector<std::string>& names) {
   std::string words;
   for (std::size_t i = 0; i < names.size(); ++i)
-    words += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+    words += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + ("\"" + names[i] + "\"");
   return words;
 }
 

@@ -317,9 +317,6 @@ double Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm, d
                 kCaption);
     return y_mm;
   }
-  if (const std::string entry = plan_review::entry_doubt(of_graft->tunnel, content_.bone_doubts);
-      !entry.empty())
-    row("wrong", true, "Entry: " + entry);
   for (const PlanCheck& check : review_.checks(of_graft->tunnel.key())) {
     const bool is_amiss =
         check.verdict == PlanCheck::Verdict::Look || check.verdict == PlanCheck::Verdict::Wrong;

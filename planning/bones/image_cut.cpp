@@ -1,6 +1,7 @@
 #include "planning/bones/image_cut.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "planning/files/format.h"
 
@@ -18,6 +19,11 @@ const char* side_in_words(const Eigen::Vector3d& out) {
 }
 
 }  // namespace
+
+bool ImageCut::is_sound() const {
+  constexpr double kOffUnit = 1e-6;
+  return at_mm.allFinite() && std::abs(out.norm() - 1) < kOffUnit && std::isfinite(area_mm2) && area_mm2 > 0;
+}
 
 std::string ImageCut::words() const {
   return files::format(

@@ -15,10 +15,16 @@ struct ImageCut {
   Eigen::Vector3d out = Eigen::Vector3d::UnitZ();  // unit, out of the images
   double area_mm2 = 0;
 
+  // Whether bone is missing there that landmarks, grids and checks are taken to follow from. Less than 1 cm2
+  // may be the edge of a bone that only just touches that of the images: then it concerns what is planned
+  // there.
+  [[nodiscard]] bool is_wide() const { return area_mm2 >= 100; }
   // Whether a ball about a point of the surface reaches what lies beyond.
   [[nodiscard]] bool is_reached(const Eigen::Vector3d& point_mm, double radius_mm = 0) const {
     return out.dot(point_mm - at_mm) > -radius_mm;
   }
+  // Finite, its direction a unit one: another would say of every place that the images end there, or of none.
+  [[nodiscard]] bool is_sound() const;
   // "the images end within it: 12 cm2 of it are cut off flat in front, ..."
   [[nodiscard]] std::string words() const;
   bool operator==(const ImageCut&) const = default;

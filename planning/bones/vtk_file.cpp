@@ -97,13 +97,21 @@ class LegacyReader {
     cursor_.fail("unknown type of numbers");
   }
 
-  std::vector<double> read_numbers(std::size_t count, const TypeName& type, const char* what) {
+  // Of a coordinate.
+  static std::string not_finite(std::size_t number) {
+    return "vertex " + std::to_string(number / 3 + 1) + " has a coordinate that is not finite";
+  }
+
+  // must_be_finite: in a text the line of one that is not is told as it is read.
+  std::vector<double> read_numbers(std::size_t count, const TypeName& type, const char* what,
+                                   bool must_be_finite = false) {
     std::vector<double> values;
     values.reserve(count);
     if (!is_binary_) {
       for (std::size_t i = 0; i < count; ++i) {
         const auto value = number_from(cursor_.word());
         if (!value) cursor_.fail("not a number");
+        if (must_be_finite && !std::isfinite(*value)) cursor_.fail(not_finite(i));
         values.push_back(*value);
       }
       return values;
@@ -122,12 +130,10 @@ class LegacyReader {
   void read_points() {
     if (!raw_.mesh.vertices_mm.empty()) cursor_.fail("a second section of points");
     const std::size_t count = read_count();
-    const auto values = read_numbers(3 * count, read_type(), "points");
+    const auto values = read_numbers(3 * count, read_type(), "points", true);
     for (std::size_t i = 0; i < count; ++i) {
       raw_.mesh.vertices_mm.emplace_back(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
-      if (!raw_.mesh.vertices_mm.back().allFinite()) {
-        cursor_.fail("vertex " + std::to_string(i + 1) + " has a coordinate that is not finite");
-      }
+      if (!raw_.mesh.vertices_mm.back().allFinite()) cursor_.fail(not_finite(3 * i));
     }
   }
 

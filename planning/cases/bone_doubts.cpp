@@ -1,9 +1,11 @@
 #include "planning/cases/bone_doubts.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "planning/bones/bone_json.h"
+#include "planning/bones/made_bone.h"
 #include "planning/files/json_document.h"
 #include "planning/files/remove_file.h"
 
@@ -13,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::string_view kBoneDoubtsFormat = "arthronaut.bone_doubts";
-constexpr int kBoneDoubtsVersion = 2;
+constexpr int kBoneDoubtsVersion = 3;
 
 SideDoubt side_doubt_from(const files::JsonObject& node) {
   const auto witness = side_witness_from_text(node.text("witness"));
@@ -22,32 +24,53 @@ SideDoubt side_doubt_from(const files::JsonObject& node) {
           node.has("looked_on") ? node.text("looked_on") : ""};
 }
 
+bones::ImageCut image_cut_from(const files::JsonObject& node) {
+  const bones::ImageCut cut{.at_mm = node.vector3("at_mm"),
+                            .out = node.vector3("out"),
+                            .area_mm2 = node.positive_number("area_mm2")};
+  if (!cut.is_sound()) node.fail("out", "is no unit vector");
+  return cut;
+}
+
 }  // namespace
 
 std::string words_of(const BoneDoubt& doubt) {
   if (const auto* sentence = std::get_if<std::string>(&doubt)) return *sentence;
   if (const auto* filled = std::get_if<FilledHoles>(&doubt)) return filled->words();
   if (const auto* cut = std::get_if<bones::ImageCut>(&doubt)) return cut->words();
+  if (std::holds_alternative<SurfaceLookedAt>(doubt)) return "";
   return std::get<SideDoubt>(doubt).words();
 }
 
 std::vector<std::string> words_of(const std::vector<BoneDoubt>& doubts) {
   std::vector<std::string> words;
-  for (const BoneDoubt& doubt : doubts) words.push_back(words_of(doubt));
+  for (const BoneDoubt& doubt : doubts)
+    if (std::string of_doubt = words_of(doubt); !of_doubt.empty()) words.push_back(std::move(of_doubt));
   return words;
 }
 
-std::vector<bones::ImageCut> image_cuts_of(const BoneDoubts& doubts, bones::BoneKind bone) {
-  std::vector<bones::ImageCut> cuts;
-  if (const auto of_bone = doubts.find(bone); of_bone != doubts.end())
-    for (const BoneDoubt& doubt : of_bone->second)
-      if (const auto* cut = std::get_if<bones::ImageCut>(&doubt)) cuts.push_back(*cut);
-  return cuts;
+bones::UnseenParts unseen_parts_of(const BoneDoubts& doubts, const bones::Bone& bone) {
+  bones::UnseenParts unseen{.was_looked_for = !bones::was_imported(bone)};
+  const auto of_bone = doubts.find(bone.kind);
+  if (of_bone == doubts.end()) return unseen;
+  for (const BoneDoubt& doubt : of_bone->second) {
+    if (const auto* cut = std::get_if<bones::ImageCut>(&doubt)) unseen.image_cuts.push_back(*cut);
+    if (const auto* filled = std::get_if<FilledHoles>(&doubt))
+      unseen.filled_holes.insert(unseen.filled_holes.end(), filled->holes.begin(), filled->holes.end());
+    if (std::holds_alternative<SurfaceLookedAt>(doubt)) unseen.was_looked_for = true;
+  }
+  return unseen;
+}
+
+bool is_side_note(const BoneDoubt& doubt) {
+  const auto* side = std::get_if<SideDoubt>(&doubt);
+  return side != nullptr && side->is_note();
 }
 
 bool is_note(const BoneDoubt& doubt) {
-  const auto* side = std::get_if<SideDoubt>(&doubt);
-  return side != nullptr && side->is_note();
+  const auto* cut = std::get_if<bones::ImageCut>(&doubt);
+  return is_side_note(doubt) || (cut != nullptr && !cut->is_wide()) ||
+         std::holds_alternative<SurfaceLookedAt>(doubt);
 }
 
 fs::path bone_doubts_file(const fs::path& case_folder) { return case_folder / "bone_doubts.json"; }
@@ -71,6 +94,8 @@ void put_doubts(nlohmann::ordered_json& bone, const std::vector<BoneDoubt>& doub
     if (!side->looked_on.empty()) sides.back()["looked_on"] = side->looked_on;
   }
   bone["doubts"] = std::move(sentences);
+  if (std::ranges::find(doubts, BoneDoubt(SurfaceLookedAt{})) != doubts.end())
+    bone["surface_looked_at"] = true;
   if (!holes.empty()) bone["filled_holes"] = std::move(holes);
   if (!cuts.empty()) bone["image_cuts"] = std::move(cuts);
   bone["side_doubts"] = std::move(sides);
@@ -91,10 +116,9 @@ std::vector<BoneDoubt> doubts_from(const files::JsonObject& bone) {
     if (!filled.holes.empty()) doubts.emplace_back(std::move(filled));
   }
   if (bone.has("image_cuts"))
-    for (const files::JsonObject& cut : bone.objects("image_cuts"))
-      doubts.emplace_back(bones::ImageCut{.at_mm = cut.vector3("at_mm"),
-                                          .out = cut.vector3("out"),
-                                          .area_mm2 = cut.positive_number("area_mm2")});
+    for (const files::JsonObject& cut : bone.objects("image_cuts")) doubts.emplace_back(image_cut_from(cut));
+  if (bone.has("surface_looked_at") && bone.boolean("surface_looked_at"))
+    doubts.emplace_back(SurfaceLookedAt{});
   if (is_of_version_1) return doubts;
   for (const files::JsonObject& side : bone.objects("side_doubts"))
     doubts.emplace_back(side_doubt_from(side));

@@ -11,7 +11,9 @@
 #include <variant>
 #include <vector>
 
+#include "planning/bones/bone.h"
 #include "planning/bones/image_cut.h"
+#include "planning/bones/unseen_parts.h"
 #include "planning/cases/filled_holes.h"
 #include "planning/cases/side_doubt.h"
 
@@ -21,15 +23,22 @@ class JsonObject;
 
 namespace arthronaut::cases {
 
+// No doubt: whoever made the bone looked where its surface is none of its own, and all of it stands beside
+// this. A bone without it was imported before that was looked for.
+struct SurfaceLookedAt {
+  bool operator==(const SurfaceLookedAt&) const = default;
+};
+
 // A sentence for a person, what is asked about the side, or where its surface is none of its own.
-using BoneDoubt = std::variant<std::string, SideDoubt, FilledHoles, bones::ImageCut>;
+using BoneDoubt = std::variant<std::string, SideDoubt, FilledHoles, bones::ImageCut, SurfaceLookedAt>;
 // By bone; only bones with any.
 using BoneDoubts = std::map<bones::BoneKind, std::vector<BoneDoubt>>;
 
-[[nodiscard]] std::string words_of(const BoneDoubt& doubt);
+[[nodiscard]] std::string words_of(const BoneDoubt& doubt);  // empty: SurfaceLookedAt
 [[nodiscard]] std::vector<std::string> words_of(const std::vector<BoneDoubt>& doubts);
-// See SideDoubt::is_note().
+// What speaks against nothing: SideDoubt::is_note(), a cut that is not wide, that the surface was looked at.
 [[nodiscard]] bool is_note(const BoneDoubt& doubt);
+[[nodiscard]] bool is_side_note(const BoneDoubt& doubt);
 
 [[nodiscard]] std::filesystem::path bone_doubts_file(const std::filesystem::path& case_folder);
 // Empty where there is no file. Throws IoError or InvalidInput (file, place, reason).
@@ -38,13 +47,14 @@ using BoneDoubts = std::map<bones::BoneKind, std::vector<BoneDoubt>>;
 // first, what is asked about the side last.
 void save_bone_doubts(const std::filesystem::path& case_folder, const BoneDoubts& doubts);
 
-// Where the images end within that bone.
-[[nodiscard]] std::vector<bones::ImageCut> image_cuts_of(const BoneDoubts& doubts, bones::BoneKind bone);
+// Where nobody has seen that bone. Of one that was not imported there is nothing to look for.
+[[nodiscard]] bones::UnseenParts unseen_parts_of(const BoneDoubts& doubts, const bones::Bone& bone);
 
 // A bone's doubts in this file, and wherever else a file of the case holds some: "doubts",
-// "filled_holes", "image_cuts" and "side_doubts".
+// "filled_holes", "image_cuts", "surface_looked_at" and "side_doubts".
 void put_doubts(nlohmann::ordered_json& bone, const std::vector<BoneDoubt>& doubts);
-// Also of version 1, where all were sentences. Throws InvalidInput (file, place, reason).
+// Also of version 1, where all were sentences, and of 2, where no surface is known to have been looked at.
+// Throws InvalidInput (file, place, reason).
 [[nodiscard]] std::vector<BoneDoubt> doubts_from(const files::JsonObject& bone);
 
 }  // namespace arthronaut::cases

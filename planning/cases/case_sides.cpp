@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using bones::BoneKind;
 constexpr std::string_view kSidesFormat = "arthronaut.sides";
-constexpr int kSidesVersion = 2;
+constexpr int kSidesVersion = 3;
 
 // By bone, the mesh that landmarks and doubts are of.
 using MeshHashes = std::map<BoneKind, std::string>;

@@ -6,13 +6,6 @@
 
 namespace arthronaut::cases {
 
-const bones::FilledHole* FilledHoles::reached(const Eigen::Vector3d& point_mm, double radius_mm) const {
-  const auto found = std::ranges::find_if(holes, [&](const bones::FilledHole& hole) {
-    return (point_mm - hole.at_mm).norm() < hole.across_mm / 2 + radius_mm;
-  });
-  return found == holes.end() ? nullptr : &*found;
-}
-
 std::string FilledHoles::words() const {
   const bones::FilledHole& widest = *std::ranges::max_element(holes, {}, &bones::FilledHole::across_mm);
   std::string words = files::format(

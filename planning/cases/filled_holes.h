@@ -11,8 +11,6 @@ namespace arthronaut::cases {
 struct FilledHoles {
   std::vector<bones::FilledHole> holes;  // one at least
 
-  // The first that a circle of that radius about a point of the bone reaches; null where it reaches none.
-  [[nodiscard]] const bones::FilledHole* reached(const Eigen::Vector3d& point_mm, double radius_mm) const;
   // "a hole of its surface about 12 mm across, at 1, 2, 3 mm, was filled in: ...": of the widest.
   [[nodiscard]] std::string words() const;
   bool operator==(const FilledHoles&) const = default;

@@ -105,6 +105,7 @@ std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry, const geomet
     double cost = 0;
     for (const tunnels::PlanCheck& check : tunnels::check_plan(tunnel, measured, joint.surroundings))
       cost += misfit_cost(check) + (tunnels::is_failed(check) ? kPerFailed : 0);
+    if (joint.leaves_unseen(measured)) cost += 2 * kPerFailed;  // length and exit, which nobody can check
     if (neighbour.enters_bone) {
       const auto between = tunnels::check_pair(tunnel, measured, *beside, neighbour);
       cost += kPerBetween * std::max(0.0, *between.least - *between.value);

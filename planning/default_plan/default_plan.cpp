@@ -46,6 +46,7 @@ std::optional<Joint> joint_of(const BoneInput& input, const Landmarks& marks, bo
   joint.surroundings = tunnels::surroundings_of(
       input.bone->mesh, input.bone->kind, marks, side,
       std::shared_ptr<const geometry::Surface>(std::shared_ptr<void>(), input.surface));
+  joint.surroundings.unseen = input.unseen;
   joint.axes = *joint.surroundings.axes;
   if (joint.axes.origin != landmarks::AnatomicalAxes::Origin::FromLandmarks) return std::nullopt;
   const bool is_femur = input.bone->kind == bones::BoneKind::Femur;
@@ -124,8 +125,12 @@ struct Site {
   }
   static bool is_of_diameter(const tunnels::PlanCheck& check) { return check.name == "Diameter"; }
   [[nodiscard]] std::vector<tunnels::PlanCheck> all_failed_by(const Tunnel& tunnel) const {
-    auto checks = tunnels::check_plan(tunnel, tunnels::measure(tunnel, *input.surface), joint.surroundings);
-    std::erase_if(checks, [](const auto& check) { return !tunnels::is_failed(check); });
+    const auto measured = tunnels::measure(tunnel, *input.surface);
+    const bool leaves_unseen = joint.leaves_unseen(measured);
+    auto checks = tunnels::check_plan(tunnel, measured, joint.surroundings);
+    std::erase_if(checks, [&](const auto& check) {
+      return !tunnels::is_failed(check) && !(leaves_unseen && check.name == "Exit");
+    });
     return checks;
   }
   // Infinite where one of them misses the bone.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "planning/bones/bone.h"
+#include "planning/bones/unseen_parts.h"
 #include "planning/geometry/surface.h"
 #include "planning/landmarks/landmarks.h"
 #include "planning/landmarks/propose.h"
@@ -52,6 +53,8 @@ struct BoneInput {
   // (one sigma), then the anteromedial one, whose wall is the thinner; beside a planned one the one asked
   // for. DefaultTunnel::place says how far.
   const tunnels::Tunnel* beside = nullptr;
+  // Where nobody has seen the bone: a direction that leaves there is taken where no other one passes.
+  bones::UnseenParts unseen = {};
 };
 
 struct DefaultTunnel {
@@ -72,7 +75,8 @@ struct DefaultTunnel {
   std::string place;
   std::vector<std::string> doubts;  // why the plan is not reliable: proposed landmarks, doubts of the shape
   // The plan's checks of this tunnel alone (check_plan) that no direction passes which was tried from there.
-  // Not that of its diameter, which was asked for: the plan's own checks say that.
+  // Not that of its diameter, which was asked for: the plan's own checks say that. With them "Exit", not
+  // checked, where every one leaves unseen.
   std::vector<tunnels::PlanCheck> failed;
   // A tibia's single tunnel of which some fail: the entry nearest to the norm's place and within its spread
   // from which one of the same aim passes them all. `place` says where it lies. The surgeon may move there.

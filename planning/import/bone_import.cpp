@@ -6,6 +6,7 @@
 
 #include "planning/bones/unit_unknown.h"
 #include "planning/files/format.h"
+#include "planning/files/pipe.h"
 #include "planning/geometry/error.h"
 #include "planning/images/bone_surface.h"
 #include "planning/images/volume_file.h"
@@ -72,12 +73,13 @@ ImportedBone finished(BoneKind kind, const std::string& source, const geometry::
   for (const auto& line : repair.report.lines()) imported.lines.push_back("mended: " + line);
   imported.doubts = repair.report.doubts();
   if (images != nullptr) imported.image_cuts = cuts_of(imported.bone.mesh, kind, *images);
+  imported.filled_holes = wide_holes(std::move(repair.filled), imported.bone.mesh, kind);
   // Of a mesh that is no bone at all there is enough to say already.
   if (!imported.doubts.empty()) return imported;
   std::vector<Eigen::Vector3d> image_ends;
-  for (const bones::ImageCut& cut : imported.image_cuts) image_ends.push_back(cut.out);
+  for (const bones::ImageCut& cut : imported.image_cuts)
+    if (cut.is_wide()) image_ends.push_back(cut.out);
   imported.doubts = shape_doubts(imported.bone.mesh, kind, image_ends);
-  imported.filled_holes = wide_holes(std::move(repair.filled), imported.bone.mesh, kind);
   return imported;
 }
 
@@ -317,6 +319,7 @@ BoneImport import_bones(const std::filesystem::path& source, const BoneImportOpt
     if (listener) listener(progress);
   };
   if (!std::filesystem::exists(source)) throw IoError(source, "does not exist");
+  files::refuse_pipe(source);
   BoneImport result;
   result.side = options.side ? options.side : side_in_name(source);
   result.side_source = options.side  ? SideSource::Person

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <set>
 
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/same_patient.h"
 #include "planning/cases/study.h"
 #include "planning/files/local_time.h"
+#include "planning/files/pipe.h"
 #include "planning/files/remove_file.h"
 #include "planning/files/utc_clock.h"
 #include "planning/files/whole_folder.h"
@@ -192,7 +194,7 @@ bool makes_two_frames(const cases::Case& target, const BoneImport& import, cases
 std::set<bones::BoneKind> take_side_notes(cases::BoneDoubts& doubts) {
   std::set<bones::BoneKind> noted;
   for (auto& [kind, of_bone] : doubts)
-    if (std::erase_if(of_bone, cases::is_note) > 0) noted.insert(kind);
+    if (std::erase_if(of_bone, cases::is_side_note) > 0) noted.insert(kind);
   return noted;
 }
 
@@ -204,7 +206,11 @@ void save_doubts_of(const fs::path& folder, const cases::Case& target, const Bon
   std::set<bones::BoneKind> noted = take_side_notes(doubts), added;
   for (const ImportedBone& imported : import.bones) {
     added.insert(imported.bone.kind);
-    doubts[imported.bone.kind] = doubts_with(import, imported, target.side);
+    std::vector<cases::BoneDoubt>& of_bone = doubts[imported.bone.kind] =
+        doubts_with(import, imported, target.side);
+    std::ranges::copy_if(imported.image_cuts, std::back_inserter(of_bone),
+                         [](const bones::ImageCut& cut) { return !cut.is_wide(); });
+    of_bone.emplace_back(cases::SurfaceLookedAt{});
   }
   const bool is_all =
       std::ranges::all_of(target.bones, [&](const auto& bone) { return added.contains(bone.first); });
@@ -297,6 +303,7 @@ void refuse_folder(const fs::path& folder) {
 
 void refuse_missing_side(const fs::path& folder, const fs::path& source, const BoneImportOptions& options) {
   if (options.side || side_in_name(source) || fs::exists(folder / "case.json") || !fs::exists(source)) return;
+  files::refuse_pipe(source);
   const bool is_mesh = bones::is_mesh_file(source) && !fs::is_directory(source);
   if (is_mesh) refuse_empty_file(source);
   if (is_mesh && !options.kind && !bone_kind_in_name(source))

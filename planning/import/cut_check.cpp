@@ -9,7 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastCut_mm2 = 100;
+// Of a bone that only touches the edge of the images a few voxels of its rim do.
+constexpr double kLeastCut_mm2 = 10;
 // The flat cap lies half a voxel beyond the last one's centre, its rounded rim a little inside.
 constexpr double kOfTheEdge_voxels = 0.75;
 // Between the cap's normal and the way out of the images; a bone's own face turns away from it soon.

@@ -13,7 +13,7 @@ namespace arthronaut::importing {
 // On which sides the bone, whose mesh was made of the volume, is cut off flat by the edge of
 // the images, and how large each cut is; none when it is whole. Through the shaft (a femur above, a tibia
 // below) every knee scan cuts, and nothing is said. Anywhere else bone is missing that landmarks, grids and
-// checks are taken to follow from. A cut below 1 cm2 may be the edge of a bone that only just touches it.
+// checks are taken to follow from. Cuts below 10 mm2, a few voxels of a rounded rim, count as none.
 [[nodiscard]] std::vector<bones::ImageCut> cuts_of(const geometry::TriangleMesh& mesh, bones::BoneKind kind,
                                                    const images::Volume& volume);
 

@@ -33,9 +33,7 @@ struct ChildRequest {
 // picture for each series of it where they are asked for. A failure ends both, at any time.
 enum class MessageKind : std::uint32_t { Request = 1, Progress, Result, Failure, SeriesList, SeriesPicture };
 
-// What a header says of a series, and what is wrong with a file: longer ones are cut off before they are
-// sent, and not believed. A list of 50 000 files is a few MB.
-inline constexpr std::size_t kLongestText_bytes = 4096;
+// Of 50 000 files it is a few MB.
 inline constexpr std::uint64_t kLongestList_bytes = 64ULL << 20;
 
 [[nodiscard]] std::string message_of(const ChildRequest& request);
@@ -44,9 +42,6 @@ inline constexpr std::uint64_t kLongestList_bytes = 64ULL << 20;
 [[nodiscard]] std::string message_of(const images::SeriesList& list);
 [[nodiscard]] std::string message_of(const SeriesPicture& picture);
 [[nodiscard]] std::string message_of(const Failure& failure);
-
-// No longer than kLongestText_bytes, cut between two characters.
-[[nodiscard]] std::string clipped(std::string text);
 
 struct Message {
   MessageKind kind = MessageKind::Request;

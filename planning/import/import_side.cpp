@@ -75,7 +75,7 @@ std::vector<cases::BoneDoubt> doubts_with(const BoneImport& import, const Import
   using enum cases::SideWitness;
   std::vector<cases::BoneDoubt> doubts(bone.doubts.begin(), bone.doubts.end());
   if (!bone.filled_holes.empty()) doubts.emplace_back(cases::FilledHoles{bone.filled_holes});
-  doubts.insert(doubts.end(), bone.image_cuts.begin(), bone.image_cuts.end());
+  std::ranges::copy_if(bone.image_cuts, std::back_inserter(doubts), &bones::ImageCut::is_wide);
   if (!side) return doubts;
   const auto tells = [&](cases::SideWitness witness, bones::Side told) {
     doubts.emplace_back(cases::SideDoubt{witness, told, *side});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "planning/bones/made_bone.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
 #include "planning/landmarks/insertion_grids.h"
@@ -165,7 +166,8 @@ PhantomKnee make_phantom_knee(const PhantomOptions& options) {
   const auto tibial = plan_tunnel(tibia, bones::BoneKind::Tibia, tibia_marks.at("native_footprint"));
 
   const ToPatient to_patient(options.side);
-  const std::string source = "phantom knee, seed " + std::to_string(options.seed);
+  std::string source(bones::kMadeSource);
+  source += ", seed " + std::to_string(options.seed);
   return {.side = options.side,
           .femur = {.kind = bones::BoneKind::Femur, .mesh = to_patient(femur.mesh), .source = source},
           .tibia = {.kind = bones::BoneKind::Tibia, .mesh = to_patient(tibia.mesh), .source = source},

@@ -113,7 +113,7 @@ CaseReview::CaseReview(const cases::Case& knee, const std::map<bones::BoneKind, 
     ReviewedBone& reviewed =
         bones_.emplace(kind, review_bone(bone.mesh, kind, knee.side, marks, std::move(surface)))
             .first->second;
-    reviewed.surroundings.image_cuts = cases::image_cuts_of(doubts, kind);
+    reviewed.surroundings.unseen = cases::unseen_parts_of(doubts, bone);
     const auto states = knee.landmark_states.find(kind);
     landmark_checks_[kind] = check_landmarks(
         kind, marks, states == knee.landmark_states.end() ? landmarks::LandmarkStates{} : states->second,

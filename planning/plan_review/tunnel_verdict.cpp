@@ -1,7 +1,5 @@
 #include "planning/plan_review/tunnel_verdict.h"
 
-#include "planning/files/format.h"
-
 namespace arthronaut::plan_review {
 
 using Verdict = tunnels::PlanCheck::Verdict;
@@ -36,8 +34,6 @@ std::string side_words(const cases::BoneDoubts& doubts, IsLike is_like) {
 TunnelVerdict verdict_but_side(const tunnels::Tunnel& tunnel, const std::vector<tunnels::PlanCheck>& checks,
                                const cases::BoneDoubts& doubts, const std::string& grid_doubt) {
   TunnelVerdict verdict{.wrong = tunnels::wrong_in_words(checks)};
-  if (const std::string entry = entry_doubt(tunnel, doubts); !entry.empty())
-    verdict.wrong.insert(verdict.wrong.begin(), "Entry: " + entry);
   for (const std::string& doubt : doubts_but_side(doubts, tunnel.bone))
     verdict.look.push_back("Bone: " + doubt);
   if (!grid_doubt.empty()) verdict.look.push_back("Grid: " + grid_doubt);
@@ -116,25 +112,7 @@ std::string grid_doubt(const cases::Case& knee, bones::BoneKind kind) {
 
 std::string side_doubt(const cases::BoneDoubts& doubts) { return side_words(doubts, contradicts_side); }
 
-std::string side_note(const cases::BoneDoubts& doubts) { return side_words(doubts, cases::is_note); }
-
-std::string entry_doubt(const tunnels::Tunnel& tunnel, const cases::BoneDoubts& doubts) {
-  const auto of_bone = doubts.find(tunnel.bone);
-  if (of_bone == doubts.end()) return "";
-  for (const cases::BoneDoubt& doubt : of_bone->second) {
-    const auto* cut = std::get_if<bones::ImageCut>(&doubt);
-    if (cut != nullptr && cut->is_reached(tunnel.entry_mm, tunnel.diameter_mm / 2))
-      return "it reaches where the images end: nobody has seen bone there";
-    const auto* filled = std::get_if<cases::FilledHoles>(&doubt);
-    if (filled == nullptr) continue;
-    if (const auto* hole = filled->reached(tunnel.entry_mm, tunnel.diameter_mm / 2))
-      return files::format(
-          "it reaches a hole about %.0f mm across that was filled in when the bone was made: nobody has seen "
-          "bone there",
-          hole->across_mm);
-  }
-  return "";
-}
+std::string side_note(const cases::BoneDoubts& doubts) { return side_words(doubts, cases::is_side_note); }
 
 std::vector<std::string> doubts_but_side(const cases::BoneDoubts& doubts, bones::BoneKind bone) {
   std::vector<std::string> others;

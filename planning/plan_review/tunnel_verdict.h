@@ -28,8 +28,8 @@ struct TunnelVerdict {
   [[nodiscard]] std::string in_short() const;
 };
 
-// A side in doubt, whichever bone witnesses it, is wrong for both, and so is an entry where nobody has seen
-// bone; what else is doubted of the bone is to be looked at. grid_doubt: see below.
+// A side in doubt, whichever bone witnesses it, is wrong for both; what else is doubted of the bone is to be
+// looked at. grid_doubt: see below.
 [[nodiscard]] TunnelVerdict verdict_of(const tunnels::Tunnel& tunnel,
                                        const std::vector<tunnels::PlanCheck>& checks,
                                        const cases::BoneDoubts& doubts, const std::string& grid_doubt);
@@ -54,9 +54,6 @@ using CheckedPlan = std::map<tunnels::TunnelKey, std::vector<tunnels::PlanCheck>
 [[nodiscard]] std::string side_doubt(const cases::BoneDoubts& doubts);
 // That the side rests on a person's word alone, which speaks against nothing; empty where it does not.
 [[nodiscard]] std::string side_note(const cases::BoneDoubts& doubts);
-// That the tunnel's mouth reaches a hole that was filled in when the bone was made, or where the images end
-// within the bone; empty where it reaches neither.
-[[nodiscard]] std::string entry_doubt(const tunnels::Tunnel& tunnel, const cases::BoneDoubts& doubts);
 // What is doubted of that bone but for the side, a sentence each.
 [[nodiscard]] std::vector<std::string> doubts_but_side(const cases::BoneDoubts& doubts, bones::BoneKind bone);
 

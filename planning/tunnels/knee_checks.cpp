@@ -277,13 +277,13 @@ void put_femur(KneeSurroundings& knee, const geometry::TriangleMesh& femur,
                const PlanSurroundings& of_femur) {
   knee.femur_axes = of_femur.axes;
   knee.femur_landmarks = of_femur.landmarks;
-  knee.image_cuts[bones::BoneKind::Femur] = of_femur.image_cuts;
+  knee.image_cuts[bones::BoneKind::Femur] = of_femur.unseen.image_cuts;
   knee.axis = of_femur.axes ? graft::flexion_axis(of_femur.landmarks, femur, *of_femur.axes) : std::nullopt;
 }
 
 void put_tibia(KneeSurroundings& knee, const PlanSurroundings& of_tibia) {
   using Origin = landmarks::AnatomicalAxes::Origin;
-  knee.image_cuts[bones::BoneKind::Tibia] = of_tibia.image_cuts;
+  knee.image_cuts[bones::BoneKind::Tibia] = of_tibia.unseen.image_cuts;
   knee.plateau_middle_mm.reset();
   knee.tibia_axes.reset();
   if (!of_tibia.axes) return;

@@ -115,14 +115,23 @@ PlanCheck not_checked(const char* name, const std::string& missing) {
   return {.verdict = Verdict::NotChecked, .name = name, .text = "not checked: " + missing + " is missing"};
 }
 
-bool leaves_images(const TunnelGeometry& geometry, const PlanSurroundings& surroundings) {
-  return bones::images_end_at(surroundings.image_cuts, geometry.exit_mm);
+std::string unseen_at_exit(const TunnelGeometry& geometry, const PlanSurroundings& surroundings) {
+  return surroundings.unseen.reached(geometry.exit_mm);
 }
 
-PlanCheck not_seen(const char* name) {
+PlanCheck not_seen(const char* name, const std::string& unseen) {
   return {.verdict = Verdict::NotChecked,
           .name = name,
-          .text = "not checked: the tunnel leaves where the images end"};
+          .text = "not checked: the tunnel leaves " +
+                  (unseen.starts_with("where") ? unseen : "through " + unseen)};
+}
+
+PlanCheck not_looked_for() {
+  return {.verdict = Verdict::NotChecked,
+          .name = "Seen bone",
+          .text =
+              "not checked: whether the images end within the bone, or a hole of it was filled in, is not "
+              "recorded of it; import it again to know"};
 }
 
 std::string number_text(double value, const char* unit) { return files::fixed(value, 1) + " " + unit; }
@@ -132,6 +141,14 @@ std::string limit_text(double value, const char* unit) { return files::format("%
 
 PlanCheck check_entry_place(const Tunnel& tunnel, const TunnelGeometry& geometry,
                             const PlanSurroundings& surroundings) {
+  // Seen or not does not hang on the way in: about the entry, as far as the drill reaches.
+  if (const std::string unseen = surroundings.unseen.reached(tunnel.entry_mm, tunnel.diameter_mm / 2);
+      !unseen.empty())
+    return {.verdict = Verdict::Wrong,
+            .name = "Entry",
+            .text = "it reaches " + unseen + ": nobody has seen bone there",
+            .at_mm = geometry.entry.at_mm,
+            .rests_on_side = false};
   if (!surroundings.axes) return not_checked("Entry", "the bone's axes");
   const landmarks::AnatomicalAxes& axes = *surroundings.axes;
   if (tunnel.bone == bones::BoneKind::Tibia)
@@ -144,7 +161,8 @@ PlanCheck check_entry_place(const Tunnel& tunnel, const TunnelGeometry& geometry
 
 PlanCheck check_exit_place(const Tunnel& tunnel, const TunnelGeometry& geometry,
                            const PlanSurroundings& surroundings) {
-  if (leaves_images(geometry, surroundings)) return not_seen("Exit");
+  if (const std::string unseen = unseen_at_exit(geometry, surroundings); !unseen.empty())
+    return not_seen("Exit", unseen);
   if (!surroundings.axes) return not_checked("Exit", "the bone's axes");
   const landmarks::AnatomicalAxes& axes = *surroundings.axes;
   if (tunnel.bone == bones::BoneKind::Femur && !surroundings.surface)
@@ -158,9 +176,9 @@ PlanCheck check_exit_place(const Tunnel& tunnel, const TunnelGeometry& geometry,
 std::vector<PlanCheck> check_exit_neighbours(const Tunnel& tunnel, const TunnelGeometry& geometry,
                                              const PlanSurroundings& surroundings, const PlanNorms& norms) {
   const bool is_tibia = tunnel.bone == bones::BoneKind::Tibia;
-  if (leaves_images(geometry, surroundings)) {
-    if (is_tibia) return {not_seen("Tuberosity")};
-    return {not_seen("Lateral epicondyle"), not_seen("Posterior cortex")};
+  if (const std::string unseen = unseen_at_exit(geometry, surroundings); !unseen.empty()) {
+    if (is_tibia) return {not_seen("Tuberosity", unseen)};
+    return {not_seen("Lateral epicondyle", unseen), not_seen("Posterior cortex", unseen)};
   }
   if (is_tibia)
     return {check_distance("Tuberosity", "tuberosity", "the patellar tendon's insertion", geometry,

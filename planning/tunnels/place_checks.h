@@ -6,10 +6,13 @@
 namespace arthronaut::tunnels {
 
 [[nodiscard]] PlanCheck not_checked(const char* name, const std::string& missing);
-// Whether the tunnel leaves where the images end, and what is then said of a check that asks where it leaves
-// the bone.
-[[nodiscard]] bool leaves_images(const TunnelGeometry& geometry, const PlanSurroundings& surroundings);
-[[nodiscard]] PlanCheck not_seen(const char* name);
+// Where the tunnel leaves the bone unseen, in words (UnseenParts::reached; empty: it does not), and what is
+// then said of a check that asks where it leaves.
+[[nodiscard]] std::string unseen_at_exit(const TunnelGeometry& geometry,
+                                         const PlanSurroundings& surroundings);
+[[nodiscard]] PlanCheck not_seen(const char* name, const std::string& unseen);
+// That nobody looked where the bone is unseen, and how to mend it.
+[[nodiscard]] PlanCheck not_looked_for();
 [[nodiscard]] std::string number_text(double value, const char* unit);  // "24.1 mm"
 [[nodiscard]] std::string limit_text(double value, const char* unit);   // "25 mm"
 

@@ -60,7 +60,8 @@ PlanCheck check_length(const Tunnel& tunnel, const TunnelGeometry& geometry,
   PlanCheck check = check_length_in_images(tunnel, geometry, norms);
   // What is too long in them is so beyond them.
   const bool is_too_long = check.greatest && geometry.length_mm > *check.greatest;
-  return leaves_images(geometry, surroundings) && !is_too_long ? not_seen("Length") : check;
+  const std::string unseen = unseen_at_exit(geometry, surroundings);
+  return !unseen.empty() && !is_too_long ? not_seen("Length", unseen) : check;
 }
 
 // Along the axis from the entry. A slanting mouth reaches before the entry and beyond the exit, where a depth
@@ -340,6 +341,7 @@ std::vector<PlanCheck> check_plan(const Tunnel& tunnel, const TunnelGeometry& ge
       check_length(tunnel, geometry, surroundings, norms),
       check_wall(tunnel, geometry, surroundings.surface.get(), norms), check_diameter(tunnel, norms),
       check_entry_place(tunnel, geometry, surroundings), check_exit_place(tunnel, geometry, surroundings)};
+  if (!surroundings.unseen.was_looked_for) checks.push_back(not_looked_for());
   add_grid_checks(tunnel, geometry.entry_on_surface_mm, surroundings, norms, checks);
   if (tunnel.bone == bones::BoneKind::Tibia) {
     checks.push_back(surroundings.axes ? check_coronal_angle(tunnel, *surroundings.axes, norms)

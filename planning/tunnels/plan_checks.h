@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "planning/bones/image_cut.h"
+#include "planning/bones/unseen_parts.h"
 #include "planning/geometry/surface_patch.h"
 #include "planning/landmarks/anatomical_axes.h"
 #include "planning/landmarks/insertion_grids.h"
@@ -53,9 +53,9 @@ struct PlanSurroundings {
   landmarks::Landmarks landmarks = {};
   // The bone's, for what is asked of its shape.
   std::shared_ptr<const geometry::Surface> surface = {};
-  // Where the images end within the bone: of a tunnel that leaves there nobody knows where it leaves the
-  // bone.
-  std::vector<bones::ImageCut> image_cuts = {};
+  // Where nobody has seen the bone: of a tunnel that leaves there nobody knows where it leaves the bone, and
+  // one that begins there is wrong.
+  bones::UnseenParts unseen = {};
   // The expected footprints of the ligament and of its bundles, as they lie on the bone; a missing one is
   // unknown.
   std::map<norms::Bundle, geometry::SurfacePatch> footprints = {};

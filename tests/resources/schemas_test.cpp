@@ -182,10 +182,11 @@ TEST_F(Schemas, DescribeTheMeasurements) {
 }
 
 TEST_F(Schemas, DescribeTheBonesDoubts) {
-  cases::save_bone_doubts(
-      folder_.path(), {{bones::BoneKind::Femur,
-                        {"cut off", cases::FilledHoles{{{.at_mm = {1, 2, 3}, .across_mm = 12}}},
-                         bones::ImageCut{.area_mm2 = 1234}, cases::SideDoubt{.looked_on = "2026-01-31"}}}});
+  cases::save_bone_doubts(folder_.path(),
+                          {{bones::BoneKind::Femur,
+                            {"cut off", cases::FilledHoles{{{.at_mm = {1, 2, 3}, .across_mm = 12}}},
+                             bones::ImageCut{.area_mm2 = 1234}, cases::SurfaceLookedAt{},
+                             cases::SideDoubt{.looked_on = "2026-01-31"}}}});
   expect_described(cases::bone_doubts_file(folder_.path()), "bone_doubts",
                    [&] { (void)cases::load_bone_doubts(folder_.path()); });
 }

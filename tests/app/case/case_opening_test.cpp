@@ -65,6 +65,12 @@ TEST(CaseOpening, Hazard46KnowsWhereTheImagesEnd) {
   EXPECT_EQ(length().verdict, Verdict::NotChecked);
   files::write_atomically(cases::bone_doubts_file(folder.path()), "{");
   EXPECT_EQ(length().verdict, Verdict::Fine);
+  CaseOpening unread(folder.path(), [] {});
+  EXPECT_EQ(take_until_done(unread), 1) << unread.failure();
+  const auto& checks = unread.model()->checks(bones::BoneKind::Femur);
+  const auto seen = std::ranges::find(checks, "Seen bone", &tunnels::PlanCheck::name);
+  ASSERT_NE(seen, checks.end()) << "that nobody knows where they end";
+  EXPECT_EQ(seen->verdict, Verdict::NotChecked);
 }
 
 // One that cannot be opened says why, and the window is woken all the same.

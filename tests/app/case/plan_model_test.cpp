@@ -100,9 +100,9 @@ TEST(PlanModel, Hazard46WhereTheImagesEndOutlastsOtherLandmarks) {
   ASSERT_EQ(length().name, "Length");
   EXPECT_EQ(length().verdict, tunnels::PlanCheck::Verdict::Fine);
   const Eigen::Vector3d out = model.tunnel(BoneKind::Femur)->direction;
-  model.set_image_cuts(
-      BoneKind::Femur,
-      {{.at_mm = model.measured(BoneKind::Femur).exit_mm - out, .out = out, .area_mm2 = 500}});
+  model.set_unseen(BoneKind::Femur, {.image_cuts = {{.at_mm = model.measured(BoneKind::Femur).exit_mm - out,
+                                                     .out = out,
+                                                     .area_mm2 = 500}}});
   EXPECT_EQ(length().verdict, tunnels::PlanCheck::Verdict::NotChecked);
   model.set_landmarks(BoneKind::Femur, model.landmarks(BoneKind::Femur),
                       model.landmark_states(BoneKind::Femur));

@@ -27,7 +27,7 @@ TEST(BoneDoubts, ComeBackAndWithoutAnyTheFileGoes) {
        {"too short",
         FilledHoles{{{.at_mm = {1.0 / 3, -2, 3}, .across_mm = 12.25}, {.at_mm = {4, 5, 6}, .across_mm = 9}}},
         bones::ImageCut{.at_mm = {1, 1.0 / 3, 2}, .out = {0, -1, 0}, .area_mm2 = 1234.5},
-        bones::ImageCut{.at_mm = {7, 8, 9}, .out = {-1, 0, 0}, .area_mm2 = 101},
+        bones::ImageCut{.at_mm = {7, 8, 9}, .out = {-1, 0, 0}, .area_mm2 = 101}, SurfaceLookedAt{},
         SideDoubt{SideWitness::Fibula, Side::Left, Side::Right},
         SideDoubt{SideWitness::ShapesAlone, Side::Left, Side::Left},
         SideDoubt{SideWitness::PersonAlone, Side::Left, Side::Left},
@@ -60,8 +60,9 @@ TEST(BoneDoubts, OfVersionOneTheSentencesOfTheSideAreRead) {
                 SideDoubt{SideWitness::ShapesAlone, Side::Left, Side::Left},
                 "by the shape of the bone it is a left knee, but the side is unclear: check the side"}));
   const auto today = put(2, R"(, "side_doubts": [])");
-  EXPECT_TRUE(std::ranges::none_of(
-      today, std::holds_alternative<SideDoubt, std::string, SideDoubt, FilledHoles, bones::ImageCut>));
+  EXPECT_TRUE(
+      std::ranges::none_of(today, std::holds_alternative<SideDoubt, std::string, SideDoubt, FilledHoles,
+                                                         bones::ImageCut, SurfaceLookedAt>));
 }
 
 TEST(BoneDoubts, AFileThatIsNoneIsRefusedByPlace) {
@@ -71,6 +72,38 @@ TEST(BoneDoubts, AFileThatIsNoneIsRefusedByPlace) {
       R"({"format": "arthronaut.bone_doubts", "version": 1, "bones": [{"kind": "fibula"}]})");
   EXPECT_THAT(test::message_of<InvalidInput>([&] { (void)load_bone_doubts(folder.path()); }),
               AllOf(HasSubstr("bone_doubts.json: bones[0].kind"), HasSubstr("femur or tibia")));
+}
+
+// Which parts of a bone nobody has seen: of one that was imported before that was recorded, nobody knows. A
+// cut that is not wide, and that the surface was looked at, are no doubts.
+TEST(BoneDoubts, SayWhereABoneIsUnseenAndWhetherAnybodyLooked) {
+  const bones::ImageCut narrow{.at_mm = {1, 2, 3}, .out = {0, 0, 1}, .area_mm2 = 60};
+  const bones::FilledHole hole{.at_mm = {4, 5, 6}, .across_mm = 9};
+  const bones::Bone imported{.kind = BoneKind::Femur, .mesh = {}, .source = "femur.stl"},
+      made{.mesh = {}, .source = "phantom knee"};
+  const BoneDoubts doubts{{BoneKind::Femur, {FilledHoles{{hole}}, narrow, SurfaceLookedAt{}}}};
+  EXPECT_EQ(unseen_parts_of(doubts, imported),
+            (bones::UnseenParts{.image_cuts = {narrow}, .filled_holes = {hole}}));
+  EXPECT_TRUE(is_note(narrow));
+  EXPECT_FALSE(is_note(bones::ImageCut{.area_mm2 = 120}));
+  EXPECT_TRUE(is_note(SurfaceLookedAt{}));
+  EXPECT_FALSE(unseen_parts_of({}, imported).was_looked_for);
+  EXPECT_FALSE(unseen_parts_of({{BoneKind::Femur, {narrow}}}, imported).was_looked_for);
+  EXPECT_TRUE(unseen_parts_of({}, made).was_looked_for) << "there is nothing to look for";
+}
+
+// A direction that is none would say of every place that the images end there, or of none.
+TEST(BoneDoubts, ACutWithoutADirectionIsRefusedByPlace) {
+  const test::TemporaryFolder folder;
+  for (const char* out : {"[0, 0, 0]", "[0, 0, 2]"}) {
+    files::write_atomically(
+        bone_doubts_file(folder.path()),
+        std::string(R"({"format": "arthronaut.bone_doubts", "version": 3, "bones": [{"kind": "femur",
+            "doubts": [], "side_doubts": [], "image_cuts": [{"at_mm": [1, 2, 3], "area_mm2": 500, "out": )") +
+            out + "}]}]}");
+    EXPECT_THAT(test::message_of<InvalidInput>([&] { (void)load_bone_doubts(folder.path()); }),
+                HasSubstr("bone_doubts.json: bones[0].image_cuts[0].out: is no unit vector"));
+  }
 }
 
 }  // namespace

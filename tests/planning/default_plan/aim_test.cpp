@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "planning/geometry/rigid_transform.h"
 #include "planning/landmarks/propose.h"
@@ -57,6 +58,42 @@ TEST(DefaultAim, IsTheSameHoweverTheSameSurfaceLies) {
   EXPECT_LT(geometry::deg_from_rad(
                 geometry::angle_between_rad(direction_of(turned), turn * direction_of(knee.femur))),
             kSame_deg);
+}
+
+// Where another direction leaves through bone that somebody has seen, none is taken that leaves where the
+// images end or through a hole that was filled in; where every one does, the default says so.
+TEST(DefaultAim, Hazard46LeavesWhereBoneWasSeen) {
+  const auto knee = phantom::make_phantom_knee({.edge_length_mm = 1.5});
+  for (const bones::Bone* bone : {&knee.femur, &knee.tibia}) {
+    const bool is_femur = bone->kind == BoneKind::Femur;
+    const geometry::Surface surface(bone->mesh);
+    BoneInput input{.bone = bone,
+                    .surface = &surface,
+                    .landmarks = is_femur ? knee.femur_landmarks : knee.tibia_landmarks,
+                    .states = {}};
+    const auto exit_of = [&](const DefaultTunnel& made) {
+      EXPECT_TRUE(made.is_usable()) << made.message;
+      return tunnels::measure(made.tunnel, surface).exit_mm;
+    };
+    const auto usual = plan_bone(input, Side::Right);
+    const Eigen::Vector3d usual_exit = exit_of(usual);
+    input.unseen.filled_holes = {{.at_mm = usual_exit, .across_mm = 4}};
+    const auto beside = plan_bone(input, Side::Right);
+    EXPECT_EQ(input.unseen.reached(exit_of(beside)), "") << bones::to_text(bone->kind);
+    EXPECT_EQ(beside.tunnel.entry_mm, usual.tunnel.entry_mm) << "the norm's place stays";
+    // Everything in front of the usual exit, or behind it.
+    for (const double front : {1.0, -1.0}) {
+      const Eigen::Vector3d out(0, -front, 0);
+      input.unseen = {.image_cuts = {{.at_mm = usual_exit - 0.5 * out, .out = out, .area_mm2 = 500}}};
+      EXPECT_EQ(input.unseen.reached(exit_of(plan_bone(input, Side::Right))), "")
+          << bones::to_text(bone->kind) << ' ' << front;
+    }
+    input.unseen = {.filled_holes = {{.at_mm = usual_exit, .across_mm = 60}}};
+    const auto anywhere = plan_bone(input, Side::Right);
+    EXPECT_TRUE(std::ranges::any_of(anywhere.failed, [](const tunnels::PlanCheck& check) {
+      return check.name == "Exit" && check.verdict == tunnels::PlanCheck::Verdict::NotChecked;
+    })) << "every direction leaves there";
+  }
 }
 
 }  // namespace

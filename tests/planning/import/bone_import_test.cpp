@@ -4,6 +4,7 @@
 #include <dcmtk/dcmdata/dctk.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,7 @@
 
 #include "planning/geometry/error.h"
 #include "planning/images/volume_writer.h"
+#include "planning/import/case_import.h"
 #include "planning/import/import_side.h"
 #include "planning/phantom/phantom_knee.h"
 #include "tests/message_of.h"
@@ -362,6 +364,17 @@ TEST(BoneImport, WhatIsNotSaidIsAskedFor) {
   options.threshold = 300;
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)import_bones(folder / "bone.stl", options); }),
               HasSubstr("volumes"));
+}
+
+// Into a pipe nobody may ever write: it is refused as what it is, whatever its name lacks.
+TEST(BoneImport, APipeIsRefusedAsOne) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "bone.stl").c_str(), 0600), 0);
+  EXPECT_THAT(message_of<IoError>([&] { (void)import_bones(folder / "bone.stl"); }),
+              HasSubstr("bone.stl: is a pipe"));
+  EXPECT_THAT(
+      message_of<IoError>([&] { refuse_missing_side(folder / "new.arthro", folder / "bone.stl", {}); }),
+      HasSubstr("bone.stl: is a pipe"));
 }
 
 }  // namespace

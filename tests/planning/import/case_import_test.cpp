@@ -185,13 +185,17 @@ TEST(CaseImport, Hazard46WhatSpokeAgainstABoneStaysWithTheCase) {
   const TemporaryFolder folder;
   BoneImport cut = imported(BoneKind::Femur);
   cut.bones[0].doubts = {"the images end within it"};
+  const bones::ImageCut narrow{.area_mm2 = 50};  // no doubt, and kept for what is planned there
+  cut.bones[0].image_cuts = {narrow};
+  cases::BoneDoubts all{{BoneKind::Femur, {cut.bones[0].doubts[0], narrow, cases::SurfaceLookedAt{}}}};
   add_to_case(folder / "a", cut, "", "ct");
-  const cases::BoneDoubts of_femur{{BoneKind::Femur, {cut.bones[0].doubts[0]}}};
-  EXPECT_EQ(cases::load_bone_doubts(folder / "a"), of_femur);
+  EXPECT_EQ(cases::load_bone_doubts(folder / "a"), all);
   add_to_case(folder / "a", imported(BoneKind::Tibia), "", "bone.stl");
-  EXPECT_EQ(cases::load_bone_doubts(folder / "a"), of_femur) << "a tibia changes nothing of it";
+  all[BoneKind::Tibia] = {cases::SurfaceLookedAt{}};
+  EXPECT_EQ(cases::load_bone_doubts(folder / "a"), all) << "a tibia changes nothing of it";
   add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
-  EXPECT_TRUE(cases::load_bone_doubts(folder / "a").empty());
+  all[BoneKind::Femur] = {cases::SurfaceLookedAt{}};
+  EXPECT_EQ(cases::load_bone_doubts(folder / "a"), all);
 }
 
 // That the side rests on a person's word alone stays with the case, whatever comes in place of its bones,

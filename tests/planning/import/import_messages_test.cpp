@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "planning/geometry/error.h"
+#include "planning/import/message_limits.h"
 #include "tests/planning/geometry/shapes.h"
 
 namespace arthronaut::importing {
@@ -111,6 +112,9 @@ TEST(ImportMessages, AListComesBackAsItWas) {
 TEST(ImportMessages, WhereTheImagesEndComesBackAsItWas) {
   EXPECT_EQ(import_from(contents_of(message_of(an_import()))).bones[0].image_cuts,
             an_import().bones[0].image_cuts);
+  BoneImport askew = an_import();
+  askew.bones[0].image_cuts[0].out *= 2;
+  EXPECT_THROW((void)import_from(contents_of(message_of(askew))), InvalidInput);
 }
 
 TEST(ImportMessages, APictureComesBackAsItWas) {
