@@ -42,6 +42,12 @@ Finding say(FemoralExit exit) {
       return {Verdict::Wrong, "out of the medial side: the wrong side"};
     case FemoralExit::IntoNotch:
       return {Verdict::Wrong, "into the notch"};
+    case FemoralExit::Front:
+      return {Verdict::Look, "out of the front of the femur, beneath the extensor muscles"};
+    case FemoralExit::Back:
+      return {Verdict::Wrong, "out of the back of the femur, towards the vessels"};
+    case FemoralExit::Above:
+      return {Verdict::Wrong, "up the shaft and out of its cut end"};
     case FemoralExit::JointSurface:
       break;
   }

@@ -99,12 +99,17 @@ FemoralExit femoral_exit(const geometry::Surface& femur, const TunnelGeometry& t
   if ((tunnel.exit_mm - tunnel.entry_on_surface_mm).dot(axes.lateral) <= 0 ||
       faces.dot(axes.lateral) < -sine(45))
     return FemoralExit::MedialSide;
+  const double height = tunnel.exit_mm.dot(axes.proximal) - extents.lowest_mm;
+  if (faces.dot(axes.proximal) > sine(60) && height > 0.5 * (extents.highest_mm - extents.lowest_mm))
+    return FemoralExit::Above;
   if (bone_along(femur, tunnel.exit_mm + kAbove_mm * faces, axes.lateral) > 0.1 * extents.width_mm())
     return FemoralExit::IntoNotch;
-  const double height = tunnel.exit_mm.dot(axes.proximal) - extents.lowest_mm;
   const bool is_low = height < 0.5 * extents.width_mm();
   if (is_low && (faces.dot(axes.proximal) < -sine(30) || std::abs(faces.dot(axes.lateral)) < sine(45)))
     return FemoralExit::JointSurface;
+  const double forwards = faces.dot(axes.anterior);
+  if (std::abs(forwards) > faces.dot(axes.lateral))
+    return forwards > 0 ? FemoralExit::Front : FemoralExit::Back;
   return FemoralExit::LateralCortex;
 }
 

@@ -39,11 +39,15 @@ enum class FemoralExit {
   MedialSide,    // of where it began, or out of a face that looks medially
   JointSurface,  // condyle or groove
   IntoNotch,     // more bone lies laterally of it
+  Front,         // of the shaft, under the extensor muscles
+  Back,          // of the shaft, towards the vessels
+  Above,         // the shaft's cut end
 };
 // Joint surface: less than half the bone's width above its lowest point, out of a face that looks downwards
 // (by more than 30 deg), or one that looks neither laterally nor medially (within 45 deg of straight on).
 // Into the notch: from 0.5 mm above the surface straight laterally there is a tenth of the bone's width of
-// bone or more.
+// bone or more. Above: a face that looks up by more than 60 deg in the upper half of the bone. In front and
+// behind: one that looks that way more than it looks laterally.
 [[nodiscard]] FemoralExit femoral_exit(const geometry::Surface& femur, const TunnelGeometry& tunnel,
                                        const landmarks::AnatomicalAxes& axes, const BoneExtents& extents);
 

@@ -11,6 +11,7 @@
 #include "planning/tunnels/knee_checks.h"
 #include "planning/tunnels/plan_checks.h"
 #include "planning/tunnels/portal.h"
+#include "planning/tunnels/tunnel_places.h"
 
 namespace arthronaut::tunnels {
 namespace {
@@ -143,6 +144,44 @@ TEST_P(AbsurdPlans, IntoTheNotchIsNotTheLateralCortex) {
   const auto exit = femur_.check(across, "Exit");
   EXPECT_EQ(exit.verdict, Verdict::Wrong);
   EXPECT_THAT(exit.text, ::testing::HasSubstr("into the notch"));
+}
+
+// Laterally of the entry, and yet out of the front of the femur.
+TEST_P(AbsurdPlans, TheFrontOfTheFemurIsNotTheLateralCortex) {
+  Tunnel forwards = knee_.femoral_tunnel;
+  forwards.direction = (0.30 * axes_.lateral + 0.85 * axes_.anterior + 0.42 * axes_.proximal).normalized();
+  const auto exit = femur_.check(forwards, "Exit");
+  EXPECT_EQ(exit.verdict, Verdict::Look) << exit.text;
+  EXPECT_THAT(exit.text, ::testing::HasSubstr("front of the femur"));
+}
+
+// A drill that comes out of the shaft, seen from where it does: along each side, and at its end.
+TEST_P(AbsurdPlans, EachSideOfTheShaftIsToldFromTheOthers) {
+  const auto& extents = femur_.known.extents;
+  const double height = 0.8 * (extents.highest_mm - extents.lowest_mm);
+  Vector3d middle = Vector3d::Zero();
+  int count = 0;
+  for (const auto& v : femur_.mesh.vertices_mm) {
+    if (std::abs(v.dot(axes_.proximal) - extents.lowest_mm - height) > 3) continue;
+    middle += v;
+    ++count;
+  }
+  ASSERT_GT(count, 0);
+  middle /= count;
+  const auto exit_along = [&](const Vector3d& direction) {
+    const auto hit = femur_.surface->first_hit(middle + 200 * direction, -direction);
+    EXPECT_TRUE(hit);
+    TunnelGeometry tunnel;
+    tunnel.entry_on_surface_mm = middle - 30 * axes_.lateral - 60 * axes_.proximal;
+    tunnel.exit_mm = tunnel.exit.at_mm = hit->point_mm;
+    tunnel.exit.normal = hit->normal;
+    return femoral_exit(*femur_.surface, tunnel, axes_, extents);
+  };
+  EXPECT_EQ(exit_along(axes_.lateral), FemoralExit::LateralCortex);
+  EXPECT_EQ(exit_along(axes_.anterior), FemoralExit::Front);
+  EXPECT_EQ(exit_along(-axes_.anterior), FemoralExit::Back);
+  EXPECT_EQ(exit_along(axes_.proximal), FemoralExit::Above);
+  EXPECT_EQ(exit_along(-axes_.lateral), FemoralExit::MedialSide);
 }
 
 TEST_P(AbsurdPlans, TibialOnes) {
