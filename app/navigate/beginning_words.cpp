@@ -1,6 +1,7 @@
 #include "app/navigate/beginning_words.h"
 
 #include "navigation/camera/medium.h"
+#include "planning/cases/case.h"
 #include "planning/files/format.h"
 #include "planning/files/local_time.h"
 #include "planning/files/typed_number.h"
@@ -81,6 +82,12 @@ CardLine registration_line(const recording::Resumable& left) {
               (left.was_verified ? ", was verified" : "") + "; guides after one touch on the bone"};
 }
 
+// By its number, as Review lists it: its day and time say nothing that "cut off 4 minutes ago" does not.
+std::string session_in_words(const std::string& id) {
+  const std::int64_t number = cases::session_number(id);
+  return number > 0 ? std::to_string(number) : id;
+}
+
 // Of the probe's tip and the guide's axis, one that nobody measured.
 bool has_nominal_tool(const pipeline::PipelineOptions& of) {
   const tools::Tool *const probe = of.tools.find_tool(of.probe_name), *const guide =
@@ -90,6 +97,10 @@ bool has_nominal_tool(const pipeline::PipelineOptions& of) {
 }
 
 }  // namespace
+
+bool is_fluid(double refractive_index) {
+  return refractive_index > (camera::kAirIndex + camera::kWaterIndex) / 2;
+}
 
 std::vector<CardLine> time_out_lines(const operation::OperationState& state, const std::string& patient,
                                      const plan_review::TunnelVerdict& verdict) {
@@ -112,7 +123,9 @@ std::vector<CardLine> time_out_lines(const operation::OperationState& state, con
 // What is asked, and how it is answered, stands above it as the next step.
 Card time_out_card(const operation::OperationState& state, const std::string& patient,
                    const plan_review::TunnelVerdict& verdict) {
-  Card card{"navigate.time_out", "", time_out_lines(state, patient, verdict), ""};
+  Card card{"navigate.time_out", "", time_out_lines(state, patient, verdict),
+            std::string("V: in ") + (is_fluid(state.source->pipeline.refractive_index) ? "air" : "saline") +
+                " instead"};
   for (CardLine& line : card.lines) {
     if (line.topic == CardLine::Topic::Plan) line.text = plan_in_words(state.plan) + in_full(verdict);
     if (line.topic != CardLine::Topic::CameraAndTools) continue;
@@ -133,7 +146,8 @@ Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedT
   const operation::ResumeOperation& was = found.operation;
   Card card{"navigate.resume", "", {}, "Page up or Esc: begin afresh"};
   card.lines.push_back({Severity::Quiet, "Session",
-                        was.session + ", " + std::string(bones::to_text(found.header.bone)) + ", " +
+                        session_in_words(was.session) + ", " +
+                            std::string(bones::to_text(found.header.bone)) + ", " +
                             (found.was_finished ? "ended " : "cut off ") + ago(now - found.last_written)});
   card.lines.push_back(
       {Severity::Quiet, "Source",

@@ -28,6 +28,9 @@ struct Card {
   std::string keys;  // other answers than the pedal's; may be empty
 };
 
+// Water or saline, and not air.
+[[nodiscard]] bool is_fluid(double refractive_index);
+
 // Patient, knee, plan, camera, tools and medium, in the order in which they are read out. `patient`: in
 // words; empty: not known. verdict: of the plan. Precondition: a source was started.
 [[nodiscard]] std::vector<CardLine> time_out_lines(const operation::OperationState& state,

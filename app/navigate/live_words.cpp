@@ -84,7 +84,7 @@ std::string words_without_pictures(theatre::SourceTrouble trouble, NextAction ac
       // Somebody has to do something about it: no waiting ends that. What it was stands in the panel.
       return changed_to_px ? "format changed to " + sources::size_in_words(*changed_to_px) +
                                  ": set the processor back, or choose the camera (K)"
-                           : "wait: no picture comes";
+                           : "look after cable and camera: no picture comes";
     case theatre::SourceTrouble::Plain:
       return "look after light and camera: the picture is plain";
     case theatre::SourceTrouble::Frozen:

@@ -136,9 +136,15 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                false,
                {},
                [this] { return choices_.overlay_on; },
-               // While a camera or a tunnel is chosen the third pedal goes on to the next one.
+               // While a camera or a tunnel is chosen, or the medium is confirmed, the third pedal goes on to
+               // the next one.
                [this] {
                  if (cameras_.is_open()) return cameras_.choose_next_offered();
+                 if (choices_.asked == Question::TimeOut) {
+                   if (choices_.was_asked_for(theatre::LiveOperation::now_s(), kReadable_s))
+                     take_other_medium();
+                   return;
+                 }
                  if (model_ != nullptr && bones_.must_choose(choices_.bone)) {
                    ++choices_.offered_tunnel;
                    return;

@@ -15,6 +15,9 @@
 
 namespace arthronaut::navigate {
 
+// Of what a press would say for the surgeon.
+inline constexpr double kReadable_s = 1.5;
+
 // What is asked on a card of its own, in the place of the numbers.
 enum class Question { None, Resume, TimeOut, Finish };
 
@@ -51,6 +54,11 @@ struct NavigateChoices {
     if (step == pedal) return;
     pedal = step;
     pedal_since_s = now_s;
+  }
+
+  // What is asked of the surgeon now stood there for so long.
+  [[nodiscard]] bool was_asked_for(double now_s, double seconds) const {
+    return now_s - pedal_since_s >= seconds;
   }
 
   [[nodiscard]] bones::BoneKind other_bone() const {

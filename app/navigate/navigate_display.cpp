@@ -278,8 +278,10 @@ NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s
   if (state.guided_lately) return NavigateLayout::Guide;
   const bool is_of_now = looked_at ? is_of_probe(*looked_at) : asks_for_probe(state);
   if (is_of_now || since_touch_s < kTouchIsRead_s) return NavigateLayout::Register;
-  // Once it was aimed by it, strokes that may go on are not what is looked at.
-  return state.drilled.has_evidence || !state.draws ? NavigateLayout::Guide : NavigateLayout::Register;
+  // Once touches have verified it, or it was aimed by, strokes that may go on are not what is looked at.
+  const bool is_behind =
+      state.drilled.has_evidence || state.verification == operation::Verification::ByTouches;
+  return is_behind || !state.draws ? NavigateLayout::Guide : NavigateLayout::Register;
 }
 
 bool is_live(const theatre::LiveState* live, double now_s) {

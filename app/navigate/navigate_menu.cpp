@@ -28,7 +28,9 @@ TheatreLayout NavigateView::layout_in(const widgets::Ui& ui, const widgets::Rect
   options.scale = ui.theme.scale;
   options.afar_px = ui.theme.afar->FontSize;
   options.number_px = ui.theme.number->FontSize;
-  options.guides = layout(theatre::LiveOperation::now_s()) == NavigateLayout::Guide;
+  const double now = theatre::LiveOperation::now_s();
+  options.guides = layout(now) == NavigateLayout::Guide;
+  options.has_target = now - choices_.guidance_seen_s <= kGuideAway_s;
   options.is_whole_window = takes_window();
   options.has_buttons = !options.is_whole_window;
   return theatre_layout(area, options);

@@ -12,10 +12,6 @@ namespace arthronaut::navigate {
 using operation::NextAction;
 using Phase = theatre::LiveState::Phase;
 
-namespace {
-constexpr double kReadable_s = 1.5;  // of what a press would say for the surgeon
-}  // namespace
-
 const LeftBehind* NavigateView::left_behind() {
   const bool has_begun = live_->phase != Phase::NoSource || live_->operation->resumed != nullptr;
   return has_begun ? nullptr : resume_.of(choices_.bone);
@@ -79,6 +75,7 @@ PedalContext NavigateView::pedal_context() {
   context.stops_once_open = started_.stops_once_open();
   context.can_take_guide = is_running() && holds_simulated_probe() && can_simulate();
   if (is_running() && holds_simulated_probe()) context.hand_rests = resting_.rests();
+  context.may_change_medium = may_change_medium();
   context.must_set_up = must_set_up();
   context.start = words_of_start();
   return context;
@@ -128,7 +125,7 @@ std::string NavigateView::missing_now(const PedalStep& step, const Rail& rail) {
 
 bool NavigateView::acts_now(const PedalStep& step) const {
   const bool was_read =
-      step == choices_.pedal && theatre::LiveOperation::now_s() - choices_.pedal_since_s >= kReadable_s;
+      step == choices_.pedal && choices_.was_asked_for(theatre::LiveOperation::now_s(), kReadable_s);
   return acts(step) && (!must_be_read(step) || was_read);
 }
 
@@ -153,6 +150,8 @@ void NavigateView::take_next_step() {
       return choose_tunnel(step.tunnel->bundle);
     case Kind::Finish:
       return finish_step(step.finish);
+    case Kind::ChangeMedium:
+      return take_other_medium();
     case Kind::PlanTunnel:
       return go_elsewhere_(Elsewhere::Plan);
     case Kind::TakePlanOver:
@@ -195,6 +194,24 @@ void NavigateView::act(operation::NextAction action) {
     default:
       return;  // a step of another kind, or none that a pedal does
   }
+}
+
+// The simulated scope has one medium, and a lent source is not ended here.
+bool NavigateView::may_change_medium() const {
+  const auto& source = live_->operation->source;
+  return is_running() && !lent_ && source != nullptr && source->kind != sources::SourceKind::Simulation;
+}
+
+// What a source looks through belongs to it from its first picture on: they end, and the next ones, which the
+// pedal begins, look through the other medium.
+void NavigateView::take_other_medium() {
+  if (!may_change_medium()) return;
+  const pipeline::MediumVerdict& seen = live_->operation->medium;
+  choices_.saline = seen.fit == pipeline::MediumFit::Contradicts
+                        ? is_fluid(seen.other_index)
+                        : !is_fluid(live_->operation->source->pipeline.refractive_index);
+  end_source();
+  notice_ = std::string("The next pictures look through ") + (choices_.saline ? "saline" : "air");
 }
 
 // Both void all that was found. That the marker was placed anew is recorded where something says so.

@@ -1,6 +1,7 @@
 // What the theatre screen asks, and what it tells the tests.
 #include "app/navigate/navigate_view.h"
 #include "app/navigate/tracking_words.h"
+#include "navigation/camera/medium.h"
 
 namespace arthronaut::navigate {
 
@@ -102,6 +103,10 @@ void NavigateView::note_states(const widgets::Ui& ui, const NavigateScreen& scre
   ui.log.note_state("view", choices_.undistorts ? "undistorted" : "as it came");
   ui.log.note_state("next", screen.next_step);
   ui.log.note_state("missing", screen.missing);
+  ui.log.note_state("medium",
+                    screen.has_source()
+                        ? camera::medium_to_text(screen.live->operation->source->pipeline.refractive_index)
+                        : "");
   ui.log.note_state("calibration", screen.has_source() ? screen.live->operation->source->calibration : "");
   ui.log.note_state("notice", notice_);
   ui.log.note_state("layout", screen.layout == NavigateLayout::Register ? "register" : "guide");

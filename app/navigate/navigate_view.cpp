@@ -393,16 +393,10 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   // Where nothing is registered there is nobody to coach.
   const bool is_all_scene =
       screen.is_exercise && screen.layout == NavigateLayout::Register && layout.scene_is_in_block;
-  // While nothing guides, nor did so a moment ago, the target's empty room shows the bone.
-  const bool has_no_target = screen.layout == NavigateLayout::Guide && layout.scene_is_in_block &&
-                             layout.scene.x == layout.target.x &&
-                             now - choices_.guidance_seen_s > kGuideAway_s;
-  const widgets::Rect in_place_of_target{layout.target.x, layout.target.y, layout.target.width,
-                                         layout.scene.y + layout.scene.height - layout.target.y};
   if (!is_covered || !layout.scene_is_in_block)
-    scene_.draw(ui, is_all_scene ? layout.block : has_no_target ? in_place_of_target : layout.scene, screen);
+    scene_.draw(ui, is_all_scene ? layout.block : layout.scene, screen);
   if (!is_covered && !is_all_scene) {
-    if (screen.layout == NavigateLayout::Guide && !has_no_target) draw_bullseye(ui, layout.target, screen);
+    if (layout.target.width > 0) draw_bullseye(ui, layout.target, screen);
     if (screen.layout == NavigateLayout::Register)
       draw_registration(ui, layout.main, screen);
     else if (screen.display.guidance_is_valid)

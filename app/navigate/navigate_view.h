@@ -107,6 +107,8 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] bool marker_is_out(bones::BoneKind bone) const;
   void finish_step(FinishAction action);
   void find_anew();
+  [[nodiscard]] bool may_change_medium() const;
+  void take_other_medium();
   // Another pedal: one step back, to do it again; after the first step the one of now is shown again.
   void take_step_back();
   [[nodiscard]] Repeat repeat_of(operation::Step step) const;

@@ -2,6 +2,7 @@
 
 #include "app/navigate/live_words.h"
 #include "app/navigate/navigate_display.h"
+#include "navigation/camera/medium.h"
 
 namespace arthronaut::navigate {
 
@@ -131,6 +132,9 @@ PedalStep pedal_step(const theatre::LiveState& live, const PedalContext& context
     case Kind::Finish:
       step.finish = finish_action(context.bones, context.bone, is_under_way(live));
       break;
+    case Kind::ChangeMedium:
+      if (context.may_change_medium) step.medium = camera::medium_to_text(state.medium.other_index);
+      break;
     case Kind::TakePlanOver:
       step.plan = state.edited_plan;
       step.plan_verdict = context.edited_verdict;
@@ -174,7 +178,9 @@ std::string words_of(const PedalStep& step, const theatre::LiveState& live, cons
     case Kind::WaitForPicture:
       return context.stops_once_open ? "wait: it stops once it is open" : "wait for the first picture";
     case Kind::ChangeMedium:
-      return kWrongMedium;
+      return step.medium.empty()
+                 ? kWrongMedium
+                 : "the pictures look like " + step.medium + ": end them, and take " + step.medium + " next";
     case Kind::WaitForPictures:
       return words_without_pictures(live.trouble, step.action, live.changed_to_px);
     case Kind::PlanTunnel:
@@ -206,9 +212,10 @@ bool acts(const PedalStep& step) {
     case Kind::Exercise:
     case Kind::WaitForEnd:
     case Kind::WaitForPicture:
-    case Kind::ChangeMedium:
     case Kind::WaitForPictures:
       return false;
+    case Kind::ChangeMedium:
+      return !step.medium.empty();
     case Kind::OpenPictures:
     case Kind::Resume:
     case Kind::ChooseTunnel:
@@ -243,6 +250,7 @@ bool must_be_read(const PedalStep& step) {
   switch (step.kind) {
     case Kind::ChooseTunnel:
     case Kind::Finish:
+    case Kind::ChangeMedium:
     case Kind::TakePlanOver:
     case Kind::FindAnew:
       return true;

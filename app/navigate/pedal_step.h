@@ -26,8 +26,8 @@ struct PedalStep {
     GoBackTo,  // a step that is done again
     ChooseTunnel,
     Finish,
-    WaitForPicture,  // the first one
-    ChangeMedium,
+    WaitForPicture,   // the first one
+    ChangeMedium,     // the pictures contradict it: they end, and the next ones look through the other one
     WaitForPictures,  // that show something
     PlanTunnel,
     TakePlanOver,
@@ -44,6 +44,7 @@ struct PedalStep {
   Repeat repeat = Repeat::NothingNow;                                // likewise
   bool is_shown = false;  // likewise: what it would show is on the screen
   FinishAction finish = FinishAction::Nothing;
+  std::string medium;                            // of ChangeMedium, to take; empty: none can be taken
   std::optional<tunnels::TunnelKey> tunnel;      // to choose
   std::optional<operation::PlannedTunnel> plan;  // to take over, or that Act is done by
   tunnels::PlanCheck::Verdict plan_verdict = tunnels::PlanCheck::Verdict::Fine;  // of one to take over
@@ -69,6 +70,7 @@ struct PedalContext {
   bool stops_once_open = false;
   bool can_take_guide = false;     // the simulation of the probe runs, and that of the guide can
   std::optional<bool> hand_rests;  // the simulated one, where it holds the probe
+  bool may_change_medium = false;  // its pictures can be begun again in another one
   bool must_set_up = false;
   std::string start;  // how pictures are begun: "open the camera again"
 };

@@ -7,6 +7,22 @@
 
 namespace arthronaut::navigate {
 
+namespace {
+
+// The second of two screens, of which `column` is left for what is read: the target is a square of its
+// height, or as wide as the column leaves it; the 3D view stands in what is left below it, else beside the
+// numbers.
+void cut_second_screen(TheatreLayout& layout, widgets::Rect& column, const TheatreLayoutOptions& options,
+                       float least_column, float gap) {
+  const float side = std::min(column.height, column.width - gap - least_column);
+  layout.block = column.cut_left(side, gap);
+  layout.scene = layout.block;
+  if (!options.guides || !options.has_target) return;
+  layout.target = layout.scene.cut_top(side, gap);
+}
+
+}  // namespace
+
 TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptions& options) {
   const float gap = std::round(12 * options.scale), afar = options.afar_px;
   TheatreLayout layout;
@@ -24,6 +40,7 @@ TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptio
   const bool is_tall = !is_two && below > 5 * afar;  // as a screen of 4:3 is
   layout.video = {left.x + (left.width - side) / 2, is_tall ? left.y : left.y + below / 2, side, side};
 
+  if (is_two) cut_second_screen(layout, rest, options, least_column, gap);
   // Side, patient and what is to be said now stand one below the other: a title and two lines.
   if (options.is_whole_window)
     layout.header =
@@ -31,6 +48,17 @@ TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptio
   layout.rail = rest.cut_top(1.25F * afar + 32 * options.scale, gap);
   layout.words = rest.cut_top(34 * options.scale + 3.1F * afar, gap);
   layout.states = rest.cut_bottom(44 * options.scale, gap);
+  // "12.3 posterior" is 6.8 letters' heights wide.
+  const float numbers_width = 6.8F * afar + 28 * options.scale;
+  if (is_two) {
+    const bool has_room_below = layout.scene.height > 5 * afar;
+    layout.scene_is_in_block = has_room_below;
+    layout.main = rest;
+    if (has_room_below) return layout;
+    layout.main = rest.cut_right(numbers_width, gap);
+    layout.scene = rest;
+    return layout;
+  }
   layout.block = rest;
   layout.scene_is_in_block = !is_tall;
   // Where the window is taller than the picture, the 3D view stands under it, else in the column.
@@ -40,21 +68,15 @@ TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptio
     const float numbers = 5 * afar + 3 * options.number_px + 32 * options.scale;
     if (options.guides) layout.target = rest.cut_top(std::min(rest.width, rest.height - gap - numbers), gap);
     layout.main = rest;
-  } else if (options.guides && is_two) {
-    // A screen of its own is wide: what is aimed by is as high as its room, the 3D view stands beside it.
-    layout.target = rest.cut_left(std::min(rest.height, rest.width * 0.4F), gap);
-    layout.scene = rest.cut_left(rest.width * 0.4F, gap);
-    layout.main = rest;
   } else if (options.guides) {
-    // What is aimed by is as large as the numbers beside it allow: "12.3 posterior" is 6.8 letters' heights
-    // wide.
-    const float numbers = 6.8F * afar + 28 * options.scale;
-    widgets::Rect column = rest.cut_left(std::min(rest.width - gap - numbers, rest.height * 0.8F), gap);
-    layout.target = column.cut_top(std::min(column.width, column.height * 0.62F), gap);
+    // What is aimed by is as large as the numbers beside it allow.
+    widgets::Rect column = rest.cut_left(std::min(rest.width - gap - numbers_width, rest.height * 0.8F), gap);
+    if (options.has_target)
+      layout.target = column.cut_top(std::min(column.width, column.height * 0.62F), gap);
     layout.scene = column;
     layout.main = rest;
   } else {
-    layout.scene = is_two ? rest.cut_left(rest.width * 0.45F, gap) : rest.cut_top(rest.height * 0.4F, gap);
+    layout.scene = rest.cut_top(rest.height * 0.4F, gap);
     layout.main = rest;
   }
   return layout;

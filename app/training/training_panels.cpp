@@ -2,8 +2,10 @@
 // theatre's screen, the score.
 #include <algorithm>
 
+#include "app/training/contact_words.h"
 #include "app/training/training_view.h"
 #include "navigation/training/exercise_step.h"
+#include "planning/cases/case.h"
 #include "planning/files/format.h"
 #include "planning/files/local_time.h"
 
@@ -63,26 +65,14 @@ void draw_points(const widgets::Ui& ui, const widgets::Rect& plot, const std::ve
   }
 }
 
-// What a hand feels and keys do not: whether the tip, or the guide's point, is on the bone. This is what the
-// simulator knows and no theatre does, which is why it stands here, and not in the theatre's own picture.
-// Returns where the next word begins.
-float draw_contact(const widgets::Ui& ui, float x, float y, const simulator::HandState& hand, bool draws) {
-  const bool is_air_drawn = hand.held == simulator::Held::Probe && draws && !hand.touches_bone;
-  const std::string words =
-      hand.touches_bone
-          ? "On the bone"
-          : format(is_air_drawn ? "DRAWING IN THE AIR, %.0f mm off the bone" : "%.0f mm off the bone",
-                   std::max(1.0, std::round(hand.off_bone_mm)));
-  const widgets::Severity severity = hand.touches_bone ? widgets::Severity::Good
-                                     : is_air_drawn    ? widgets::Severity::Bad
-                                                       : widgets::Severity::Quiet;
+// What the simulator knows and no theatre does, which is why it stands here, and not in the theatre's own
+// picture. Returns where the next word begins.
+float draw_contact(const widgets::Ui& ui, float x, float y, const ContactWords& contact) {
   ImFont* const font = ui.theme.strong;
   const float sign = font->FontSize * 0.4F;
-  widgets::draw_sign(*ImGui::GetWindowDrawList(), {x + sign, y + font->FontSize / 2}, sign, severity);
-  put(font, x + ui.theme.px(30), y, widgets::color_of(severity), words);
-  ui.log.note_state("train_contact", hand.touches_bone ? "bone"
-                                     : is_air_drawn    ? "drawing in the air"
-                                                       : "air");
+  widgets::draw_sign(*ImGui::GetWindowDrawList(), {x + sign, y + font->FontSize / 2}, sign, contact.severity);
+  put(font, x + ui.theme.px(30), y, widgets::color_of(contact.severity), contact.text);
+  ui.log.note_state("train_contact", contact.text);
   // As wide as the longest of the words, so that what stands beside it does not jump.
   const std::string longest = "DRAWING IN THE AIR, 00 mm off the bone";
   return x + ui.theme.px(60) + font->CalcTextSizeA(font->FontSize, 1e9F, 0, longest.c_str()).x;
@@ -223,10 +213,16 @@ void TrainingView::draw_strip(const widgets::Ui& ui, const widgets::Rect& area) 
                       run_->setup.plan_length_mm);
     words += training::ways_of_keys(truth->hand, opened_->model->axes(run_->setup.exercise.bone));
   }
+  const auto first = truth ? run_->watch->log()->at(0) : std::nullopt;
+  const bool has_moved = first && (truth->hand.probe_tip_mm - first->hand.probe_tip_mm).norm() +
+                                          (truth->hand.guide_point_mm - first->hand.guide_point_mm).norm() >
+                                      2;
+  // Of a probe whose tip is not known no stroke is taken, on the bone or off it.
+  const bool draws = live->operation->draws && live->operation->frame.tip_is_valid;
   const float first_y = area.y + ui.theme.px(10);
-  const float end_x =
-      truth ? draw_contact(ui, area.x + ui.theme.px(14), first_y, truth->hand, live->operation->draws)
-            : area.x + ui.theme.px(14);
+  const float end_x = truth ? draw_contact(ui, area.x + ui.theme.px(14), first_y,
+                                           contact_words(truth->hand, draws, has_moved))
+                            : area.x + ui.theme.px(14);
   put(ui.theme.strong, end_x, first_y, widgets::kText, words);
   put(ui.theme.body, area.x + ui.theme.px(14), area.y + ui.theme.px(46), widgets::kQuietText,
       "Tool: A D W S, Q nearer, E away   Handle: J L I K, U nearer, O away   Held: B finely, Shift the "
@@ -237,12 +233,7 @@ void TrainingView::draw_strip(const widgets::Ui& ui, const widgets::Rect& area) 
                     truth ? (truth->hand.held == simulator::Held::Probe ? "probe" : "guide") : "");
   ui.log.note_state("train_rate", format("%.1f", live->frames_per_second));
   ui.log.note_state("train_time", truth ? format("%.1f", truth->time_s) : "");
-  const auto first = truth ? run_->watch->log()->at(0) : std::nullopt;
-  if (first) {
-    const double way_mm = (truth->hand.probe_tip_mm - first->hand.probe_tip_mm).norm() +
-                          (truth->hand.guide_point_mm - first->hand.guide_point_mm).norm();
-    ui.log.note_state("train_moved", way_mm > 2 ? "yes" : "no");
-  }
+  if (first) ui.log.note_state("train_moved", has_moved ? "yes" : "no");
 }
 
 void TrainingView::draw_score(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -285,7 +276,7 @@ void TrainingView::draw_score(const widgets::Ui& ui, const widgets::Rect& area) 
   if (score.better.empty()) widgets::text_in(ui.theme.body, widgets::kGood, "Nothing: all points.");
   if (!score.session.empty())
     widgets::text_in(ui.theme.body, widgets::kQuietText,
-                     "Recorded as session " + score.session + " (F3, Review).");
+                     "Recorded: F3, Review, " + std::to_string(cases::session_number(score.session)) + ".");
   else if (exercise->goal == training::Goal::Calibrate)
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      "Calibrating is no operation: the score is kept, no session and no camera is.");

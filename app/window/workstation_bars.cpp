@@ -106,13 +106,16 @@ std::pair<std::string, bool> WorkstationWindow::status_words() {
   if (!notice.empty()) return {copied.empty() ? notice : notice + ".  " + copied, true};
   if (!copied.empty()) return {copied, true};
   if (case_ == nullptr || opens_another()) return {room_.trouble(), !room_.trouble().empty()};
-  const std::string access =
-      case_->is_read_only() ? "READ-ONLY: the case " + case_->read_only_reason() : case_->notice();
+  if (case_->is_read_only()) return {"READ-ONLY: the case " + case_->read_only_reason(), true};
   // A pedal that will not do what it was told to is not to be found out in the operation.
-  const std::string trouble = room_.trouble();
-  if (!trouble.empty() && !case_->is_read_only()) return {trouble, true};
-  if (!access.empty()) return {access, true};
-  return {case_->folder().string(), false};
+  if (const std::string trouble = room_.trouble(); !trouble.empty()) return {trouble, true};
+  // No warning, and in the words of whoever works with the case: nothing is to be done about it, and what can
+  // be resumed is offered.
+  const std::string notice_of_case = case_->notice();
+  if (notice_of_case.empty()) return {case_->folder().string(), false};
+  return {case_->left_by_crash_since().empty() ? notice_of_case
+                                               : "Not closed the last time: all that was saved is here",
+          false};
 }
 
 void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -191,6 +194,7 @@ void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Re
   draw.AddText(font, font->FontSize, {area.x + edge, y}, widgets::kQuietText, kNotice);
   ui.log.note("app.notice", {area.x + edge, y}, {area.x + standing, y + font->FontSize});
   const auto [text, warns] = status_words();
+  ui.log.note_state("status", (warns ? "warns: " : "") + text);
   // Beside what always stands there. Of a folder its end tells which it is; a warning stands whole, in
   // smaller letters where it is long.
   const float room = area.width - standing - 2 * edge;

@@ -99,6 +99,13 @@ std::string number(double value, Measure measure) {
   return format(digits, value) + (unit == "deg" ? "\u00B0" : unit == "%" ? " %" : " " + std::string(unit));
 }
 
+// "all points at 1.0 mm or less, no points from 4.0 mm on".
+std::string in_words(const Mark& mark) {
+  const std::string best = number(mark.good, mark.measure);
+  return "all points at " + (mark.good > 0 ? best + " or less" : best) + ", no points from " +
+         number(mark.limit, mark.measure) + " on";
+}
+
 std::string what_was_found(Measure measure, double value, const ExerciseFacts& facts) {
   const std::string said = number(value, measure);
   switch (measure) {
@@ -122,9 +129,10 @@ std::string what_was_found(Measure measure, double value, const ExerciseFacts& f
       return format("Pictures taken: %d, refused: %d", static_cast<int>(facts.coverage.size()),
                     facts.refused_pictures);
     case Measure::Verification:
-      return facts.verification_was_skipped         ? std::string("The verification was skipped")
-             : facts.verifying_touches_missing == 0 ? std::string("Touches have verified the registration")
-                                                    : "Verifying touches missing: " + said;
+      return facts.verifying_touches_missing == 0 && !facts.verification_was_skipped
+                 ? std::string("Touches have verified the registration")
+                 : (facts.verification_was_skipped ? "The verification was skipped; v" : "V") +
+                       ("erifying touches missing: " + said);
     case Measure::WastedTouches:
       return format("Touches: %d, of which told nothing: %d", facts.touches, facts.wasted_touches);
     case Measure::DrawnInAir:
@@ -248,8 +256,7 @@ ScorePart part_of(const Mark& mark, Goal goal, const ExerciseFacts& facts) {
     if (share >= 1)
       part.reason += ": all points.";
     else
-      part.reason += "; up to " + number(mark.good, mark.measure) + " gives all points, from " +
-                     number(mark.limit, mark.measure) + " on none.";
+      part.reason += " (" + in_words(mark) + ").";
     if (share <= 0) part.caps_at = mark.caps_at;
   }
   // What never began is not to be done better, but to be done.
@@ -268,8 +275,8 @@ void count_how_only_where_reached(Goal goal, const ExerciseFacts& facts, std::ve
   for (ScorePart& part : parts) {
     if (!tells_how(part.measure) || !part.value) continue;
     part.points = 0;
-    part.reason = what_was_found(part.measure, *part.value, facts) +
-                  "; how it was done counts where something was reached.";
+    part.reason =
+        what_was_found(part.measure, *part.value, facts) + ": no points, as the goal was not reached.";
   }
 }
 

@@ -18,8 +18,7 @@ struct ScorePart {
   double good = 0, limit = 0;   // see Mark
   double points = 0, most_points = 0;
   std::optional<double> caps_at;  // it holds the whole score at no more than this; see Mark
-  std::string
-      reason;  // "The entry is 1.3 mm off the plan; up to 1.0 mm gives all points, from 4.0 mm on none."
+  std::string reason;  // "The axis is 4.0 deg off the plan's (all points at 2.0 deg or less, no points ...)."
   std::string advice;  // what to do better; empty where all points were earned
 };
 

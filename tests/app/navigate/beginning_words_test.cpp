@@ -51,6 +51,8 @@ TEST(TimeOutCard, Hazard20NamesPatientKneePlanCameraToolsAndMedium) {
   EXPECT_EQ(wrong.text, "saline, but the markers look as in air");
   EXPECT_EQ(wrong.severity, Severity::Bad);
   EXPECT_EQ(line_of(card, "Plan").topic, CardLine::Topic::Plan);
+  // It is confirmed there, so it can be changed there, by the pedal that has nothing else to do then.
+  EXPECT_EQ(time_out_card(state, "", {}).keys, "V: in air instead");
   EXPECT_EQ(line_of(time_out_card(state, "", {}), "Patient").severity, Severity::Caution);
   state.plan.reset();
   EXPECT_EQ(line_of(time_out_card(state, "", {}), "Plan").text, "none");
@@ -169,7 +171,7 @@ TEST(ResumeCard, SaysWhichTunnelIsDrilled) {
 // What would be brought back, before it is: bone, time, source, registration, strokes, touches, plan, camera.
 TEST(ResumeCard, Hazard12SaysAllThatWouldBeBroughtBack) {
   const Card card = card_of(left_behind());
-  EXPECT_EQ(line_of(card, "Session").text, "0007-20260131-120000, femur, cut off 4 minutes ago");
+  EXPECT_EQ(line_of(card, "Session").text, "7, femur, cut off 4 minutes ago");
   EXPECT_EQ(line_of(card, "Source").text, "live: Scope 30");
   EXPECT_EQ(line_of(card, "Registration").text,
             "\u00B1 0.4 mm, was verified; guides after one touch on the bone");
@@ -191,7 +193,7 @@ TEST(ResumeCard, Hazard16TellsWhatIsNotBroughtBackAndWhy) {
   left.found.was_finished = true;
   left.passed_over = {"0008/session.json: broken"};
   const Card card = card_of(left, std::chrono::hours(3 * 24));
-  EXPECT_EQ(line_of(card, "Session").text, "0007-20260131-120000, femur, ended 3 days ago");
+  EXPECT_EQ(line_of(card, "Session").text, "7, femur, ended 3 days ago");
   EXPECT_EQ(line_of(card, "Registration").severity, Severity::Bad);
   EXPECT_EQ(line_of(card, "Registration").text,
             "is not brought back: it was in doubt at the end: The control point has moved by 3.0 mm");

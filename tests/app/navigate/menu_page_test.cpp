@@ -44,7 +44,8 @@ TEST(MenuPage, TheStatesKeepTheirRoom) {
     const float afar = widgets::afar_px({width, height, 0}, scale);
     const widgets::Rect area =
         widgets::Rect{0, 0, static_cast<float>(width), static_cast<float>(height)}.inset(12 * scale);
-    const widgets::Rect block = theatre_layout(area, {scale, afar, 64 * scale, false, true, false}).block;
+    const widgets::Rect block =
+        theatre_layout(area, {scale, afar, 64 * scale, false, true, true, false}).block;
     for (const bool shows_more : {false, true}) {
       widgets::Rect buttons = block;
       const Ids ids = menu_page(shows_more, always);

@@ -145,6 +145,11 @@ TEST(NavigateDisplay, TheLayoutFollowsWhatIsDone) {
   shown.operation.drilled.has_evidence = true;
   EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Guide) << "it was aimed by";
   shown.operation.drilled.has_evidence = false;
+  shown.operation.next_action = operation::NextAction::BringGuide;
+  EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Register) << "it may go on";
+  shown.operation.verification = operation::Verification::ByTouches;
+  EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Guide) << "the last touch has verified it";
+  shown.operation.verification = operation::Verification::NotYet;
   shown.operation.draws = false;
   shown.operation.next_action = operation::NextAction::BringGuide;
   EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Guide);

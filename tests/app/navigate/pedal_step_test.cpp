@@ -54,6 +54,19 @@ TEST(PedalStep, AsksForNoTakeOverThatAPressWouldNotDo) {
   EXPECT_FALSE(acts(theatre.step()));
 }
 
+// Nobody in theatre has a hand for a keyboard: where the pictures can be begun again in the medium that they
+// look like, a press ends them for that, once it was read.
+TEST(PedalStep, TakesTheMediumThatThePicturesLookLike) {
+  AtThePedal theatre(NextAction::FollowBullseye);
+  theatre.shown.operation.medium = {
+      .fit = pipeline::MediumFit::Contradicts, .stated_index = 1, .other_index = 1.3345};
+  EXPECT_FALSE(acts(theatre.step()));
+  theatre.context.may_change_medium = true;
+  EXPECT_EQ(theatre.words(), "the pictures look like saline: end them, and take saline next");
+  EXPECT_TRUE(acts(theatre.step()));
+  EXPECT_TRUE(must_be_read(theatre.step()));
+}
+
 // The other way round: where a press takes over the plan of an operation that began without one, it is said.
 TEST(PedalStep, SaysThatAPressTakesOverTheFirstPlan) {
   AtThePedal theatre(NextAction::PlanTunnel);

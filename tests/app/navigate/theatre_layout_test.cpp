@@ -46,7 +46,7 @@ struct Screen {
   ~Screen() { ImGui::DestroyContext(); }
   [[nodiscard]] TheatreLayout layout(bool guides, bool is_whole = true) const {
     return theatre_layout(
-        area, {theme.scale, theme.afar->FontSize, theme.number->FontSize, guides, is_whole, !is_whole});
+        area, {theme.scale, theme.afar->FontSize, theme.number->FontSize, guides, true, is_whole, !is_whole});
   }
   widgets::Theme theme;
   Rect area;
@@ -66,6 +66,7 @@ std::vector<std::string> all_words() {
       "when the tunnel femur PL is drilled: say so",
       "then the tunnel femur PL (2), or take the world marker out",
       "resume the operation that was left",
+      "the pictures look like saline: end them, and take saline next",
       "start the simulated operation",
       "take the guide (simulation)",
       "the pictures have ended: start the simulated operation",
@@ -168,15 +169,40 @@ TEST(TheatreLayout, AcrossTwoScreensNothingLiesOnTheSeam) {
   }
 }
 
-// Two screens have room: what is aimed by is as high as it, not a corner beside an empty panel.
-TEST(TheatreLayout, AcrossTwoScreensTheTargetIsAsHighAsItsRoom) {
+// A second screen has room: what is aimed by, or where the bone is touched, is as high as the screen, or as
+// wide as the column leaves it that is read beside it; what is read stays where it is.
+TEST(TheatreLayout, AcrossTwoScreensTheTargetIsAsLargeAsTheColumnLeavesIt) {
   for (const Shape& shape : kShapes) {
     if (!std::string(shape.name).starts_with("two")) continue;
     SCOPED_TRACE(shape.name);
-    const TheatreLayout l = Screen(shape).layout(true);
-    EXPECT_FLOAT_EQ(l.target.height, l.block.height);
-    EXPECT_FLOAT_EQ(l.target.width, std::min(l.block.height, 0.4F * l.block.width));
-    EXPECT_GT(l.main.width, 0.2F * l.block.width);
+    const Screen screen(shape);
+    const TheatreLayout guides = screen.layout(true), registers = screen.layout(false);
+    const float column = kColumnLetters * 0.53F * screen.theme.afar->FontSize;
+    EXPECT_FLOAT_EQ(guides.target.width, guides.target.height);
+    EXPECT_TRUE(guides.target.height > 0.97F * screen.area.height || guides.words.width < 1.01F * column);
+    EXPECT_FLOAT_EQ(guides.words.x, registers.words.x);
+    EXPECT_FLOAT_EQ(guides.words.y, registers.words.y);
+    EXPECT_GE(guides.words.width, column - 1);
+    EXPECT_FLOAT_EQ(registers.scene.width, guides.target.width);
+    EXPECT_GT(guides.scene.width, 0.3F * guides.words.width);
+    EXPECT_GT(guides.scene.height, 4 * screen.theme.afar->FontSize);
+  }
+}
+
+// A bullseye that shows nothing gives its room to the bone.
+TEST(TheatreLayout, WhereNothingIsAimedByTheBoneStandsInItsPlace) {
+  for (const Shape& shape : kShapes) {
+    SCOPED_TRACE(shape.name);
+    const Screen screen(shape);
+    TheatreLayoutOptions options{screen.theme.scale, screen.theme.afar->FontSize,
+                                 screen.theme.number->FontSize};
+    const TheatreLayout aims = theatre_layout(screen.area, options);
+    options.has_target = false;
+    const TheatreLayout does_not = theatre_layout(screen.area, options);
+    if (!aims.scene_is_in_block && !std::string(shape.name).starts_with("two")) continue;
+    EXPECT_EQ(does_not.target.width, 0);
+    EXPECT_GE(does_not.scene.height, aims.target.height);
+    EXPECT_GE(does_not.scene.width, aims.target.width);
   }
 }
 

@@ -15,7 +15,7 @@ TEST(WordsWithoutPictures, TakeThePlaceOfWhatNeedsThem) {
   using operation::NextAction;
   using theatre::SourceTrouble;
   EXPECT_EQ(words_without_pictures(SourceTrouble::NoPicture, NextAction::GoOnDrawing),
-            "wait: no picture comes");
+            "look after cable and camera: no picture comes");
   EXPECT_EQ(
       words_without_pictures(SourceTrouble::NoPicture, NextAction::VerifyByTouch, Eigen::Vector2i(1280, 720)),
       "format changed to 1280 x 720: set the processor back, or choose the camera (K)")
@@ -79,7 +79,7 @@ TEST(WordsWithoutPictures, TakeThePlaceOfWhatIsToBeDoneOnceMore) {
   using theatre::SourceTrouble;
   EXPECT_EQ(words_of(Repeat::ShowGuide, Step::Guide, true, SourceTrouble::None), "follow the bullseye");
   EXPECT_EQ(words_of(Repeat::ShowGuide, Step::Guide, true, SourceTrouble::NoPicture),
-            "wait: no picture comes");
+            "look after cable and camera: no picture comes");
   EXPECT_EQ(
       words_of(Repeat::Touch, Step::Verify, false, SourceTrouble::NoPicture, Eigen::Vector2i(1280, 720)),
       "format changed to 1280 x 720: set the processor back, or choose the camera (K)");

@@ -117,6 +117,8 @@ TEST_F(Theatre, Hazard12AKilledWindowLeavesASessionThatCanBeRead) {
   RunningWorkstation app(display, folder_.path());
   EXPECT_TRUE(app.wait_for_state("case", "open", 120));
   EXPECT_TRUE(app.wait_for_state("access", "own"));
+  // In the words of whoever works with the case, and no warning.
+  EXPECT_TRUE(app.wait_for_state("status", "Not closed the last time: all that was saved is here"));
   app.press("ctrl+q");
   EXPECT_EQ(app.wait_for_exit(60), 0);
 }

@@ -162,6 +162,16 @@ TEST_F(Theatre, AStreamIsNamedInTheWindowAndIsLive) {
     EXPECT_EQ(app.state("time_out"), "due");
     ASSERT_TRUE(app.wait_for_state("pedal", "waits", 2));
     ASSERT_TRUE(app.wait_for_state("pedal", "acts", 20));
+    // By the pedals alone: the other medium, the same pictures again, and the time-out anew.
+    app.press("v");
+    ASSERT_TRUE(app.wait_for_state("next", "the pictures have ended: open the camera again", 20));
+    EXPECT_EQ(app.state("notice"), "The next pictures look through air");
+    app.press("space");
+    ASSERT_TRUE(becomes([&] { return app.state("cameras").starts_with("gst:videotestsrc"); }, 20));
+    app.press("space");
+    ASSERT_TRUE(app.wait_for_state("next", "time-out: confirm patient, side, plan and tools", 60));
+    ASSERT_TRUE(app.wait_for_state("pedal", "acts", 20));
+    EXPECT_EQ(app.state("medium"), "air");
     app.press("space");
     EXPECT_TRUE(app.wait_for_state("time_out", "confirmed"));
     EXPECT_NE(app.state("guidance"), "valid");

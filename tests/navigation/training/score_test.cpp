@@ -170,7 +170,7 @@ TEST(Score, SaysWhatWasDoneInPlainWords) {
   for (const Exercise& exercise : exercises())
     for (const ScorePart& part : score_of(exercise, Level::Easy, flawless()).parts) {
       if (part.points == part.most_points) {
-        EXPECT_EQ(part.reason.find("gives all points"), std::string::npos) << part.reason;
+        EXPECT_EQ(part.reason.find("all points at"), std::string::npos) << part.reason;
       }
       EXPECT_EQ(part.reason.find("were done"), std::string::npos) << part.reason;
       EXPECT_EQ(part.advice.find("the ring"), std::string::npos) << part.advice;
@@ -180,6 +180,19 @@ TEST(Score, SaysWhatWasDoneInPlainWords) {
   const Score nothing = score_of(drilling(), Level::Easy, none);
   EXPECT_EQ(part_of(nothing, Measure::EntryOffset).reason, "No tunnel was drilled.");
   EXPECT_NE(part_of(nothing, Measure::EntryOffset).advice.find("Drill the tunnel"), std::string::npos);
+}
+
+// What would have earned all points stands behind what was done, and a nought reads as one.
+TEST(Score, SaysWhatWouldHaveEarnedAllPoints) {
+  ExerciseFacts facts = flawless();
+  facts.entry_offset_mm = 2.0;
+  facts.touches = 5;
+  facts.wasted_touches = 2;
+  const Score score = score_of(drilling(), Level::Easy, facts);
+  EXPECT_EQ(part_of(score, Measure::WastedTouches).reason,
+            "Touches: 5, of which told nothing: 2 (all points at 0, no points from 4 on).");
+  const std::string offset = part_of(score, Measure::EntryOffset).reason;
+  EXPECT_NE(offset.find(" mm or less, no points from "), std::string::npos) << offset;
 }
 
 // Half an exercise makes few mistakes: it counts nothing, and that is the first thing to do better.
@@ -285,7 +298,7 @@ TEST(Score, AVerifiedRegistrationCountsWithoutATunnel) {
   const Score score = score_of(drilling(), Level::Easy, facts);
   EXPECT_EQ(score.points, part_of(score, Measure::TunnelError).most_points +
                               part_of(score, Measure::Verification).most_points);
-  EXPECT_NE(part_of(score, Measure::Time).reason.find("where something was reached"), std::string::npos);
+  EXPECT_NE(part_of(score, Measure::Time).reason.find("as the goal was not reached"), std::string::npos);
 }
 
 // Two cases of one name hold sessions of one name: the score is of the case that it was made in, whatever it
