@@ -107,6 +107,8 @@ void replay(Context& context, const ReplayArguments& arguments) {
     reasons.push_back(summary.replayed_frames + summary.frames_without_picture == 0
                           ? "no frame could be replayed"
                           : std::to_string(summary.differences.size()) + " differences above tolerance");
+  if (const std::string cold = recording::cold_start_in_words(summary); !cold.empty())
+    reasons.push_back(cold);
   if (!reasons.empty()) context.say_unreliable("the replay", reasons);
 }
 

@@ -26,9 +26,7 @@ void draw_score(const widgets::Ui& ui, const training::Score& score) {
 
 // The whole of what the list and the time line have room for in part: what happened here, or last before.
 void draw_last_moment(const widgets::Ui& ui, const ReviewScreen& screen) {
-  const auto& moments = screen.review.moments;
-  const auto after = std::ranges::upper_bound(moments, screen.playback.frame, {}, &Moment::frame);
-  std::string words = after == moments.begin() ? std::string() : std::prev(after)->words;
+  std::string words = last_moment_in_words(screen.review.moments, screen.timeline(), screen.playback.frame);
   for (const recording::SessionMark& mark : screen.marks)
     if (screen.timeline().at_index(mark.frame) == screen.playback.frame && !mark.note.empty())
       words += (words.empty() ? "Mark: " : "\nMark: ") + mark.note;
@@ -147,15 +145,9 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewS
     widgets::status_row(ui, widgets::Severity::Quiet, "No guidance", screen.no_guidance_words());
   }
   if (at.guidance.drill) draw_drill(ui, *at.guidance.drill, review.session->options.tools);
-  const auto& registration = screen.standing().registration;
-  if (registration == nullptr)
-    widgets::status_row(ui, widgets::Severity::Quiet, "Registration", "none at this moment");
-  else if (registration->reliable)
-    widgets::status_row(ui, widgets::Severity::Good, "Registration",
-                        "target " + widgets::plus_minus(registration->predicted_tre_mm) + " mm");
-  else
-    widgets::status_row(ui, widgets::Severity::Bad, "Registration",
-                        registration->reasons.empty() ? "not reliable" : registration->reasons.front());
+  const RegistrationRow registration = registration_row(review, at.index);
+  widgets::status_row(ui, registration.severity, "Registration", registration.text);
+  ui.log.note_state("review_registration", registration.text);
   draw_last_moment(ui, screen);
   if (screen.today != nullptr) draw_today(ui, screen);
   if (screen.score != nullptr) draw_score(ui, *screen.score);

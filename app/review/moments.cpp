@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <utility>
 
 #include "navigation/operation/command.h"
@@ -68,26 +69,47 @@ Moment moment_of(const recording::ToldEvent& told) {
           capitalised(told.words) + (told.detail.empty() ? std::string() : ": " + told.detail)};
 }
 
+std::int64_t first_time_ns(const std::vector<SessionEvent>& events) {
+  const auto timed = std::ranges::find_if(events, [](const auto& event) { return event.timestamp_ns != 0; });
+  return timed == events.end() ? 0 : timed->timestamp_ns;
+}
+
 }  // namespace
+
+std::string clock_text(double seconds) {
+  const long tenths = std::lround(seconds * 10);
+  return files::format("%ld:%02ld.%ld", tenths / 600, tenths / 10 % 60, tenths % 10);
+}
 
 std::vector<Moment> moments_of(const std::vector<SessionEvent>& events,
                                const recording::SessionTimeline& timeline,
                                const recording::ReadRegistration& read) {
   std::vector<Moment> moments;
   std::optional<std::string> plan;  // in force: an operation says it again when its source starts
+  const bool has_frames = !timeline.frames().empty();
+  const std::int64_t zero_ns = has_frames ? timeline.frames().front().timestamp_ns : first_time_ns(events);
   for (const recording::ToldEvent& told : recording::told_events(events, read)) {
     const SessionEvent& event = *told.event;
     if (event.kind == recording::kOutcomeEvent || event.kind == recording::kLookEvent) continue;
     if (event.kind == recording::kPlanEvent && std::exchange(plan, event.text) == event.text) continue;
     Moment moment = moment_of(told);
-    moment.frame = timeline.at_index(event.after_frame);
+    moment.frame = has_frames ? timeline.at_index(event.after_frame) : 0;
     // What has no time of its own has its frame's.
-    moment.time_s =
-        std::max(timeline.time_s(moment.frame),
-                 static_cast<double>(event.timestamp_ns - timeline.frames().front().timestamp_ns) * 1e-9);
+    moment.time_s = std::max(has_frames ? timeline.time_s(moment.frame) : 0,
+                             static_cast<double>(event.timestamp_ns - zero_ns) * 1e-9);
     moments.push_back(std::move(moment));
   }
   return moments;
+}
+
+std::string last_moment_in_words(const std::vector<Moment>& moments,
+                                 const recording::SessionTimeline& timeline, std::size_t frame) {
+  const auto after = std::ranges::upper_bound(moments, frame, {}, &Moment::frame);
+  if (after == moments.begin()) return "";
+  const Moment& last = *std::prev(after);
+  const bool is_after_pictures =
+      last.frame + 1 == timeline.frames().size() && last.time_s > timeline.time_s(last.frame);
+  return (is_after_pictures ? clock_text(last.time_s) + ", after the pictures: " : "") + last.words;
 }
 
 std::vector<std::size_t> frames_to_jump_to(const std::vector<Moment>& moments,

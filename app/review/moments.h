@@ -24,14 +24,24 @@ struct Moment {
   MomentKind kind = MomentKind::Note;
   std::string words;  // "Asked for: take touch", "Alarm: the marker has moved"
   // Seconds from the first frame, as the report says it: after the last picture, that of the record's clock.
+  // Of a session without frames, from the first event that has a time.
   double time_s = 0;
 };
 
+// "1:02.3"
+[[nodiscard]] std::string clock_text(double seconds);
+
 // In the order of the record. What the record holds for running it again alone (outcomes, second looks) is
-// left out, and so is a plan that was in force already. Preconditions: the timeline has frames.
+// left out, and so is a plan that was in force already. Without frames every `frame` is 0.
 [[nodiscard]] std::vector<Moment> moments_of(const std::vector<recording::SessionEvent>& events,
                                              const recording::SessionTimeline& timeline,
                                              const recording::ReadRegistration& read);
+
+// What happened at that frame, or last before it; behind the last picture with its own time, which the cursor
+// does not show: "0:09.7, after the pictures: Tunnel drilled". Empty: nothing did. Preconditions: the
+// timeline has frames.
+[[nodiscard]] std::string last_moment_in_words(const std::vector<Moment>& moments,
+                                               const recording::SessionTimeline& timeline, std::size_t frame);
 
 // The nearest frame before or after `frame` at which something happened or a mark stands; nullopt: none.
 [[nodiscard]] std::optional<std::size_t> moment_before(const std::vector<std::size_t>& frames,

@@ -327,21 +327,26 @@ void ReviewView::add_actions(widgets::Actions& actions) {
        GLFW_KEY_T, 0, false, [this] { return has_frames() && open_->pictures != nullptr; },
        [this] { return runs_today(); }, [this] { toggle_today(); }});
   actions.add(
-      {"review.report", "Report",
+      {"review.report",
+       "Report",
        "Writes the report of this session, or of a CT after the operation, or else of the plan, as PDF "
        "into the plan's own folder within \"export\" of the case; it names nobody. Again to stop",
-       GLFW_KEY_R, 0, false, [] { return true; }, [this] { return is_writing_report(); },
+       GLFW_KEY_R,
+       0,
+       false,
+       [this] { return is_writing_report() || no_report_reason().empty(); },
+       [this] { return is_writing_report(); },
        [this] {
          if (is_writing_report()) return report_->stop();
-         no_report_ = no_report_reason();
-         if (!no_report_.empty()) return;
          // It tells of what is on the disk: never of another plan than the one that is seen.
          no_report_ = model_ != nullptr ? model_->save_now() : std::string();
          if (!no_report_.empty()) return;
          report_ = std::make_unique<ReportRun>(
              case_folder_, model_ != nullptr ? cases::with_named_meshes(model_->knee()) : cases::Plan{},
              open_ ? open_->review.folder.filename().string() : "", wake_);
-       }});
+       },
+       {},
+       [this] { return no_report_reason(); }});
   actions.add({"review.newer",
                "Newer",
                "The session after this one",

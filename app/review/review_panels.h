@@ -76,6 +76,8 @@ struct NoteRoom {
                                                         const ReviewScreen& screen, TimeLineZoom& zoom);
 // Everything that happened, and every mark, as a list; the frame of the one that was clicked on.
 [[nodiscard]] std::optional<std::size_t> draw_moments(const widgets::Ui& ui, const ReviewScreen& screen);
+// The same of a session without frames, in which there is nowhere to go.
+void draw_moments_without_frames(const widgets::Ui& ui, const std::vector<Moment>& moments);
 // The guide against the plan as the surgeon saw it; nothing where it was not shown. axes: of the bone.
 void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const ReviewScreen& screen,
                    const landmarks::AnatomicalAxes& axes);
@@ -91,8 +93,5 @@ void draw_origin(const widgets::Ui& ui, const widgets::Rect& area, const recordi
 // Of whichever session it was asked for: its file names it. null: none was. refusal: why the one that was
 // asked for last was not begun. Of a plan that was changed since (not of now) it is no tick.
 void draw_report(const widgets::Ui& ui, const ReportRun* report, const std::string& refusal, bool is_of_now);
-
-// "1:02.3"
-[[nodiscard]] std::string clock_text(double seconds);
 
 }  // namespace arthronaut::review

@@ -18,7 +18,9 @@ namespace {
 
 const char* no_frames_words(const SessionReview& review) {
   return review.problems.empty()
-             ? "No frame was recorded in this session."
+             ? (review.moments.empty() ? "No frame was recorded in this session."
+                                       : "No frame was recorded in this session. What happened stands on "
+                                         "the left.")
              : "The frames of this session cannot be read. What is wrong stands on the left.";
 }
 
@@ -228,7 +230,8 @@ void ReviewView::draw_numbers(const widgets::Ui& ui, widgets::Rect area) {
       widgets::text_centered(ui, target, ui.theme.strong, widgets::kQuietText,
                              "The bone has another surface by now, and other axes.");
     else
-      draw_bullseye(ui, target, screen(), model_->axes(bone));
+      // Those of then: landmarks may have been moved since.
+      draw_bullseye(ui, target, screen(), open_->review.session->options.axes.value_or(model_->axes(bone)));
   }
   draw_moment(ui, area, screen());
 }
@@ -241,9 +244,12 @@ void ReviewView::draw_side(const widgets::Ui& ui, const widgets::Rect& area) {
   if (open_) draw_end(ui);
   if (open_) draw_check(ui, *open_->check, sessions_);
   if (open_) draw_camera(ui, open_->review);
-  if (open_ && !has_frames())
+  if (open_ && !has_frames()) {
     for (const std::string& problem : open_->review.problems)
       widgets::status_row(ui, widgets::Severity::Caution, "Not whole", problem);
+    ImGui::Separator();
+    draw_moments_without_frames(ui, open_->review.moments);
+  }
   if (has_frames()) {
     draw_note_field(ui);
     ImGui::Separator();

@@ -109,6 +109,20 @@ const Standing& SessionReview::standing_at(std::int64_t frame_index) const {
   return *std::prev(after);
 }
 
+RegistrationRow registration_row(const SessionReview& review, std::int64_t frame_index) {
+  const auto& registration = review.standing_at(frame_index).registration;
+  if (registration == nullptr) return {widgets::Severity::Quiet, "none at this moment"};
+  if (!registration->reliable)
+    return {widgets::Severity::Bad,
+            registration->reasons.empty() ? "not reliable" : registration->reasons.front()};
+  // What ended it with this picture is told below: nothing good stands above that.
+  const auto& next = review.standing_at(frame_index + 1).registration;
+  const bool ends = next == nullptr || !next->reliable;
+  return {ends ? widgets::Severity::Quiet : widgets::Severity::Good,
+          "target " + widgets::plus_minus(registration->predicted_tre_mm) + " mm" +
+              (ends ? "; in this picture for the last time" : "")};
+}
+
 std::vector<const DrilledTunnel*> SessionReview::drilled_at(std::int64_t frame_index) const {
   std::vector<const DrilledTunnel*> there;
   for (const DrilledTunnel& tunnel : drilled)
@@ -153,13 +167,12 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
       track_of(timeline, "Guidance", [](const recording::FrameGlance& f) { return f.is_guided(); }));
   review.tracks.back().is_guidance = true;
   const auto registrations = follow(review);
-  if (!timeline.frames().empty())
-    review.moments = moments_of(
-        session.events, timeline,
-        [&](const recording::SessionEvent& event) -> std::optional<registration::RegistrationSummary> {
-          const auto& registration = registrations.at(event.text);
-          return registration == nullptr ? std::nullopt : std::optional(*registration);
-        });
+  review.moments = moments_of(
+      session.events, timeline,
+      [&](const recording::SessionEvent& event) -> std::optional<registration::RegistrationSummary> {
+        const auto& registration = registrations.at(event.text);
+        return registration == nullptr ? std::nullopt : std::optional(*registration);
+      });
   try {  // a broken file must not hide the session: its reason is shown in its place
     for (const std::filesystem::path& file : operation::achieved_files(session_folder))
       review.drilled.push_back(drilled_tunnel(review, operation::read_achieved_file(file)));

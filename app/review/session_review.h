@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/review/moments.h"
+#include "app/widgets/controls.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/recorded_pictures.h"
 #include "navigation/recording/session_overview.h"
@@ -72,6 +73,13 @@ struct SessionReview {
 // As far as the session is whole. Throws IoError or InvalidInput where nothing can be shown of it: no header,
 // or no record of its frames.
 [[nodiscard]] SessionReview read_review(const std::filesystem::path& session_folder);
+
+// What guided in that picture, and whether it did in the one after it.
+struct RegistrationRow {
+  widgets::Severity severity = widgets::Severity::Quiet;
+  std::string text;
+};
+[[nodiscard]] RegistrationRow registration_row(const SessionReview& review, std::int64_t frame_index);
 
 // What the pictures of a session are, in words to be read from across the room: "RECORDING of a simulation";
 // of older records, which do not say it, "RECORDING".

@@ -230,14 +230,6 @@ void draw_loop(ImDrawList& draw, const Scale& scale, const Playback& playback, f
 
 }  // namespace
 
-std::string clock_text(double seconds) {
-  const long tenths = std::lround(seconds * 10);
-  const long minutes = tenths / 600;
-  const std::string rest = std::to_string(tenths / 10 % 60);
-  return std::to_string(minutes) + ":" + (rest.size() < 2 ? "0" : "") + rest + "." +
-         std::to_string(tenths % 10);
-}
-
 std::vector<Stretch> beyond_strip(const std::vector<recording::FrameGlance>& frames, double shown_mm) {
   std::vector<Stretch> stretches;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -349,23 +341,42 @@ static void follow_playback(const ReviewScreen& screen) {
     ImGui::SetScrollY(std::max(top - height / 3, 0.F));
 }
 
-std::optional<std::size_t> draw_moments(const widgets::Ui& ui, const ReviewScreen& screen) {
-  std::optional<std::size_t> wanted;
+// A line of the list; true: it was clicked on.
+static bool draw_line(const widgets::Ui& ui, double time_s, ImU32 color, const std::string& words, int id,
+                      bool is_now) {
+  ImGui::PushID(id);
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  const std::string text = clock_text(time_s) + "  " + words;
+  const std::string shown =
+      widgets::fitting(ui.theme.body, text, std::max(ImGui::GetContentRegionAvail().x, 1.F));
+  const bool is_clicked = ImGui::Selectable(shown.c_str(), is_now);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopID();
+  return is_clicked;
+}
+
+static void begin_moments(const widgets::Ui& ui, std::size_t count) {
   ImGui::BeginChild("review.moments");
   ui.log.note("review.moments", ImGui::GetWindowPos(),
               {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(),
                ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
+  ui.log.note_state("review_moments", std::to_string(count));
+}
+
+void draw_moments_without_frames(const widgets::Ui& ui, const std::vector<Moment>& moments) {
+  begin_moments(ui, moments.size());
+  int id = 0;
+  for (const Moment& moment : moments)
+    (void)draw_line(ui, moment.time_s, color_of(moment.kind), moment.words, id++, false);
+  ImGui::EndChild();
+}
+
+std::optional<std::size_t> draw_moments(const widgets::Ui& ui, const ReviewScreen& screen) {
+  std::optional<std::size_t> wanted;
+  begin_moments(ui, screen.review.moments.size());
   const auto line = [&](std::size_t frame, double time_s, ImU32 color, const std::string& words, int id) {
-    const bool is_now = frame == screen.playback.frame;
-    ImGui::PushID(id);
-    ImGui::PushStyleColor(ImGuiCol_Text, color);
-    const std::string text = clock_text(time_s) + "  " + words;
-    const std::string shown =
-        widgets::fitting(ui.theme.body, text, std::max(ImGui::GetContentRegionAvail().x, 1.F));
-    if (ImGui::Selectable(shown.c_str(), is_now)) wanted = frame;
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text.c_str());
-    ImGui::PopStyleColor();
-    ImGui::PopID();
+    if (draw_line(ui, time_s, color, words, id, frame == screen.playback.frame)) wanted = frame;
   };
   int id = 0;
   for (const recording::SessionMark& mark : screen.marks) {

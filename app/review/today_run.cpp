@@ -81,6 +81,7 @@ std::string today_words(const TodayResult& result) {
       [](const recording::Difference& a, const recording::Difference& b) { return a.amount < b.amount; });
   words += std::to_string(summary.differences.size()) +
            (summary.differences.size() == 1 ? " difference" : " differences") + " above tolerance; ";
+  if (const std::string cold = recording::cold_start_in_words(summary); !cold.empty()) words += cold + ". ";
   return words +
          (largest->unit.empty()
               ? "the first: " + summary.differences.front().what + " " + summary.differences.front().detail

@@ -4,6 +4,11 @@
 
 namespace arthronaut::recording {
 
+bool tells_of_drilling(const SessionEvent& event) {
+  return event.kind == kDrilledByWordEvent || event.kind == kDrilledEvent ||
+         event.kind == kSaidTooEarlyEvent || event.kind == kDrilledTakenBackEvent;
+}
+
 std::string name_of_tunnel_in(const std::string& achieved_file, bones::BoneKind bone) {
   for (const auto bundle :
        {norms::Bundle::Whole, norms::Bundle::Anteromedial, norms::Bundle::Posterolateral}) {

@@ -16,6 +16,9 @@ struct DrilledByWord {
   std::int64_t timestamp_ns = 0;  // when it was said
 };
 
+// Whether this event is one of those that the functions below read.
+[[nodiscard]] bool tells_of_drilling(const SessionEvent& event);
+
 // In the order in which it was said. Not among them: what was taken back, and what was recorded by its poses
 // since. Records of before there was this event have none.
 [[nodiscard]] std::vector<DrilledByWord> drilled_by_word(const std::vector<SessionEvent>& events,

@@ -304,6 +304,13 @@ class StateComparison {
 
 }  // namespace
 
+std::string cold_start_in_words(const ReplaySummary& summary) {
+  if (summary.cold_differences == 0) return "";
+  return std::to_string(summary.cold_differences) + " of them in poses that were tracked without the " +
+         std::to_string(summary.frames_before_pictures) +
+         " pictures before, which were not kept; what was decided is compared by the record";
+}
+
 ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions& options,
                              const std::function<void(long)>& progress) {
   ReplaySummary summary;
@@ -351,8 +358,11 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
     if (feeds && options.on_frame) options.on_frame(recorded, state->frame);
     if (cold && picture != nullptr) {
       cold->process(*picture, cold_result, &recorded.outside);
+      const std::size_t before_count = summary.differences.size();
       cold_comparison.compare_poses(recorded, cold_result);
+      summary.cold_differences += static_cast<long>(summary.differences.size() - before_count);
     }
+    if (cold && picture == nullptr && summary.replayed_frames == 0) ++summary.frames_before_pictures;
     states.compare(recorded, *state, feeds);
     summary.replayed_frames += picture != nullptr ? 1 : 0;
     summary.frames_without_picture += picture != nullptr ? 0 : 1;

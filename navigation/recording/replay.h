@@ -58,17 +58,24 @@ struct ReplaySummary {
   long recorded_frames = 0, replayed_frames = 0;  // those whose picture was tracked again
   long frames_without_picture = 0;                // run again from the record
   std::vector<Difference> differences;            // above tolerance, in the order of frames
-  long states_compared = 0, states_equal = 0;     // by their digests
+  long states_compared = 0, states_equal = 0;  // by their digests
   bool is_lossy = false;       // pictures were kept as H.264: they are not quite those that were tracked
   bool is_same_build = false;  // states must be equal to the last bit
   bool was_stopped = false;    // by ReplayOptions::stops: the rest was not compared
   // The largest of all, also below tolerance.
   double worst_pose_mm = 0, worst_pose_deg = 0, worst_tip_mm = 0, worst_offset_mm = 0, worst_angle_deg = 0;
   std::optional<double> registration_mm;  // at the target; empty when it was not compared
+  // So many frames came before the first picture that was kept; where there are any, tracking began cold
+  // behind them, and so many of the differences are of the poses that it found so.
+  long frames_before_pictures = 0, cold_differences = 0;
   [[nodiscard]] bool is_same() const {
     return differences.empty() && replayed_frames + frames_without_picture > 0;
   }
 };
+
+// Why the poses of a cold start differ: "8 of them in poses that were tracked without the 65 pictures before,
+// which were not kept; what was decided is compared by the record". Empty: none does.
+[[nodiscard]] std::string cold_start_in_words(const ReplaySummary& summary);
 
 // A video that is damaged is told, and what was decided from there on is run again from the record. Throws
 // what the video throws where nothing of it can be read.

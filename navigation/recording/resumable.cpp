@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "navigation/operation/achieved_tunnel.h"
-#include "navigation/provenance/provenance.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/recording/declined_resume.h"
 #include "navigation/recording/drilled_by_word.h"
@@ -17,6 +16,7 @@
 #include "navigation/recording/rerun.h"
 #include "navigation/recording/session_files.h"
 #include "planning/cases/case.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
@@ -58,14 +58,11 @@ void follow_said(const RecordedSession& session, std::vector<SaidDrilled>& said)
   }
   // The pictures have a clock of their own, which began with the record. A copy of it has newer files.
   const std::int64_t begin_ns = session.frames().empty() ? 0 : session.frames().front().timestamp_ns;
-  const auto days = provenance::days_between("1970-01-01T00:00:00Z", session.header().started_utc);
+  const std::chrono::system_clock::time_point begin =
+      files::time_of_utc(session.header().started_utc).value_or(std::chrono::sys_seconds{});
   for (const DrilledByWord& one : drilled_by_word(session.events(), bone)) {
     forget(one.tunnel);
-    const std::chrono::duration<double> since_1970(86400 * days.value_or(0) +
-                                                   1e-9 * static_cast<double>(one.timestamp_ns - begin_ns));
-    said.push_back(
-        {one.tunnel, std::chrono::system_clock::time_point(
-                         std::chrono::duration_cast<std::chrono::system_clock::duration>(since_1970))});
+    said.push_back({one.tunnel, begin + std::chrono::nanoseconds(one.timestamp_ns - begin_ns)});
   }
 }
 

@@ -106,9 +106,7 @@ void read_record(const fs::path& folder, SessionFacts& facts) {
   std::vector<SessionEvent> of_drilling;
   while (events.step()) {
     const SessionEvent event{events.integer(0), events.text(1), events.text(2)};
-    if (event.kind == kDrilledByWordEvent || event.kind == kDrilledEvent ||
-        event.kind == kSaidTooEarlyEvent || event.kind == kDrilledTakenBackEvent)
-      of_drilling.push_back(event);
+    if (tells_of_drilling(event)) of_drilling.push_back(event);
     steps.follow(event);
     registration.follow(event);
     if (event.kind == kAlarmEvent && !event.text.empty()) ++facts.alarm_count;

@@ -1,5 +1,7 @@
 #include "navigation/recording/session_files.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -32,6 +34,34 @@ void append_drill(std::string& line, const guidance::GuidanceNumbers& numbers,
     append_number(line, (*numbers.drill).*value);
   else
     line += ',';
+}
+
+nlohmann::ordered_json to_json(const landmarks::AnatomicalAxes& axes) {
+  const auto numbers = [](const Eigen::Vector3d& v) { return nlohmann::ordered_json{v.x(), v.y(), v.z()}; };
+  return {{"from", landmarks::to_text(axes.origin)},
+          {"anterior", numbers(axes.anterior)},
+          {"proximal", numbers(axes.proximal)},
+          {"lateral", numbers(axes.lateral)}};
+}
+
+// To the bit as they were written: offsets that are found again have to be those that were recorded.
+landmarks::AnatomicalAxes axes_of(const files::JsonObject& json) {
+  using Origin = landmarks::AnatomicalAxes::Origin;
+  constexpr std::array kOrigins{Origin::FromLandmarks, Origin::FromShaft, Origin::FromScanner};
+  const std::string from = json.text("from");
+  const auto* const origin =
+      std::ranges::find_if(kOrigins, [&](Origin one) { return landmarks::to_text(one) == from; });
+  if (origin == kOrigins.end()) json.fail("from", "names nothing that tells a bone's axes");
+  landmarks::AnatomicalAxes axes;
+  axes.origin = *origin;
+  axes.anterior = json.vector3("anterior");
+  axes.proximal = json.vector3("proximal");
+  axes.lateral = json.vector3("lateral");
+  Eigen::Matrix3d across;
+  across << axes.anterior, axes.proximal, axes.lateral;
+  if (!(across.transpose() * across).isIdentity(1e-6))
+    json.fail("anterior", "must be unit and at right angles to proximal and lateral");
+  return axes;
 }
 
 std::vector<VideoPart> video_parts_of(const files::JsonObject& json) {
@@ -95,6 +125,7 @@ void write_session_header(const std::filesystem::path& folder, const SessionHead
   if (header.registers_after_mm > 0) json["registers_after_mm"] = header.registers_after_mm;
   json["follow_lens"] = options.follow_lens;
   json["flat_port"] = options.fluid_model == camera::FluidModel::FlatPort;
+  if (options.axes) json["axes"] = to_json(*options.axes);
   json["program_version"] = header.program_version;
   if (!header.build.empty()) json["build"] = header.build;
   json["hash_chain"] = true;
@@ -135,6 +166,7 @@ SessionHeader read_session_header(const std::filesystem::path& folder, pipeline:
   options.follow_lens = json.boolean("follow_lens");
   options.fluid_model =
       json.boolean("flat_port") ? camera::FluidModel::FlatPort : camera::FluidModel::FocalRule;
+  if (json.has("axes")) options.axes = axes_of(json.object("axes"));
   return header;
 }
 

@@ -130,11 +130,14 @@ TEST(NavigateReal, Hazard27TheMediumIsTheReason) {
 }
 
 // Frames that the recorder encodes itself, as it does for a camera, keep the luma that was tracked: run again
-// on the same build, every state is the same to the last bit.
+// on the same build, every state is the same to the last bit, offsets along the bone's own axes among it.
 TEST(NavigateReal, ReplaysEncodedFramesToTheLastBit) {
   ARTHRONAUT_REQUIRE_DATA(guide_clip, "arthroscopy/guide_wet");
   const test::TemporaryFolder folder;
   theatre::NavigateOptions options = options_of(guide_clip, true_plan(guide_clip));
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, 2, 3).normalized()).matrix();
+  options.source.pipeline.axes = {landmarks::AnatomicalAxes::Origin::FromShaft, turn.col(0), turn.col(1),
+                                  turn.col(2)};
   options.registration = {registration::read_registration_file(guide_clip / "gt/registration_gt.json"),
                           operation::provenance_of(options.operation, options.source)};
   const std::shared_ptr<sources::FrameSource> video = sources::open_video(guide_clip / "clip.mkv");

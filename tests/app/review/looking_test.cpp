@@ -118,6 +118,11 @@ TEST_F(Looking, TellsWhatComesAfterThePicturesByTheRecordsClock) {
   EXPECT_EQ(moments[0].frame, last);
   EXPECT_NEAR(moments[0].time_s, static_cast<double>(end.timestamp_ns - first.timestamp_ns) * 1e-9 + 6, 1e-9);
   EXPECT_EQ(moments[1].time_s, timeline_->time_s(last));
+  // Beside the cursor, which stands at the last picture, the clock is the list's.
+  EXPECT_EQ(last_moment_in_words({moments[0]}, *timeline_, last),
+            clock_text(moments[0].time_s) + ", after the pictures: " + moments[0].words);
+  EXPECT_EQ(last_moment_in_words({moments[1]}, *timeline_, last), moments[1].words);
+  EXPECT_EQ(last_moment_in_words({moments[0]}, *timeline_, 0), "");
 }
 
 // What was asked for is told in words, and not as a program has it.

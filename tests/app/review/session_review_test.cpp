@@ -84,6 +84,48 @@ TEST(SessionReview, DrawsATunnelFromWhenItWasDrilledAndAsLongAsItsOwnPlan) {
   EXPECT_EQ(review.drilled_at(5).back()->length_mm, 18);
 }
 
+// In the picture with which it ends a registration is not praised above the words that nothing stands any
+// more.
+TEST(SessionReview, SaysInWhichPictureARegistrationEnds) {
+  const test::TemporaryFolder folder;
+  {
+    recording::SessionRecorder recorder(folder.path(), test::session_header(), test::scripted_options());
+    registration::RegistrationSummary registration;
+    registration.has_pose = registration.reliable = true;
+    recorder.append(test::frame_result(0));
+    recorder.set_registration(registration);
+    recorder.append(test::frame_result(1));
+    recorder.append(test::frame_result(2));
+    recorder.add_event({0, std::string(recording::kVoidEvent), "the marker was moved", -1});
+    recorder.finish();
+  }
+  const SessionReview review = read_review(folder.path());
+  EXPECT_EQ(registration_row(review, 0).text, "none at this moment");
+  EXPECT_EQ(registration_row(review, 1).severity, widgets::Severity::Good);
+  const RegistrationRow last = registration_row(review, 2);
+  EXPECT_EQ(last.severity, widgets::Severity::Quiet);
+  EXPECT_NE(last.text.find("for the last time"), std::string::npos) << last.text;
+}
+
+// Pictures that never came are no reason to hide what was asked for and what came of it.
+TEST(SessionReview, TellsWhatHappenedWhereNoFrameWasRecorded) {
+  const test::TemporaryFolder folder;
+  {
+    recording::SessionRecorder recorder(folder.path(), test::session_header(), test::scripted_options());
+    recorder.add_event({5'000'000'000, "note", "the source was opened", -1});
+    recorder.add_event({7'500'000'000, std::string(recording::kDrilledByWordEvent), "femur", -1});
+    recorder.finish();
+  }
+  const SessionReview review = read_review(folder.path());
+  ASSERT_TRUE(review.timeline->frames().empty());
+  ASSERT_GE(review.moments.size(), 2U);
+  EXPECT_EQ(review.moments.front().time_s, 0);
+  const auto drilled = std::ranges::find_if(
+      review.moments, [](const Moment& one) { return one.words.starts_with("Tunnel drilled, by word"); });
+  ASSERT_NE(drilled, review.moments.end());
+  EXPECT_NEAR(drilled->time_s, 2.5, 1e-9);
+}
+
 // A registration that cannot be read is told, and the session is shown.
 TEST(SessionReview, SaysWhichRegistrationIsBroken) {
   const test::TemporaryFolder folder;

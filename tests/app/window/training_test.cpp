@@ -68,6 +68,15 @@ TEST_F(WorkstationTraining, AnExerciseIsDoneByHandAndScored) {
   EXPECT_EQ(scores[0].at("parts").size(), 6u);
   EXPECT_FALSE(found(scores[0].at("session").get<std::string>()).empty()) << scores[0].at("session");
 
+  // Nothing is offered in Review that would be refused: an exercise has no report.
+  app.press("F3");
+  ASSERT_TRUE(app.wait_for_state("session", scores[0].at("session").get<std::string>(), 60));
+  app.press("r");
+  EXPECT_TRUE(app.wait_for_state("untaken_key",
+                                 "R did nothing: Report is not possible now: an exercise is no operation on "
+                                 "anybody; its score stands on the right"));
+  app.press("F6");
+
   // Back in the list it is one run; Navigate knows nothing of it.
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("train_page", "list"));

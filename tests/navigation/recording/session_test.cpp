@@ -7,9 +7,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <Eigen/Geometry>
 #include <chrono>
 #include <fstream>
 #include <future>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <random>
 #include <thread>
@@ -94,6 +96,25 @@ TEST_F(Session, ReadsBackExactlyWhatWasRecorded) {
   EXPECT_EQ(session.events()[0].text, "a \"quoted\" note");
   EXPECT_EQ(session.events()[0].after_frame, 19);
   EXPECT_TRUE(session.video().empty());
+}
+
+// Offsets are said along these axes: run again along others, the same poses give other numbers.
+TEST_F(Session, KeepsTheAxesThatOffsetsAreSaidIn) {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, -2, 3).normalized()).toRotationMatrix();
+  options_.axes = {landmarks::AnatomicalAxes::Origin::FromShaft, turn.col(0), turn.col(1), turn.col(2)};
+  recording::SessionRecorder(folder_, test::session_header(), options_).finish();
+  const auto axes = recording::RecordedSession(folder_).pipeline_options().axes;
+  ASSERT_TRUE(axes.has_value());
+  EXPECT_EQ(axes->origin, landmarks::AnatomicalAxes::Origin::FromShaft);
+  EXPECT_EQ(axes->anterior, turn.col(0));  // to the bit
+  EXPECT_EQ(axes->proximal, turn.col(1));
+  EXPECT_EQ(axes->lateral, turn.col(2));
+
+  auto header = nlohmann::json::parse(files::read_text(folder_ / "session.json"));
+  header["axes"]["proximal"] = header["axes"]["anterior"];
+  files::write_atomically(folder_ / "session.json", header.dump());
+  EXPECT_THROW(recording::RecordedSession{folder_}, InvalidInput);
 }
 
 // Plans and registrations come back at the frame where they took effect; the open formats stand beside the

@@ -268,6 +268,41 @@ TEST_F(ReplayedOperation, TheSimulatorsPicturesGiveTheSameStates) {
       << cut.differences[0].detail;
 }
 
+// Whoever began to keep the video late is told why poses differ from where it begins on: tracking went into
+// those pictures with what it knew from the ones before.
+TEST_F(ReplayedOperation, SaysThatPosesDifferForPicturesThatWereNotKept) {
+  constexpr int kFrames = 14, kBefore = 6;
+  simulator::SimulationOptions options = simulator::phantom_options();
+  options.frame_count = kFrames;
+  TheatreSource source;
+  source.setup.kind = sources::SourceKind::Simulation;
+  source.setup.pipeline.calibration = options.camera;
+  source.setup.pipeline.tools = options.tools;
+  source.setup.pipeline.refractive_index = options.refractive_index;
+  source.open = [=] {
+    return std::make_unique<simulator::SimulatedOperation>(options, simulator::Phase::Scratch);
+  };
+  {
+    OperationRun run(setup_, test::at_once(setup_), folders());
+    run.start(source);
+    for (int i = 0; i < kFrames; ++i) {
+      if (i == kBefore) run.keep_video(true);
+      ASSERT_TRUE(run.step().picture);
+    }
+    run.end_source();
+  }
+  const recording::RecordedSession session(folder_ / "session1");
+  recording::ReplayOptions asks_too_much;  // whatever a pose differs by is too much
+  asks_too_much.reencoded_tolerance_mm = asks_too_much.reencoded_tolerance_deg = -1;
+  const auto summary = recording::replay_session(session, asks_too_much);
+  EXPECT_EQ(summary.states_equal, kFrames);
+  EXPECT_EQ(summary.frames_before_pictures, kBefore);
+  EXPECT_GT(summary.cold_differences, 0);
+  EXPECT_EQ(summary.cold_differences, static_cast<long>(summary.differences.size()));
+  EXPECT_NE(recording::cold_start_in_words(summary).find("without the 6 pictures before"), std::string::npos);
+  EXPECT_EQ(recording::cold_start_in_words({}), "");
+}
+
 // On another build no state is asked to be the same to the last bit: every number of guidance and every
 // decision is compared by itself.
 TEST_F(ReplayedOperation, EveryNumberAndDecisionThatDiffersIsToldOnAnotherBuild) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <chrono>
 #include <ctime>
 
 namespace arthronaut::files {
@@ -22,6 +23,17 @@ TEST(UtcClock, SaysNowInUtc) {
   EXPECT_GE(said, before);
   EXPECT_LE(said, std::time(nullptr));
   EXPECT_EQ(utc_now_as("%Y-%m").size(), 7U);
+}
+
+// Written and read back, across a leap day; what is no time of this program's is none.
+TEST(UtcClock, ReadsWhatItWrote) {
+  using namespace std::chrono;
+  const sys_seconds moment = sys_days(2028y / February / 29) + 23h + 59min + 58s;
+  EXPECT_EQ(time_of_utc(utc_of(moment)), moment);
+  EXPECT_EQ(time_of_utc("2028-03-01"), moment + 2s);
+  for (const char* none : {"", "2026-02-29", "2026-13-01", "2026-01-31T", "2026-01-31T24:00:00Z", "2026-1-31",
+                           "2026-01-31T12:00:00.5Z", "2026-01-31T12:00:00+02:00", "2026-01-31 12:00:00"})
+    EXPECT_EQ(time_of_utc(none), std::nullopt) << none;
 }
 
 TEST(UtcClock, TimesAreReadAsPeopleWriteThem) {
