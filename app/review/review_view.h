@@ -36,6 +36,8 @@ struct OpenSession {
   std::optional<training::Score> score;    // of an exercise whose score was kept
   std::unique_ptr<CheckRun> check;         // whether it is as it was recorded; never null once it is open
   std::optional<std::size_t> shown_frame;  // of the 3D view
+  std::size_t shown_points = 0;            // of the session's curves, likewise
+  bool shows_off_bone = false;             // some of these do not lie on the bone
   bool can_be_resumed = false;             // it was declined, and no newer session of its bone decides
 
   [[nodiscard]] const recording::SessionTimeline& timeline() const { return *review.timeline; }
@@ -121,7 +123,11 @@ class ReviewView : public mode::Mode {
   // Strokes by where they lie: what is known not to lie on the bone is not drawn as if it did.
   struct LaidStrokes {
     std::shared_ptr<const registration::RegistrationSummary> by;
-    std::vector<Eigen::Vector3d> on_bone, off_bone;
+    struct Point {
+      Eigen::Vector3d in_bone_mm;
+      bool is_off_bone;
+    };
+    std::vector<Point> points;  // as in the session's curves
   };
   const LaidStrokes& laid_by(const std::shared_ptr<const registration::RegistrationSummary>& registration);
   [[nodiscard]] bool is_of_another_surface() const;  // than the case has of its bone by now

@@ -58,7 +58,7 @@ struct ReplaySummary {
   long recorded_frames = 0, replayed_frames = 0;  // those whose picture was tracked again
   long frames_without_picture = 0;                // run again from the record
   std::vector<Difference> differences;            // above tolerance, in the order of frames
-  long states_compared = 0, states_equal = 0;  // by their digests
+  long states_compared = 0, states_equal = 0;     // by their digests
   bool is_lossy = false;       // pictures were kept as H.264: they are not quite those that were tracked
   bool is_same_build = false;  // states must be equal to the last bit
   bool was_stopped = false;    // by ReplayOptions::stops: the rest was not compared
