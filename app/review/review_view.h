@@ -22,6 +22,7 @@
 #include "app/widgets/video_texture.h"
 #include "navigation/recording/declined_resume.h"
 #include "navigation/worker/awaited.h"
+#include "navigation/worker/letting_go.h"
 
 namespace arthronaut::review {
 
@@ -44,6 +45,9 @@ struct OpenSession {
   [[nodiscard]] const recording::FrameGlance& glance() const { return timeline().frames()[playback.frame]; }
   [[nodiscard]] const Standing& standing() const { return review.standing_at(glance().index); }
 };
+
+// Leaves it: what computes of it is told to stop, and waited for beside the screen. No effect for null.
+void let_go(std::unique_ptr<OpenSession> session, worker::LettingGo& letting_go);
 
 class ReviewView : public mode::Mode {
  public:
@@ -143,8 +147,8 @@ class ReviewView : public mode::Mode {
   std::optional<std::size_t> chosen_;
   worker::Awaited<SessionReview> opening_;
   bool opens_for_another_case_ = false;  // what opening_ reads is of the case that was open before
-  std::optional<OpenSession> open_;
-  std::optional<LaidStrokes> laid_;                                    // of the session that is open
+  std::unique_ptr<OpenSession> open_;    // null: none
+  std::optional<LaidStrokes> laid_;      // of the session that is open
   std::map<std::filesystem::path, std::unique_ptr<TodayRun>> todays_;  // of sessions looked at before; ended
   std::unique_ptr<ReportRun> report_;                                  // null: none was asked for
   std::string no_report_;                      // why the one that was asked for last was not begun
@@ -154,6 +158,7 @@ class ReviewView : public mode::Mode {
   PostopPage postop_;
   bool shows_postop_ = false;  // in the place of the session
   std::string notice_;
+  worker::LettingGo letting_go_;  // of sessions that were left, and of reports that another case cut off
 };
 
 }  // namespace arthronaut::review
