@@ -325,7 +325,6 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   StateComparison states;
   PictureComparison seen(session);
   const auto stops = [&] { return summary.was_stopped = options.stops && options.stops(); };
-  if (stops()) return summary;
   const std::vector<RecordedSession> before = sessions_before(session, [&](const std::string& id) {
     summary.differences.push_back({-1, "session before", 0, "", id + " is not there any more"});
   });

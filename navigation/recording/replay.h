@@ -43,7 +43,8 @@ struct ReplayOptions {
 // The bone of the session and what belongs to it, from the case: seconds. Of a case without that bone, or
 // with another mesh of it than the session was recorded with, nothing is registered again. Throws what
 // reading the case throws. `stops` is asked before each step that takes long, and becomes that of the
-// options: where it ended one of them the bone is not ready, and a replay with these options ends at once.
+// options: where it ended one of them the bone is not ready, and a replay with these options ends before its
+// first frame.
 [[nodiscard]] ReplayOptions replay_options_of(const std::filesystem::path& case_folder,
                                               const RecordedSession& session,
                                               const std::function<bool()>& stops = {});
