@@ -31,7 +31,8 @@ void PostopPage::open(const open_case::PlanModel* model, const std::filesystem::
   model_ = model;
   case_folder_ = case_folder;
   read_only_ = read_only;
-  run_.reset();
+  stop();
+  letting_go_.take(std::move(run_));
   shown_ = {};
   better_kept_.clear();
   places_are_of_ = 0;
@@ -173,7 +174,8 @@ void PostopPage::follow_plan(const widgets::Ui& ui) {
 
 void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
   take_ended();
-  ui.log.note_state("postop", is_running()                                                     ? "running"
+  ui.log.note_state("postop", is_running() && run_->is_stopping()                              ? "stopping"
+                              : is_running()                                                   ? "running"
                               : search_.is_open                                                ? "browses"
                               : !which_.empty()                                                ? "asks"
                               : !problem_.empty()                                              ? "failed"
@@ -192,7 +194,7 @@ void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
   if (shown_.comparisons.empty() || !model_->has_bone(chosen_.bone)) {
     widgets::text_centered(ui, area, ui.theme.title, widgets::kQuietText,
                            is_running()
-                               ? run_->progress().what
+                               ? (run_->is_stopping() ? "Stopping ..." : run_->progress().what)
                                : "Drop the folder of the CT after the operation here, or press O to look "
                                  "for it.");
     return;
@@ -233,7 +235,8 @@ void PostopPage::draw_head(const widgets::Ui& ui, widgets::Rect area) {
     }
   } else if (is_running()) {
     const PostopProgress progress = run_->progress();
-    ImGui::ProgressBar(static_cast<float>(progress.share), {-1, 0}, progress.what.c_str());
+    ImGui::ProgressBar(static_cast<float>(progress.share), {-1, 0},
+                       run_->is_stopping() ? "Stopping ..." : progress.what.c_str());
   } else if (!problem_.empty()) {
     widgets::status_row(ui, widgets::Severity::Bad, "Not compared", problem_);
   } else if (!shown_.other_patient.empty()) {
@@ -332,7 +335,7 @@ void PostopPage::draw_slice(const widgets::Ui& ui, const widgets::Rect& area, in
   const Eigen::Vector2i size{kSlice_px, kSlice_px};
   const scene::SlicePlane plane = plane_along(*plan, length_mm, quarter_turns, (length_mm + 24) / kSlice_px);
   Slice& slice = slices_.at(static_cast<std::size_t>(quarter_turns));
-  if (shown_.answer != nullptr && comparison->bone.is_found) {
+  if (no_picture_words(shown_, *comparison).empty()) {
     const geometry::RigidTransform postop_from_plan = comparison->bone.plan_from_postop.inverse();
     scene::SlicePlane in_images = plane;
     in_images.center_mm = postop_from_plan * plane.center_mm;
@@ -346,6 +349,9 @@ void PostopPage::draw_slice(const widgets::Ui& ui, const widgets::Rect& area, in
     draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(slice.texture.texture())),
                   at.min(), at.max());
   }
+  // The lines alone must not look like a picture of which nothing is to be seen.
+  const std::string lacking = no_picture_words(shown_, *comparison);
+  ui.log.note_state("postop_picture_" + std::to_string(quarter_turns), lacking.empty() ? "shown" : lacking);
   const float scale = at.width / kSlice_px;
   const auto on_screen = [&](const Eigen::Vector3d& point) {
     const Eigen::Vector2d pixel = plane.pixel_of(point, size);
@@ -373,10 +379,12 @@ void PostopPage::draw_slice(const widgets::Ui& ui, const widgets::Rect& area, in
     draw_tunnel(comparison->tunnel.tunnel, comparison->tunnel.length_mm, IM_COL32(230, 159, 0, 255));
   draw.PopClipRect();
   draw_side_letters(ui, at, plane);
-  widgets::caption(
-      ui, area, widgets::kText,
-      std::string(quarter_turns == 0 ? "Along the planned axis" : "The same, turned by 90\u00B0") +
-          (shown_.answer == nullptr ? ". Its images are not read: compare again (C)" : ""));
+  if (!lacking.empty()) {
+    widgets::Rect below = area;
+    widgets::text_centered(ui, below.cut_bottom(area.height / 3), ui.theme.title, widgets::kCaution, lacking);
+  }
+  widgets::caption(ui, area, widgets::kText,
+                   quarter_turns == 0 ? "Along the planned axis" : "The same, turned by 90\u00B0");
   ui.log.note("review.postop_slice_" + std::to_string(quarter_turns), area.min(), area.max());
 }
 

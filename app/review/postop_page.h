@@ -17,6 +17,7 @@
 #include "app/widgets/controls.h"
 #include "app/widgets/grey_texture.h"
 #include "app/widgets/scene_pane.h"
+#include "navigation/worker/letting_go.h"
 #include "planning/postop/achieved_place.h"
 
 namespace arthronaut::review {
@@ -115,6 +116,7 @@ class PostopPage {
   std::function<void()> wake_;
   widgets::ScenePane pane_;
   std::unique_ptr<PostopRun> run_;
+  worker::LettingGo letting_go_;            // of what another case cut off
   std::filesystem::path source_;            // that was compared with last
   std::vector<images::ImageSeries> which_;  // of it, to be chosen among; empty: no question
   PostopShown shown_;

@@ -95,6 +95,13 @@ std::string in_words(PostopStanding standing) {
   return "";
 }
 
+std::string no_picture_words(const PostopShown& shown, const postop::Comparison& comparison) {
+  if (shown.answer == nullptr)
+    return "No picture: the case keeps the comparison and not its images. Compare again (C) to see them.";
+  if (!comparison.bone.is_found) return "No picture: the bone was not found in the images.";
+  return "";
+}
+
 std::filesystem::path achieved_file(const std::filesystem::path& case_folder) {
   return case_folder / "achieved.json";
 }

@@ -6,7 +6,7 @@
 // memory.
 //
 // Threads: made and asked on the window's thread; one worker computes. It ends at once after stop() while it
-// reads or seeks a bone, and within some seconds while it measures a tunnel.
+// reads or seeks a bone, and with the bore in hand while it measures a tunnel.
 #pragma once
 
 #include <filesystem>
@@ -42,6 +42,7 @@ class PostopRun {
   [[nodiscard]] std::string error() const { return worker_.failure(); }  // empty: none
   // Nothing is kept then.
   void stop() { worker_.request_stop(); }
+  [[nodiscard]] bool is_stopping() const { return worker_.is_stopping(); }
 
  private:
   worker::Worker<int, PostopProgress> worker_;
@@ -78,6 +79,8 @@ enum class PostopStanding {
 [[nodiscard]] PostopStanding standing_of(const PostopShown& shown, bool is_running, bool asked_in_vain);
 [[nodiscard]] bool is_of_earlier_images(PostopStanding standing);
 [[nodiscard]] std::string in_words(PostopStanding standing);  // empty: OfTheseImages
+// Why no grey picture stands behind the lines of a slice; empty: one does.
+[[nodiscard]] std::string no_picture_words(const PostopShown& shown, const postop::Comparison& comparison);
 // Images of another patient are refused: whose they are is told, and what was shown before stays. So are
 // those that show none of the plan's bones reliably, where what was shown before does. False then.
 bool take_answer(std::shared_ptr<const open_case::PostopAnswer> answer, PostopShown& shown);

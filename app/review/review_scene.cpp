@@ -1,5 +1,6 @@
 // The bone of a recorded session at the moment that is looked at, with what was planned, touched and drilled.
 #include <algorithm>
+#include <span>
 
 #include "app/review/review_view.h"
 #include "app/widgets/controls.h"
@@ -22,6 +23,7 @@ void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
   }
   pane_.draw(ui, "review.view", area);
   const bool is_femur = review.session->header.bone == bones::BoneKind::Femur;
+  ui.log.note_state("review_points", std::to_string(open_->shown_points));
   ui.log.note_state("review_strokes", shows_strokes_alone() ? "alone" : "on the bone");
   if (shows_strokes_alone())
     return widgets::caption(ui, area, widgets::kCaution,
@@ -43,7 +45,7 @@ void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::caption(ui, area, widgets::kText,
                    std::string(is_femur ? "Femur" : "Tibia") + planned +
                        (shows_drilled ? ". Banded: achieved" : "") +
-                       (laid_ && !laid_->off_bone.empty() ? ". Red strokes: off the bone" : ""));
+                       (open_->shows_off_bone ? ". Red strokes: off the bone" : ""));
 }
 
 bool ReviewView::shows_strokes_alone() const {
@@ -63,7 +65,7 @@ const ReviewView::LaidStrokes& ReviewView::laid_by(
   for (const strokes::CurvePoint& point : session.curves) {
     const Eigen::Vector3d in_bone_mm = bone_from_marker * point.position_mm;
     const bool is_off = surface != nullptr && std::abs(surface->signed_distance_mm(in_bone_mm)) > off_mm;
-    (is_off ? laid.off_bone : laid.on_bone).push_back(in_bone_mm);
+    laid.points.push_back({in_bone_mm, is_off});
   }
   return laid;
 }
@@ -75,14 +77,17 @@ bool ReviewView::is_of_another_surface() const {
 
 void ReviewView::show_scene() {
   const SessionReview& review = open_->review;
-  const recording::SessionOverview& session = *review.session;
   const recording::RecordedFrame& frame = open_->timeline().frame(open_->playback.frame);
-  const bones::BoneKind bone = session.header.bone;
+  const bones::BoneKind bone = review.session->header.bone;
+  // What was drawn after the moment that is looked at was not there.
+  const auto drawn = review.drawn_until(open_->glance().timestamp_ns);
+  open_->shown_points = drawn.size();
+  open_->shows_off_bone = false;
   scene::SceneContent content;
   if (shows_strokes_alone()) {
-    std::vector<Eigen::Vector3d> drawn;
-    for (const strokes::CurvePoint& point : session.curves) drawn.push_back(point.position_mm);
-    scene::add_curve_points(content, drawn);
+    std::vector<Eigen::Vector3d> points_mm;
+    for (const strokes::CurvePoint& point : drawn) points_mm.push_back(point.position_mm);
+    scene::add_curve_points(content, points_mm);
     for (auto& line : content.lines) line.color = kDrawnColor;
     if (frame.tip_is_valid) content.balls.push_back({frame.tip_in_world_mm, 2.5, scene::kGuideColor, false});
     return pane_.show(content);
@@ -96,11 +101,15 @@ void ReviewView::show_scene() {
     scene::add_achieved_tunnel(content, drilled->achieved.measured, drilled->length_mm);
   if (standing.registration != nullptr && standing.registration->has_pose) {
     const geometry::RigidTransform bone_from_marker = standing.registration->marker_from_bone.inverse();
-    const LaidStrokes& laid = laid_by(standing.registration);
-    scene::add_curve_points(content, laid.on_bone);
-    const std::size_t on_bone = content.lines.size();
-    scene::add_curve_points(content, laid.off_bone);
-    for (std::size_t i = on_bone; i < content.lines.size(); ++i) content.lines[i].color = kOffColor;
+    std::vector<Eigen::Vector3d> on_bone, off_bone;
+    for (const LaidStrokes::Point& point :
+         std::span(laid_by(standing.registration).points).first(drawn.size()))
+      (point.is_off_bone ? off_bone : on_bone).push_back(point.in_bone_mm);
+    scene::add_curve_points(content, on_bone);
+    const std::size_t on_bone_lines = content.lines.size();
+    scene::add_curve_points(content, off_bone);
+    for (std::size_t i = on_bone_lines; i < content.lines.size(); ++i) content.lines[i].color = kOffColor;
+    open_->shows_off_bone = !off_bone.empty();
     if (frame.tip_is_valid)
       content.balls.push_back({bone_from_marker * frame.tip_in_world_mm, 2.5, scene::kGuideColor, false});
   }

@@ -33,6 +33,11 @@ bool was_kept(const recording::SessionOverview& session, std::int64_t frame) {
 
 }  // namespace
 
+void let_go(std::unique_ptr<OpenSession> session, worker::LettingGo& letting_go) {
+  if (session != nullptr && session->today != nullptr) session->today->stop();
+  letting_go.take(std::move(session));
+}
+
 ReviewView::ReviewView(std::function<void()> make_current, std::function<void()> wake,
                        std::function<void(bones::BoneKind)> to_theatre)
     : wake_(std::move(wake)),
@@ -56,9 +61,9 @@ void ReviewView::case_opened(const mode::OpenCase& opened) {
   read_only_ = opened.read_only;
   sessions_.open(case_folder_, model_->knee().side);
   chosen_.reset();
-  open_.reset();
+  let_go(std::move(open_), letting_go_);
   todays_.clear();
-  report_.reset();
+  letting_go_.take(std::move(report_));
   no_report_.clear();
   opens_for_another_case_ = opening_.is_busy();
   note_ = {};
@@ -90,7 +95,7 @@ void ReviewView::choose(std::size_t session) {
   // What was computed is there when one comes back; of a record that grew meanwhile it is not all.
   if (open_ && open_->today && open_->today->has_ended() && !open_->review.session->goes_on())
     todays_[open_->review.folder] = std::move(open_->today);
-  open_.reset();
+  let_go(std::move(open_), letting_go_);
   note_ = {};
   notice_.clear();
   opening_.start([folder = sessions_.folders()[session]] { return read_review(folder); }, wake_);
@@ -108,9 +113,10 @@ void ReviewView::take_opened() {
     return choose(0);
   }
   try {  // the top of the job
-    open_.emplace().review = opening_.take();
+    SessionReview review = opening_.take();
+    open_ = std::make_unique<OpenSession>();
+    open_->review = std::move(review);
   } catch (const std::exception& error) {
-    open_.reset();
     notice_ = error.what();
     return;
   }
@@ -285,12 +291,19 @@ void ReviewView::draw_buttons(const widgets::Ui& ui) {
   if (!open_ || !open_->today) return ui.log.note_state("today", "none");
   const TodayProgress progress = open_->today->progress();
   const std::string error = open_->today->error();
-  ui.log.note_state("today", !error.empty() ? "failed" : progress.result ? "done" : "running");
+  const bool is_stopping = open_->today->is_stopping();
+  ui.log.note_state("today", !error.empty()    ? "failed"
+                             : progress.result ? "done"
+                             : is_stopping     ? "stopping"
+                                               : "running");
   if (!error.empty()) return widgets::status_row(ui, widgets::Severity::Bad, "Not run again", error);
   if (progress.result) return;
   ImGui::ProgressBar(
       progress.total > 0 ? static_cast<float>(progress.done) / static_cast<float>(progress.total) : 0,
-      {-1, 0}, progress.total > 0 ? nullptr : "Making the bone ready");
+      {-1, 0},
+      is_stopping          ? "Stopping ..."
+      : progress.total > 0 ? nullptr
+                           : "Making the bone ready");
 }
 
 void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) {

@@ -22,6 +22,7 @@
 #include "app/widgets/video_texture.h"
 #include "navigation/recording/declined_resume.h"
 #include "navigation/worker/awaited.h"
+#include "navigation/worker/letting_go.h"
 
 namespace arthronaut::review {
 
@@ -36,12 +37,17 @@ struct OpenSession {
   std::optional<training::Score> score;    // of an exercise whose score was kept
   std::unique_ptr<CheckRun> check;         // whether it is as it was recorded; never null once it is open
   std::optional<std::size_t> shown_frame;  // of the 3D view
+  std::size_t shown_points = 0;            // of the session's curves, likewise
+  bool shows_off_bone = false;             // some of these do not lie on the bone
   bool can_be_resumed = false;             // it was declined, and no newer session of its bone decides
 
   [[nodiscard]] const recording::SessionTimeline& timeline() const { return *review.timeline; }
   [[nodiscard]] const recording::FrameGlance& glance() const { return timeline().frames()[playback.frame]; }
   [[nodiscard]] const Standing& standing() const { return review.standing_at(glance().index); }
 };
+
+// Leaves it: what computes of it is told to stop, and waited for beside the screen. No effect for null.
+void let_go(std::unique_ptr<OpenSession> session, worker::LettingGo& letting_go);
 
 class ReviewView : public mode::Mode {
  public:
@@ -121,7 +127,11 @@ class ReviewView : public mode::Mode {
   // Strokes by where they lie: what is known not to lie on the bone is not drawn as if it did.
   struct LaidStrokes {
     std::shared_ptr<const registration::RegistrationSummary> by;
-    std::vector<Eigen::Vector3d> on_bone, off_bone;
+    struct Point {
+      Eigen::Vector3d in_bone_mm;
+      bool is_off_bone;
+    };
+    std::vector<Point> points;  // as in the session's curves
   };
   const LaidStrokes& laid_by(const std::shared_ptr<const registration::RegistrationSummary>& registration);
   [[nodiscard]] bool is_of_another_surface() const;  // than the case has of its bone by now
@@ -137,8 +147,8 @@ class ReviewView : public mode::Mode {
   std::optional<std::size_t> chosen_;
   worker::Awaited<SessionReview> opening_;
   bool opens_for_another_case_ = false;  // what opening_ reads is of the case that was open before
-  std::optional<OpenSession> open_;
-  std::optional<LaidStrokes> laid_;                                    // of the session that is open
+  std::unique_ptr<OpenSession> open_;    // null: none
+  std::optional<LaidStrokes> laid_;      // of the session that is open
   std::map<std::filesystem::path, std::unique_ptr<TodayRun>> todays_;  // of sessions looked at before; ended
   std::unique_ptr<ReportRun> report_;                                  // null: none was asked for
   std::string no_report_;                      // why the one that was asked for last was not begun
@@ -148,6 +158,7 @@ class ReviewView : public mode::Mode {
   PostopPage postop_;
   bool shows_postop_ = false;  // in the place of the session
   std::string notice_;
+  worker::LettingGo letting_go_;  // of sessions that were left, and of reports that another case cut off
 };
 
 }  // namespace arthronaut::review

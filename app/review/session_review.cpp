@@ -52,6 +52,11 @@ std::shared_ptr<recording::RecordedPictures> opened(
   }
 }
 
+// A curve's times are of whole microseconds: between these lies the frame's.
+constexpr double kRounded_s = 1e-6;
+std::int64_t first_ns(double time_s) { return static_cast<std::int64_t>((time_s - kRounded_s) * 1e9); }
+std::int64_t last_ns(double time_s) { return static_cast<std::int64_t>((time_s + kRounded_s) * 1e9); }
+
 // Each change is in force from the frame on that comes after it. Returns the registrations by their files.
 std::map<std::string, std::shared_ptr<const registration::RegistrationSummary>> follow(
     SessionReview& review) {
@@ -94,6 +99,25 @@ DrilledTunnel drilled_tunnel(const SessionReview& review, operation::AchievedTun
   return tunnel;
 }
 
+// An operation that goes on keeps what was drawn before, in the times of another clock. The first point of
+// each stroke of this session is the tip of one of its frames.
+std::size_t points_of_before(const SessionReview& review) {
+  const strokes::Curves& curves = review.session->curves;
+  if (review.session->header.continues.empty()) return 0;
+  const auto& frames = review.timeline->frames();
+  constexpr double kSameTip_mm = 1e-3;  // what the file rounds, and a little more
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    if (!curves[i].time_s || (i > 0 && curves[i].curve == curves[i - 1].curve)) continue;
+    const std::int64_t until_ns = last_ns(*curves[i].time_s);
+    const auto after = std::ranges::upper_bound(frames, until_ns, {}, &recording::FrameGlance::timestamp_ns);
+    if (after == frames.begin()) continue;
+    const recording::RecordedFrame& frame =
+        review.timeline->frame(static_cast<std::size_t>(after - frames.begin()) - 1);
+    if (frame.tip_is_valid && (frame.tip_in_world_mm - curves[i].position_mm).norm() < kSameTip_mm) return i;
+  }
+  return curves.size();
+}
+
 }  // namespace
 
 bool SessionReview::has_pose() const {
@@ -111,12 +135,18 @@ const Standing& SessionReview::standing_at(std::int64_t frame_index) const {
 
 RegistrationRow registration_row(const SessionReview& review, std::int64_t frame_index) {
   const auto& registration = review.standing_at(frame_index).registration;
+  const auto& next = review.standing_at(frame_index + 1).registration;
+  // What began with this picture is told below as having happened.
+  if (registration == nullptr && next != nullptr)
+    return {widgets::Severity::Quiet,
+            next->reliable ? "found with this picture, in force from the next one on: target " +
+                                 widgets::plus_minus(next->predicted_tre_mm) + " mm"
+                           : "found with this picture, not reliable"};
   if (registration == nullptr) return {widgets::Severity::Quiet, "none at this moment"};
   if (!registration->reliable)
     return {widgets::Severity::Bad,
             registration->reasons.empty() ? "not reliable" : registration->reasons.front()};
   // What ended it with this picture is told below: nothing good stands above that.
-  const auto& next = review.standing_at(frame_index + 1).registration;
   const bool ends = next == nullptr || !next->reliable;
   return {ends ? widgets::Severity::Quiet : widgets::Severity::Good,
           "target " + widgets::plus_minus(registration->predicted_tre_mm) + " mm" +
@@ -128,6 +158,15 @@ std::vector<const DrilledTunnel*> SessionReview::drilled_at(std::int64_t frame_i
   for (const DrilledTunnel& tunnel : drilled)
     if (frame_index >= tunnel.from_frame && tunnel.length_mm > 0) there.push_back(&tunnel);
   return there;
+}
+
+std::span<const strokes::CurvePoint> SessionReview::drawn_until(std::int64_t timestamp_ns) const {
+  const std::span all(session->curves);
+  const auto own = all.subspan(points_of_before);
+  const auto later = std::ranges::find_if(own, [&](const strokes::CurvePoint& point) {
+    return point.time_s && first_ns(*point.time_s) > timestamp_ns;
+  });
+  return all.first(points_of_before + static_cast<std::size_t>(later - own.begin()));
 }
 
 std::vector<Stretch> stretches_of(const std::vector<bool>& holds, std::size_t bridge) {
@@ -166,6 +205,7 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
   review.tracks.push_back(
       track_of(timeline, "Guidance", [](const recording::FrameGlance& f) { return f.is_guided(); }));
   review.tracks.back().is_guidance = true;
+  review.points_of_before = points_of_before(review);
   const auto registrations = follow(review);
   review.moments = moments_of(
       session.events, timeline,

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,8 @@ struct SessionReview {
   // Rising, and never empty. Not what the case plans by now.
   std::vector<Standing> standings = {{}};
   std::vector<DrilledTunnel> drilled;  // none, one, or those of two bundles
+  // Of session->curves, so many points were drawn in sessions before this one, by their clocks.
+  std::size_t points_of_before = 0;
   std::string
       achieved_problem;  // why one of their files could not be read; empty when it was or is not there
   // What is missing or broken of the session: the rest is shown. Empty where nothing is.
@@ -68,13 +71,17 @@ struct SessionReview {
   [[nodiscard]] const Standing& standing_at(std::int64_t frame_index) const;
   // Those that are to be drawn there: drilled by then, and of a length that is known.
   [[nodiscard]] std::vector<const DrilledTunnel*> drilled_at(std::int64_t frame_index) const;
+  // Of session->curves, what was drawn by that time: the first of them. What was taken back or cleared
+  // later on is not among them, since the record's curves are those of its end.
+  [[nodiscard]] std::span<const strokes::CurvePoint> drawn_until(std::int64_t timestamp_ns) const;
 };
 
 // As far as the session is whole. Throws IoError or InvalidInput where nothing can be shown of it: no header,
 // or no record of its frames.
 [[nodiscard]] SessionReview read_review(const std::filesystem::path& session_folder);
 
-// What guided in that picture, and whether it did in the one after it.
+// What guided in that picture, and whether it did in the one after it: what registered with that picture says
+// so, as what ended there does.
 struct RegistrationRow {
   widgets::Severity severity = widgets::Severity::Quiet;
   std::string text;

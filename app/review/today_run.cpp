@@ -24,8 +24,7 @@ TodayResult compute_today(const std::filesystem::path& case_folder,
   TodayResult result;
   const recording::RecordedSession session(session_folder);
   const auto total = static_cast<long>(session.frames().size());
-  recording::ReplayOptions options = recording::replay_options_of(case_folder, session);
-  options.stops = stops;
+  recording::ReplayOptions options = recording::replay_options_of(case_folder, session, stops);
   options.on_frame = [&](const recording::RecordedFrame& then, const pipeline::FrameResult& now) {
     result.frames.push_back({then.index, now.guidance.state, static_cast<float>(now.guidance.offset_mm),
                              static_cast<float>(now.guidance.angle_deg)});
@@ -43,12 +42,16 @@ TodayResult compute_today(const std::filesystem::path& case_folder,
 
 TodayRun::TodayRun(const std::filesystem::path& case_folder, const std::filesystem::path& session_folder,
                    std::function<void()> on_news)
+    : TodayRun([=](const auto& progress,
+                   const auto& stops) { return compute_today(case_folder, session_folder, progress, stops); },
+               std::move(on_news)) {}
+
+TodayRun::TodayRun(Compute compute, std::function<void()> on_news)
     : worker_(
           worker::Backlog::Lossless,
-          [case_folder, session_folder](auto& inbox) {
+          [compute = std::move(compute)](auto& inbox) {
             TodayProgress progress;
-            auto result = compute_today(
-                case_folder, session_folder,
+            auto result = compute(
                 [&](long done, long total) {
                   progress.done = done;
                   progress.total = total;
@@ -67,6 +70,8 @@ TodayProgress TodayRun::progress() const {
 
 std::string today_words(const TodayResult& result) {
   const recording::ReplaySummary& summary = result.summary;
+  if (summary.was_stopped && summary.replayed_frames + summary.frames_without_picture == 0)
+    return "Stopped before the first frame was compared.";
   std::string words;
   if (summary.was_stopped)
     words = files::format("Stopped after %ld of %ld frames. ",

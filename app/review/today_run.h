@@ -1,8 +1,9 @@
 // What today's program makes of a recorded session's own pictures and commands, beside the screen: the same
 // that `arthronaut replay` computes, with the numbers of every frame.
 //
-// Threads: made and asked on the window's thread; one worker computes. Letting go of it ends it within a
-// frame, and within seconds while the bone is made ready.
+// Threads: made and asked on the window's thread; one worker computes. It ends within a frame after stop(),
+// and within seconds while the bone is made ready or a registration is found: the window does not wait for
+// it, see let_go() in review_view.h.
 #pragma once
 
 #include <filesystem>
@@ -47,10 +48,15 @@ class TodayRun {
  public:
   TodayRun(const std::filesystem::path& case_folder, const std::filesystem::path& session_folder,
            std::function<void()> on_news);
+  // The same of anything that computes, as compute_today() does, on the worker.
+  using Compute = std::function<TodayResult(const std::function<void(long done, long total)>& progress,
+                                            const std::function<bool()>& stops)>;
+  TodayRun(Compute compute, std::function<void()> on_news);
   [[nodiscard]] TodayProgress progress() const;
   [[nodiscard]] bool has_ended() const { return worker_.has_ended(); }
   [[nodiscard]] std::string error() const { return worker_.failure(); }  // empty: none
   void stop() { worker_.request_stop(); }  // what was compared so far is then the result
+  [[nodiscard]] bool is_stopping() const { return worker_.is_stopping(); }
 
  private:
   worker::Worker<int, TodayProgress> worker_;

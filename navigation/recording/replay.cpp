@@ -324,6 +324,7 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   FrameComparison cold_comparison(summary, options.reencoded_tolerance_mm, options.reencoded_tolerance_deg);
   StateComparison states;
   PictureComparison seen(session);
+  const auto stops = [&] { return summary.was_stopped = options.stops && options.stops(); };
   const std::vector<RecordedSession> before = sessions_before(session, [&](const std::string& id) {
     summary.differences.push_back({-1, "session before", 0, "", id + " is not there any more"});
   });
@@ -332,7 +333,8 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   setup.cartilage = options.cartilage;
   Rerun rerun(setup, options.bone != nullptr ? Registrations::FoundAgain : Registrations::NotFollowed,
               options.bone);
-  for (const RecordedSession& earlier : before) rerun.run(earlier);
+  for (const RecordedSession& earlier : before)
+    if (!rerun.run(earlier, stops)) return summary;
 
   Pictures pictures(session);
   // What was tracked depends on every picture before: where the first ones were not kept, tracking begins
@@ -343,8 +345,7 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   rerun.start(session);
   pipeline::FrameResult cold_result;
   for (const RecordedFrame& recorded : session.frames()) {
-    if (options.stops && options.stops()) {
-      summary.was_stopped = true;
+    if (stops()) {
       states.add_to(summary);
       return summary;
     }

@@ -36,15 +36,18 @@ struct ReplayOptions {
   // What the record says of a frame and what the program says of it now: of every frame whose picture was
   // kept, in order. May be empty.
   std::function<void(const RecordedFrame& then, const pipeline::FrameResult& now)> on_frame = {};
-  // Asked before every frame; true ends the replay there. May be empty.
+  // Asked before every frame, also of the sessions before; true ends the replay there. May be empty.
   std::function<bool()> stops = {};
 };
 
 // The bone of the session and what belongs to it, from the case: seconds. Of a case without that bone, or
 // with another mesh of it than the session was recorded with, nothing is registered again. Throws what
-// reading the case throws.
+// reading the case throws. `stops` is asked before each step that takes long, and becomes that of the
+// options: where it ended one of them the bone is not ready, and a replay with these options ends before its
+// first frame.
 [[nodiscard]] ReplayOptions replay_options_of(const std::filesystem::path& case_folder,
-                                              const RecordedSession& session);
+                                              const RecordedSession& session,
+                                              const std::function<bool()>& stops = {});
 
 struct Difference {
   std::int64_t frame = -1;  // -1: of the session as a whole

@@ -132,14 +132,16 @@ operation::OperationStatePtr Rerun::process(const RecordedFrame& recorded) {
   return state;
 }
 
-void Rerun::run(const RecordedSession& session) {
+bool Rerun::run(const RecordedSession& session, const std::function<bool()>& stops) {
   start(session);
   for (const RecordedFrame& frame : session.frames()) {
+    if (stops && stops()) return false;
     play_before(frame.index);
     operation_.process_recorded(result_of(frame, pipeline_));
     pass_on();
   }
   play_rest();
+  return true;
 }
 
 // What was given before any source ran, where the record says so.

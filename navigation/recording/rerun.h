@@ -34,8 +34,8 @@ class Rerun {
   // The picture is that of the record; the state is that of the frame.
   operation::OperationStatePtr process(const camera::Frame& picture, const RecordedFrame& recorded);
   operation::OperationStatePtr process(const RecordedFrame& recorded);
-  // All of it, from the record alone.
-  void run(const RecordedSession& session);
+  // All of it, from the record alone. `stops` is asked before every frame; false: it ended it.
+  bool run(const RecordedSession& session, const std::function<bool()>& stops = {});
 
   [[nodiscard]] operation::OperationStatePtr state() { return operation_.state(); }
   [[nodiscard]] const operation::Operation& operation() const { return operation_; }

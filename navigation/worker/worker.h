@@ -160,6 +160,8 @@ class Worker {
     return shared_->error;
   }
   void request_stop() { thread_.request_stop(); }
+  // It was asked for and is not yet done.
+  [[nodiscard]] bool is_stopping() const { return thread_.get_stop_token().stop_requested() && !has_ended(); }
   // Waits until all that was posted so far is worked in, or the worker has ended; for tests and for the end.
   void finish() const {
     std::unique_lock lock(shared_->mutex);

@@ -68,6 +68,7 @@ FoundBone find_bone(const images::VolumeSampler& postop, const BoneField& field,
   const auto seek = [&](std::span<const SurfaceSample> sought, std::span<const Eigen::Vector3d> anchors_mm) {
     for (const Turns turns : {Turns::Small, Turns::Large}) {
       for (const CoarsePose& coarse : coarse_poses(field, anchors_mm, sought, turns, goes_on_here)) {
+        if (!goes_on_here(1)) return;
         const EdgePose pose = edge_pose(postop, samples, coarse.postop_from_plan);
         if (!(pose.in_view_share > 0) || merit(pose) <= best) continue;
         best = merit(pose);

@@ -201,8 +201,9 @@ Comparison PostopImages::compare(const geometry::TriangleMesh& bone, const tunne
                                  " was not found in the images"};
     return comparison;
   }
-  const DrilledTunnel drilled =
-      find_drilled(prepared_->volume, found.pose.postop_from_plan, geometry::Surface(bone), plan, others);
+  const DrilledTunnel drilled = find_drilled(prepared_->volume, found.pose.postop_from_plan,
+                                             geometry::Surface(bone), plan, others, half(0.5));
+  if (is_ended) return {};
   comparison.tunnel = told(drilled, found, plan);
   return comparison;
 }

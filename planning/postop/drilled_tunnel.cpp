@@ -336,10 +336,13 @@ DrilledTunnel told(const Candidate& candidate, const tunnels::Tunnel& plan) {
 
 DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTransform& postop_from_plan,
                            const geometry::Surface& bone, const tunnels::Tunnel& plan,
-                           std::span<const tunnels::Tunnel> others) {
+                           std::span<const tunnels::Tunnel> others, const GoesOn& goes_on) {
   Finder finder(postop, postop_from_plan, bone, plan);
   std::vector<Candidate> candidates;
-  for (const Bore& bore : search_bores(finder.grid(), plan)) {
+  const std::vector<Bore> seen = search_bores(finder.grid(), plan);
+  double done = 0;
+  for (const Bore& bore : seen) {
+    if (goes_on && !goes_on(done++ / static_cast<double>(seen.size()))) return {};
     if (auto candidate = finder.measured(bore)) candidates.push_back(std::move(*candidate));
   }
   DrilledTunnel none;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "planning/postop/drilled_mouth.h"
+#include "planning/postop/goes_on.h"
 #include "planning/postop/tunnel_fit.h"
 #include "planning/tunnels/tunnel_quantity.h"
 
@@ -34,10 +35,12 @@ struct DrilledTunnel {
 };
 
 // `bone`: the plan's, before the operation. `others`: what else was planned in it; a tunnel that lies nearer
-// to one of those is taken for it.
+// to one of those is taken for it. `goes_on`: told before each bore that is measured; where it ended the
+// search nothing was found.
 [[nodiscard]] DrilledTunnel find_drilled(const images::Volume& postop,
                                          const geometry::RigidTransform& postop_from_plan,
                                          const geometry::Surface& bone, const tunnels::Tunnel& plan,
-                                         std::span<const tunnels::Tunnel> others = {});
+                                         std::span<const tunnels::Tunnel> others = {},
+                                         const GoesOn& goes_on = {});
 
 }  // namespace arthronaut::postop

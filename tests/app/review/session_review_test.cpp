@@ -100,7 +100,9 @@ TEST(SessionReview, SaysInWhichPictureARegistrationEnds) {
     recorder.finish();
   }
   const SessionReview review = read_review(folder.path());
-  EXPECT_EQ(registration_row(review, 0).text, "none at this moment");
+  const RegistrationRow found = registration_row(review, 0);
+  EXPECT_EQ(found.severity, widgets::Severity::Quiet) << "nothing guided in this picture";
+  EXPECT_TRUE(found.text.starts_with("found with this picture, in force from the next one on")) << found.text;
   EXPECT_EQ(registration_row(review, 1).severity, widgets::Severity::Good);
   const RegistrationRow last = registration_row(review, 2);
   EXPECT_EQ(last.severity, widgets::Severity::Quiet);
@@ -124,6 +126,39 @@ TEST(SessionReview, TellsWhatHappenedWhereNoFrameWasRecorded) {
       review.moments, [](const Moment& one) { return one.words.starts_with("Tunnel drilled, by word"); });
   ASSERT_NE(drilled, review.moments.end());
   EXPECT_NEAR(drilled->time_s, 2.5, 1e-9);
+}
+
+// Of the strokes only those stand that were drawn by the moment that is looked at.
+TEST(SessionReview, HoldsWhatWasDrawnByEachMoment) {
+  const test::TemporaryFolder folder;
+  recording::SessionHeader header = test::session_header();
+  const auto record = [&](const std::filesystem::path& into, const strokes::Curves& curves) {
+    std::filesystem::create_directory(into);
+    recording::SessionRecorder recorder(into, header, test::scripted_options());
+    for (int i = 0; i < 8; ++i) recorder.append(test::frame_result(i));
+    recorder.set_curves(curves);
+    recorder.finish();
+    return read_review(into);
+  };
+  const auto point = [](int curve, int frame) {
+    const pipeline::FrameResult at = test::frame_result(frame);
+    return strokes::CurvePoint{curve, static_cast<double>(at.timestamp_ns) * 1e-9, at.tip_in_world_mm};
+  };
+  const auto drawn = [](const SessionReview& review, std::size_t frame) {
+    return review.drawn_until(review.timeline->frames()[frame].timestamp_ns).size();
+  };
+  const strokes::Curves own{point(3, 2), point(3, 4), point(4, 6)};
+  const SessionReview alone = record(folder / "alone", own);
+  for (const auto& [frame, count] : {std::pair(0U, 0U), {1U, 0U}, {2U, 1U}, {4U, 2U}, {5U, 2U}, {7U, 3U}})
+    EXPECT_EQ(drawn(alone, frame), count) << frame;
+
+  // What earlier sessions of the operation drew stood all along, whatever their clocks say.
+  header.continues = "0001";
+  strokes::Curves both{{0, 0.05, {50, 0, 0}}, {1, 70.0, {51, 0, 0}}};
+  both.insert(both.end(), own.begin(), own.end());
+  const SessionReview later = record(folder / "later", both);
+  for (const auto& [frame, count] : {std::pair(0U, 2U), {2U, 3U}, {4U, 4U}, {7U, 5U}})
+    EXPECT_EQ(drawn(later, frame), count) << frame;
 }
 
 // A registration that cannot be read is told, and the session is shown.

@@ -272,6 +272,10 @@ TEST_F(ReviewWindow, ShowsTheComparisonThatACaseKeeps) {
   app.press("F3");
   EXPECT_TRUE(app.wait_for_state("review_page", "achieved"));
   EXPECT_TRUE(app.wait_for_state("postop", "kept"));
+  for (const char* const picture : {"postop_picture_0", "postop_picture_1"})
+    EXPECT_TRUE(app.wait_for_state(picture,
+                                   "No picture: the case keeps the comparison and not its images. Compare "
+                                   "again (C) to see them."));
   // What it calls planned is the plan of now.
   const auto planned_in_words = [&] {
     const auto tunnel = cases::load_case(case_folder_).plan.tunnels.at(bones::BoneKind::Femur);

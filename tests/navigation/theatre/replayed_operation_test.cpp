@@ -102,6 +102,15 @@ TEST_F(ReplayedOperation, EveryCommandOverTwoSourcesGivesTheSameStates) {
   EXPECT_EQ(recording::RecordedSession(folder_ / "session2").header().continues, "session1");
   expect_replays("session1", 60);
   expect_replays("session2", 50);
+
+  // It ends when it is told to, also while it takes in what came before.
+  int asked = 0;
+  recording::ReplayOptions ended;
+  ended.stops = [&] { return ++asked == 20; };
+  const auto summary = recording::replay_session(recording::RecordedSession(folder_ / "session2"), ended);
+  EXPECT_TRUE(summary.was_stopped);
+  EXPECT_EQ(summary.replayed_frames + summary.frames_without_picture, 0);
+  EXPECT_EQ(asked, 20);
 }
 
 // A record as it was before streams were kept as they come: of a picture the frame alone, one video without

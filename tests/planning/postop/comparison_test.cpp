@@ -319,6 +319,20 @@ TEST_F(Achieved, ABoneThatIsNotThereIsSoughtOnce) {
   EXPECT_THAT(ended.bone.reasons, Contains(HasSubstr("not called")));
 }
 
+// While the bores are measured, too, which takes longer than the bone.
+TEST_F(Achieved, ItEndsWhenItIsToldToWhileItMeasures) {
+  const images::Volume volume = ct(BoneKind::Femur, {{.tunnel = moved(BoneKind::Femur, {2, 1}, {4, 3})}});
+  const PostopImages images(volume);
+  double last = 0;
+  const Comparison ended =
+      images.compare(mesh(BoneKind::Femur), plan(BoneKind::Femur), {}, [&](double share) {
+        last = share;
+        return share < 0.5;
+      });
+  EXPECT_FALSE(ended.bone.is_found || ended.tunnel.is_found);
+  EXPECT_EQ(last, 0.5) << "the bone was found, and the first bore was next";
+}
+
 TEST_F(Achieved, NoBoneAtAllIsRefused) {
   images::Volume empty;
   empty.size = {40, 40, 40};
