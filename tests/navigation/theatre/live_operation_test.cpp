@@ -104,6 +104,7 @@ TEST_F(LiveOperationTest, Hazard3ASlowSourceAndARefusedTouchArePublished) {
 // What a picture shows that repeats the one before is as old as that one: a source that hangs guides no
 // longer than one that is silent.
 TEST_F(LiveOperationTest, Hazard3ARepeatedPictureIsAsOldAsTheOneThatItRepeats) {
+  static constexpr int kRate = 30;
   class EachTwice : public test::PlainSource {
    public:
     EachTwice() : PlainSource(1000, false, kRate) {}
@@ -114,20 +115,19 @@ TEST_F(LiveOperationTest, Hazard3ARepeatedPictureIsAsOldAsTheOneThatItRepeats) {
       frame->timestamp_ns = index * 1'000'000'000 / kRate;
       return frame;
     }
-    static constexpr int kRate = 30;
   };
   TheatreSource source = test::plain_source(0, false, SourceKind::Live);
   source.open = [] { return std::make_unique<EachTwice>(); };
   live_.start(source);
-  for (const std::int64_t repeats : {1, 0}) {
-    LiveStatePtr seen;
-    ASSERT_TRUE(waits_for([&] {
-      seen = live_.latest();
-      return seen->picture != nullptr && seen->picture->index > 4 && seen->picture->index % 2 == repeats;
-    }));
-    EXPECT_NEAR(seen->shown_for_s, static_cast<double>(repeats) / EachTwice::kRate, 1e-6);
-    EXPECT_NEAR(seen->age_s(seen->captured_s), seen->shown_for_s, 1e-6);
-  }
+  // On a busy machine the picture that another one repeats may not have been looked at: that one is new then.
+  LiveStatePtr seen;
+  ASSERT_TRUE(waits_for([&] {
+    seen = live_.latest();
+    return seen->picture != nullptr && seen->picture->index > 4 && seen->shown_for_s > 0;
+  }));
+  EXPECT_EQ(seen->picture->index % 2, 1);
+  EXPECT_NEAR(seen->shown_for_s, 1.0 / kRate, 1e-6);
+  EXPECT_NEAR(seen->age_s(seen->captured_s + 0.01), 0.01 + 1.0 / kRate, 1e-6);
   live_.end_source();
 }
 
