@@ -67,7 +67,7 @@ class EndlessSender {
     if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
     reader_ = std::make_unique<test::ChildProcess>(
         test::run_program({"ffmpeg", "-loglevel", "quiet", "-nostdin", "-stream_loop", "-1", "-i", clip, "-c",
-                           "copy", "-an", "-f", "matroska", "-"},
+                           "copy", "-an", "-live", "1", "-f", "matroska", "-"},
                           ends[1]));
     sender_ = test::send_by_rtsp(
         port, "( fdsrc ! matroskademux ! h264parse config-interval=-1 ! rtph264pay name=pay0 )", ends[0]);
