@@ -288,7 +288,7 @@ bool is_live(const theatre::LiveState* live, double now_s) {
   if (live == nullptr || live->picture == nullptr || live->phase == Phase::NoSource ||
       live->phase == Phase::Failed || live->phase == Phase::Ended)
     return false;
-  return theatre::is_of_now(now_s - live->captured_s, live->trouble, live->stale_after_s);
+  return theatre::is_of_now(live->age_s(now_s), live->trouble, live->stale_after_s);
 }
 
 NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
@@ -314,7 +314,7 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
     tell(display, trouble_of_end(*live->operation));
     return display;
   }
-  display.age_s = now_s - live->captured_s;
+  display.age_s = live->age_s(now_s);
   // That a slow source has stopped is told by trouble.
   const bool is_slow = live->trouble == theatre::SourceTrouble::Slow;
   if (!is_live(live, now_s)) {

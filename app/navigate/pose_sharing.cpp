@@ -37,7 +37,7 @@ void PoseSharing::tell(const theatre::LiveState& live) {
   const NavigateDisplay display = display_of(&live, now_s);
   const bool is_new = live.picture != nullptr && live.picture != state_->last;
   if (display.is_live && is_new) {
-    state_->server->publish(live.operation, files::utc_now_s() - (now_s - live.captured_s), live.picture);
+    state_->server->publish(live.operation, files::utc_now_s() - live.age_s(now_s), live.picture);
   } else if (!display.is_live) {
     state_->server->tell({false, display.headline}, files::utc_now_s());
   } else {  // between its pictures

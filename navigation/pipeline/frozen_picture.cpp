@@ -13,6 +13,8 @@ namespace {
 constexpr float kMostDrift = 8;
 // A source of 15 pictures a second that is sent 60 times a second repeats three frames in four.
 constexpr double kShareOfRepeats = 0.8;
+// Half a second may pass until repeats are told, and some of it is the way of the picture that tells.
+constexpr std::int64_t kCounted_ns = 400'000'000;
 // A dark or plain picture with the noise of a sensor without light; a lit scope has a rim and highlights.
 constexpr int kMostSpreadOfBlank = 24;
 constexpr double kShareOfSpecks = 0.001;
@@ -124,7 +126,8 @@ bool FrozenPicture::observe(const camera::GrayView& picture, std::int64_t timest
   if (!repeats) standing_.observe(now_, before_, width_, repeated_.most_repeat(noise_));
   signs_.is_repeating = repeated_.is_suspected();
   signs_.is_torn = torn_.observe(step, seam, height_, timestamp_ns);
-  signs_.repeat_share = repeated_.share(timestamp_ns - 500'000'000);
+  signs_.repeat_share = repeated_.share(timestamp_ns - kCounted_ns);
+  signs_.shown_for_ns = repeated_.shown_for_ns();
 
   const Tiles drift = difference(anchor_);
   if (*std::max_element(drift.begin(), drift.end()) > kMostDrift) {
@@ -134,8 +137,8 @@ bool FrozenPicture::observe(const camera::GrayView& picture, std::int64_t timest
     return false;
   }
   const auto window_ns = static_cast<std::int64_t>(1e9 * frozen_after_s_);
-  const bool stands =
-      timestamp_ns - anchor_ns_ >= window_ns && repeated_.share(timestamp_ns - window_ns) >= kShareOfRepeats;
+  const bool stands = timestamp_ns - anchor_ns_ >= window_ns &&
+                      repeated_.hanging_share(timestamp_ns - window_ns) >= kShareOfRepeats;
   // A key frame of the picture that hangs is no end of it.
   is_frozen_ = stands || (is_frozen_ && repeated_.is_suspected());
   return is_frozen_;

@@ -41,10 +41,11 @@ class FrozenPicture {
 
   // Of the newest frame; false for the first.
   struct Signs {
-    bool is_blank = false;      // one grey all over: no light, or no signal
-    bool is_torn = false;       // see torn_picture.h
-    bool is_repeating = false;  // perhaps about to freeze: see repeated_pictures.h
-    double repeat_share = 0;    // of the frames of the last half second
+    bool is_blank = false;          // one grey all over: no light, or no signal
+    bool is_torn = false;           // see torn_picture.h
+    bool is_repeating = false;      // perhaps about to freeze: see repeated_pictures.h
+    double repeat_share = 0;        // of the frames of the last 0.4 s
+    std::int64_t shown_for_ns = 0;  // see RepeatedPictures::shown_for_ns
   };
   [[nodiscard]] const Signs& signs() const { return signs_; }
   // Whether what lies within these corners stands still while the picture as a whole goes on: it is not of

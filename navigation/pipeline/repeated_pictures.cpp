@@ -20,6 +20,11 @@ constexpr double kMotion = 8;  // no key frame of the same picture changes a til
 // Two repeats more than the source is used to make: 67 ms at 30 pictures a second.
 constexpr int kRepeatsTooMany = 2;
 constexpr std::int64_t kRepeatingFor_ns = 60'000'000, kTooOld_ns = 95'000'000;
+// Within so long after a stop an encoder's refinement is told from a scope at rest, of which the worst tile
+// changes by all of the noise. It may go on from key frame to key frame in steps as little as what a codec
+// leaves of a scope at rest.
+constexpr std::int64_t kUndecided_ns = 300'000'000;
+constexpr double kLively = 0.75;
 constexpr int kNoHabit = 5;  // repeats on end; what a source makes that hangs is none
 
 }  // namespace
@@ -70,22 +75,26 @@ void RepeatedPictures::follow_stop(double largest, double noise) {
   const bool goes_on = stop_.moved > 0 && largest > kStopped * stop_.moved;
   if (goes_on) {
     stops_and_goes_ = stop_.is_of_repeats();
-    // What stood between two pictures that moved is known by the second one.
-    for (int i = 1; stops_and_goes_ && i <= std::min(stop_.repeats.count, kNoHabit); ++i)
+    // What stood between two pictures that moved is known by the second one; of an encoder's first
+    // refinement, which changes as much as noise does, it is known then, too.
+    const int between = std::min(stop_.repeats.count + stop_.others, kNoHabit);
+    for (int i = 1; stops_and_goes_ && i <= between; ++i)
       steps_[(count_ - static_cast<std::size_t>(i)) % kMost].is_coded_repeat = true;
     stop_ = {};
   }
   if (stop_.moved == 0 && largest < kStopped * largest_[0]) {
-    stop_ = {{0, last_ns_}, 0, largest_[0]};
+    stop_ = {{0, last_ns_}, 0, 0, largest_[0]};
     largest_.fill(0);
   } else if (stop_.moved == 0 && !goes_on) {
     stops_and_goes_ = false;
   }
   if (stop_.moved == 0) return;
-  if (hardly_changes(largest, noise))
+  if (hardly_changes(largest, noise)) {
     ++stop_.repeats.count;
-  else
-    ++stop_.others;
+    return;
+  }
+  ++stop_.others;
+  if (largest >= kLively * noise) ++stop_.lively;
 }
 
 bool RepeatedPictures::observe(double largest, double noise, std::int64_t timestamp_ns) {
@@ -94,30 +103,46 @@ bool RepeatedPictures::observe(double largest, double noise, std::int64_t timest
   const bool repeats = is_same || (is_suspected_ && is_refined_now);
   if (!repeats) row_ = {0, timestamp_ns};
   row_.count += repeats ? 1 : 0;
-  const bool is_between = stops_and_goes_ && stop_.moved > 0 && hardly_changes(largest, noise);
-  steps_[count_++ % kMost] = {timestamp_ns, repeats, is_between};
+  const bool hardly = stop_.moved > 0 && hardly_changes(largest, noise);
+  const bool is_in_stop = hardly && stop_.is_of_repeats();
+  steps_[count_++ % kMost] = {timestamp_ns, repeats, stops_and_goes_ && hardly, is_in_stop};
 
   const bool hangs = stop_.stands() && (is_same || is_refined_now);
   const bool is_too_many =
       is_too_long(row_, timestamp_ns) || (hangs && is_too_long(stop_.repeats, timestamp_ns));
   if (repeats || is_too_many) lives_since_ns_ = timestamp_ns;
-  const bool lives = largest > kMotion || (!repeats && timestamp_ns - lives_since_ns_ >= kTooOld_ns);
+  const bool lives = largest > kMotion || (!repeats && timestamp_ns - lives_since_ns_ >=
+                                                           (is_in_stop ? kUndecided_ns : kTooOld_ns));
   is_suspected_ = is_too_many || (is_suspected_ && !lives);
+  const bool may_hang =
+      stop_.moved > 0 && stop_.lively <= 1 && timestamp_ns - stop_.repeats.since_ns < kUndecided_ns;
+  const std::int64_t since_ns = std::min(row_.since_ns, may_hang ? stop_.repeats.since_ns : timestamp_ns);
+  shown_for_ns_ = is_suspected_ ? 0 : timestamp_ns - since_ns;
   std::shift_right(largest_.begin(), largest_.end(), 1);
   largest_[0] = largest;
   last_ns_ = timestamp_ns;
   return repeats;
 }
 
-double RepeatedPictures::share(std::int64_t since_ns) const {
-  int count = 0, repeats = 0;
+template <typename Which>
+double RepeatedPictures::share_of(std::int64_t since_ns, const Which& which) const {
+  int count = 0, those = 0;
   for (std::size_t i = 0; i < std::min(count_, kMost); ++i) {
     const Step& step = steps_[(count_ - 1 - i) % kMost];
     if (step.timestamp_ns <= since_ns) break;
     ++count;
-    repeats += step.repeats || step.is_coded_repeat ? 1 : 0;
+    those += which(step) ? 1 : 0;
   }
-  return count > 0 ? static_cast<double>(repeats) / count : 0;
+  return count > 0 ? static_cast<double>(those) / count : 0;
+}
+
+double RepeatedPictures::share(std::int64_t since_ns) const {
+  return share_of(since_ns, [](const Step& step) { return step.repeats || step.is_coded_repeat; });
+}
+
+double RepeatedPictures::hanging_share(std::int64_t since_ns) const {
+  return share_of(since_ns,
+                  [this](const Step& step) { return step.repeats || (is_suspected_ && step.is_in_stop); });
 }
 
 }  // namespace arthronaut::pipeline

@@ -27,12 +27,21 @@ class RepeatedPictures {
   // How much a picture may differ that repeats the one before.
   [[nodiscard]] static double most_repeat(double noise);
   // For 60 ms and more pictures repeat beyond the source's habit, or the picture stopped; until something
-  // moves, or until it is noisy again for 95 ms: a key frame of the same picture and what follows are not.
+  // moves, or until it is noisy again for 95 ms, and for 0.3 s where it hardly changes: a key frame of the
+  // same picture and what follows are not.
   [[nodiscard]] bool is_suspected() const { return is_suspected_; }
   // What the newest picture shows may be an encoder's refinement: nothing of the source's noise is in it.
   [[nodiscard]] bool may_be_refined() const { return is_suspected_ || stop_.stands(); }
+  // For how long the newest picture has shown what it shows: since the first one that it repeats, or since
+  // everything stopped, for as long as nothing says whether the picture hangs or is at rest. What is shown is
+  // as old as that, so that a picture that hangs is too old before the one comes that makes it suspected.
+  // 0: it shows something new, or is suspected.
+  [[nodiscard]] std::int64_t shown_for_ns() const { return shown_for_ns_; }
   // Of the pictures after since_ns: what repeats, and what an encoder made of repeats between two that move.
   [[nodiscard]] double share(std::int64_t since_ns) const;
+  // The same of what repeats, and while it is suspected of what hardly changed since everything stopped: as
+  // much of it as the picture that hangs.
+  [[nodiscard]] double hanging_share(std::int64_t since_ns) const;
   [[nodiscard]] bool has_begun() const { return count_ > 0; }
   void reset() { *this = RepeatedPictures(); }
 
@@ -40,7 +49,7 @@ class RepeatedPictures {
   static constexpr std::size_t kMost = 128;
   struct Step {
     std::int64_t timestamp_ns = 0;
-    bool repeats = false, is_coded_repeat = false;
+    bool repeats = false, is_coded_repeat = false, is_in_stop = false;
   };
   struct Row {
     int count = 0;  // of repeats
@@ -50,10 +59,14 @@ class RepeatedPictures {
   struct Stop {
     Row repeats;
     int others = 0;
+    int lively = 0;    // of the others, those that change as much as noise does
     double moved = 0;  // as much as a tile did before; 0: there was no stop
-    [[nodiscard]] bool stands() const { return moved > 0 && others <= 1; }
+    // Key frames are others, one picture in a dozen.
+    [[nodiscard]] bool stands() const { return moved > 0 && others <= 1 + repeats.count / 10; }
     [[nodiscard]] bool is_of_repeats() const { return stands() && repeats.count >= 2; }
   };
+  template <typename Which>
+  [[nodiscard]] double share_of(std::int64_t since_ns, const Which& which) const;
   [[nodiscard]] int habit() const;
   [[nodiscard]] bool is_too_long(const Row& row, std::int64_t timestamp_ns) const;
   void follow_stop(double largest, double noise);
@@ -65,7 +78,7 @@ class RepeatedPictures {
   Row row_;
   Stop stop_;
   std::array<double, 4> largest_{};  // of the pictures before, the newest first; since a stop from it on
-  std::int64_t last_ns_ = 0;
+  std::int64_t last_ns_ = 0, shown_for_ns_ = 0;
   bool is_suspected_ = false;
   bool stops_and_goes_ = false;      // the picture that moved last ended a stop
   std::int64_t lives_since_ns_ = 0;  // while it is suspected: the last picture that repeats

@@ -57,16 +57,22 @@ bool TornPicture::has_stopped(Steps step) {
   std::size_t count = 0;
   float most = 0, most_before = 0;  // of the rows that stopped
   float most_moving = 0;            // of those that move on
+  std::array<float, kRows> moved_before{};
   for (std::size_t row = 0; row < kRows; ++row) {
     const auto tiles = step.subspan(row * kColumns, kColumns);
-    const float now = *std::max_element(tiles.begin(), tiles.end());
     Moved& moved = moved_[row];
     // A jump of one picture, as a cut makes it or a tool that is put elsewhere, ends in the next: it is no
     // motion that stops. Where every other picture is torn only every other one moves.
-    const float before = std::min(moved[0], std::max(moved[1], moved[2]));
-    moved = {now, moved[0], moved[1]};
+    moved_before[row] = std::min(moved[0], std::max(moved[1], moved[2]));
+    moved = {*std::max_element(tiles.begin(), tiles.end()), moved[0], moved[1]};
+  }
+  const float still = kPartStopped * *std::max_element(moved_before.begin(), moved_before.end());
+  for (std::size_t row = 0; row < kRows; ++row) {
+    const float now = moved_[row][0], before = moved_before[row];
     if (before < kLeastNoise) continue;
     const bool stopped = now < kRowStopped * before;
+    // As still as a part that stopped, and had hardly moved: it may belong to either.
+    if (!stopped && now < still) continue;
     rows[count++] = stopped                      ? RowState::Repeats
                     : now > kRowMovesOn * before ? RowState::Moves
                                                  : RowState::Mixed;

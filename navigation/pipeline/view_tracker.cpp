@@ -88,6 +88,7 @@ void ViewTracker::observe(const camera::Frame& frame, PictureObservation& view) 
   view.is_torn = signs.is_torn;
   view.is_blank = signs.is_blank;
   view.repeat_share = signs.repeat_share;
+  view.shown_for_ns = signs.shown_for_ns;
   view.lens = s.lens_tracker.observe(picture, frame.timestamp_ns);
   s.follow_lens(view);
   const auto markers = s.markers->track(picture, view.camera, frame.timestamp_ns);

@@ -33,12 +33,13 @@ struct PictureObservation {
   // track (a slipped coupler), out of view or of another radius than calibrated (lens.zoom) makes it false,
   // and no pose of this frame is to be trusted.
   bool intrinsics_are_known = false;
-  bool is_frozen = false;      // the same content again and again: see frozen_picture.h
-  bool is_repeating = false;   // see FrozenPicture::Signs: no pose stands, whatever comes
-  bool is_torn = false;        // of two moments: intrinsics_are_known is false then
-  bool is_blank = false;       // no light or no signal
-  double repeat_share = 0;     // of the pictures of the last half second
-  camera::CameraModel camera;  // of this frame
+  bool is_frozen = false;         // the same content again and again: see frozen_picture.h
+  bool is_repeating = false;      // see FrozenPicture::Signs: no pose stands, whatever comes
+  bool is_torn = false;           // of two moments: intrinsics_are_known is false then
+  bool is_blank = false;          // no light or no signal
+  double repeat_share = 0;        // of the pictures of the last 0.4 s
+  std::int64_t shown_for_ns = 0;  // since the first picture that showed the same: see repeated_pictures.h
+  camera::CameraModel camera;     // of this frame
   std::vector<markers::MarkerObservation> markers;   // one for each declared marker, in their order
   std::vector<markers::MarkerCandidate> candidates;  // of this frame's search for markers, when there was one
   // Whether any pose of this picture may be used, whatever the markers say of themselves.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "navigation/sources/capture_time.h"
+#include "navigation/sources/connection_words.h"
 #include "navigation/sources/datagram_input.h"
 #include "navigation/sources/encoded_packets.h"
 #include "navigation/sources/libav.h"
@@ -160,7 +161,7 @@ class Connection {
       error = avformat_open_input(&opening, address.c_str(), nullptr, &options.entries);
     }
     container_.reset(opening);
-    if (error < 0) fail(address, libav_message(is_late() ? AVERROR(ETIMEDOUT) : error));
+    if (error < 0) fail(address, connection_words(is_late() ? AVERROR(ETIMEDOUT) : error, address));
     if (datagrams_ != nullptr && is_transport(*container_))
       container_->flags |= AVFMT_FLAG_NOPARSE | AVFMT_FLAG_NOFILLIN;
     // A server that has said what it sends (RTSP) is believed: looking into it costs half a second.
@@ -278,7 +279,6 @@ class Connection {
   }
 
   static constexpr int kOddPackets = 3;  // on end: no accident
-
   EncodedPackets& packets_;
   std::unique_ptr<DatagramInput> datagrams_;  // of a UDP port; else null
   std::unique_ptr<RtspPictures> pictures_;    // of RTSP, where it gives them; else null

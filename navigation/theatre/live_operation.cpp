@@ -202,8 +202,10 @@ class Loop {
     const bool is_dated = is_live && step.picture->captured_ns > 0;
     live_.captured_s =
         is_dated ? static_cast<double>(step.picture->captured_ns) * 1e-9 : seconds_of(Clock::now());
+    const double content_s = run_.content_s(live_.captured_s);
     // What is shown is as old as the oldest thing in it.
     live_.captured_s = std::min(live_.captured_s, run_.oldest_pose_s(live_.captured_s));
+    live_.shown_for_s = std::max(0.0, live_.captured_s - content_s);
     live_.stale_after_s = is_live ? options_.live_stale_after_s : kOtherStaleAfter_s;
     live_.frames_per_second = rate_.count();
     live_.published_s = seconds_of(Clock::now());

@@ -33,7 +33,11 @@ struct LiveState {
   camera::FramePtr picture;                      // the newest; null before the first of this source
   std::shared_ptr<const Decoration> decoration;  // of that picture; may be null
   // When what the picture shows was so: for a live source when it was captured, else when it was published.
-  double captured_s = 0;         // on the clock of now_s()
+  double captured_s = 0;  // on the clock of now_s()
+  // How long before it what it shows was shown first: it repeats the pictures before, or may be about to.
+  double shown_for_s = 0;
+  // Of what is shown.
+  [[nodiscard]] double age_s(double now_s) const { return now_s - captured_s + shown_for_s; }
   double stale_after_s = 2;      // older than that it is no picture of now
   double frames_per_second = 0;  // that were navigated, lately
   double published_s = 0;        // when that picture's state could be shown, on the same clock

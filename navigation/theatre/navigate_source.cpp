@@ -151,7 +151,7 @@ class Navigation {
     const bool is_dated = state->source->kind == sources::SourceKind::Live && picture->captured_ns > 0;
     const double now_s = static_cast<double>(sources::steady_now_ns()) * 1e-9;
     double captured_s = is_dated ? static_cast<double>(picture->captured_ns) * 1e-9 : now_s;
-    captured_s = std::min(captured_s, run_.oldest_pose_s(captured_s));
+    captured_s = std::min(run_.content_s(captured_s), run_.oldest_pose_s(captured_s));
     if (is_of_now(now_s - captured_s, run_.watch().trouble())) {
       if (observer_.on_frame) observer_.on_frame(picture, state);
     } else if (observer_.on_late) {

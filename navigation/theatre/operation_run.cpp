@@ -204,6 +204,11 @@ double OperationRun::oldest_pose_s(double else_s) const {
   return static_cast<double>(outside_.asked_ns) * 1e-9 - outside_.poses.oldest_age_s();
 }
 
+double OperationRun::content_s(double captured_s) const {
+  if (theatre_source_.setup.kind != sources::SourceKind::Live || frame_state_ == nullptr) return captured_s;
+  return captured_s - static_cast<double>(frame_state_->frame.shown_for_ns) * 1e-9;
+}
+
 // In the record and the log, when it begins, changes and ends.
 void OperationRun::note_tracker() {
   std::string trouble = outside_.tracker->trouble();
@@ -228,7 +233,9 @@ operation::PictureTiming OperationRun::timing_of(const camera::Frame& frame,
   live_.is_news = live_.watch.picture(view, guidance_ms, live_.taken_ns, source_->remark());
   if (live_.watch.trouble() == SourceTrouble::Slow) return operation::PictureTiming::Slow;
   const double now_s = static_cast<double>(now_ns) * 1e-9;
-  const double oldest_s = oldest_pose_s(is_dated ? static_cast<double>(frame.captured_ns) * 1e-9 : now_s);
+  const double captured_s = is_dated ? static_cast<double>(frame.captured_ns) * 1e-9 : now_s;
+  const double oldest_s =
+      std::min(captured_s - static_cast<double>(view.shown_for_ns) * 1e-9, oldest_pose_s(captured_s));
   const bool is_late = now_s - oldest_s > late_after_s_ || guidance_ms > 1000 * late_after_s_;
   return is_late ? operation::PictureTiming::Late : operation::PictureTiming::InTime;
 }

@@ -98,6 +98,8 @@ class OperationRun {
   // When the oldest of the outside tracker's poses in the newest frame was taken, on the steady clock;
   // `else_s` without any.
   [[nodiscard]] double oldest_pose_s(double else_s) const;
+  // When the first picture was captured that shows what the newest one shows, which was captured then.
+  [[nodiscard]] double content_s(double captured_s) const;
   // What is wrong with the live source that runs; of no other.
   [[nodiscard]] const SourceWatch& watch() const { return live_.watch; }
   // What was asked for of this moment and not done.

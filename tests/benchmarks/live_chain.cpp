@@ -1,7 +1,8 @@
 // The whole chain on a live stream over the loopback, without a window: 1080p60 H.264 by RTSP, with and
 // without the recording of its pictures. And faults, many of them.
 //   live_chain stream CLIP SECONDS [--record] [--camera FILE MEDIUM]
-//                                               CLIP: 1080p60 H.264 without B-frames, sent round and round
+//                                               CLIP: 1080p60 H.264 without B-frames, sent round and round,
+//                                               as one stream
 //   live_chain faults COUNT [SEED [CODEC]]      prints a row a kind: how soon gone, told and back; jpeg or
 //   h264
 // Prints what was sent, tracked and recorded, latency by stage, and how the memory grew.
@@ -57,10 +58,31 @@ struct StreamChoice {
 
 constexpr std::int64_t kBuffersFull_s = 60;
 
+// The clip round and round. A sender whose clip ends closes the connection, and what is measured is how one
+// is made anew.
+class EndlessSender {
+ public:
+  EndlessSender(const std::string& port, const std::string& clip) {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+    reader_ = std::make_unique<test::ChildProcess>(
+        test::run_program({"ffmpeg", "-loglevel", "quiet", "-nostdin", "-stream_loop", "-1", "-i", clip, "-c",
+                           "copy", "-an", "-live", "1", "-f", "matroska", "-"},
+                          ends[1]));
+    sender_ = test::send_by_rtsp(
+        port, "( fdsrc ! matroskademux ! h264parse config-interval=-1 ! rtph264pay name=pay0 )", ends[0]);
+    ::close(ends[0]);
+    ::close(ends[1]);
+  }
+
+ private:
+  std::unique_ptr<test::ChildProcess> reader_, sender_;
+};
+
 int stream(const StreamChoice& choice) {
   const bool records = choice.records;
   const std::string port = std::to_string(20000 + ::getpid() % 40000);
-  const auto sender = test::send_by_rtsp(port, test::h264_clip_launch(choice.clip));
+  const EndlessSender sender(port, choice.clip);
   const test::TemporaryFolder folder;
   theatre::NavigateOptions options;
   options.source.kind = sources::SourceKind::Live;

@@ -102,7 +102,7 @@ FaultDrill::~FaultDrill() = default;
 bool FaultDrill::guides() const {
   const theatre::LiveStatePtr live = live_->latest();
   return live->phase == LiveState::Phase::Running && live->picture != nullptr &&
-         LiveOperation::now_s() - live->captured_s <= live->stale_after_s &&
+         live->age_s(LiveOperation::now_s()) <= live->stale_after_s &&
          live->operation->frame.guidance.is_valid();
 }
 

@@ -106,7 +106,7 @@ int main(int count, char** arguments) {
   std::fflush(stdout);
   std::string mode = "live";
   auto due = std::chrono::steady_clock::now();
-  long kept = 0;
+  long began = 0;
   for (long frame = 1;; ++frame) {
     due += std::chrono::microseconds(1'000'000 / kRate);
     std::this_thread::sleep_until(due);
@@ -114,15 +114,18 @@ int main(int count, char** arguments) {
       std::_Exit(0);
     } else if (!word.empty()) {
       mode = word;
-      kept = frame;
+      began = frame;
     }
+    const long since = frame - began;
     if (mode == "stalled") continue;
-    if (mode == "repeated") kept = frame - frame % 5;
+    // A source that hangs goes on with its last picture, and one that repeats shows each five times: from the
+    // first picture on that is told to be spoiled all are.
+    const long kept = began - 1 + (mode == "repeated" ? 5 * ((since + 1) / 5) : 0);
     if (mode == "black")
       push(scene.black(frame), kSceneWidth, kSceneHeight);
     else if (mode == "frozen" || mode == "repeated")
       push(scene.live(kept), kSceneWidth, kSceneHeight);
-    else if (mode == "torn" && frame % 8 == 0)
+    else if (mode == "torn" && since % 8 == 0)
       push(scene.torn(frame), kSceneWidth, kSceneHeight);
     else if (mode == "small")
       push(small_of(scene.live(frame)), kSceneWidth / 2, kSceneHeight / 2);

@@ -349,6 +349,19 @@ TEST(NavigateDisplay, Hazard6ANominalGuideThatWasNotCheckedGivesNoNumber) {
   EXPECT_TRUE(shown.display().guidance_is_valid);
 }
 
+// However young the picture is: it repeats one that is too old.
+TEST(NavigateDisplay, Hazard3WhatIsShownOnIsAsOldAsItsFirstPicture) {
+  for (const double shown_for_s : {0.06, 0.1}) {
+    const NavigateDisplay display = display_after([&](Shown& shown) {
+      shown.live.captured_s = kNow_s - 0.02;
+      shown.live.shown_for_s = shown_for_s;
+      shown.live.stale_after_s = 0.1;
+    });
+    EXPECT_EQ(display.is_live, shown_for_s < 0.08);
+    EXPECT_NEAR(display.age_s, 0.02 + shown_for_s, 1e-9);
+  }
+}
+
 // Of a source whose pictures grow too old before the next one comes nothing guides, however young this one
 // is, and what is said stays the same through a picture's whole life. The picture and what was touched are
 // shown.

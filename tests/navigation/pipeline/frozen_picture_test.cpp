@@ -172,6 +172,19 @@ double seconds_until_repeating(const SentAs& sent, double lives_s) {
   return 1;
 }
 
+// 24 pictures a second that are sent as 60, two and three times by turns: one in 25 more than the habit at
+// most, which is not told (theatre::SourceWatch).
+TEST(FrozenPicture, RepeatsOfAConverterStayUnderWhatIsTold) {
+  FrozenPicture frozen(kFrozenAfter_s);
+  int shown = 0;
+  for (int i = 0; i < 120; ++i) {
+    shown += i % 5 == 0 || i % 5 == 2 ? 1 : 0;
+    (void)observe(frozen, scene(1.5 * shown, 1.5, static_cast<unsigned>(shown)), i);
+    EXPECT_LE(frozen.signs().repeat_share, 0.65) << i;
+    EXPECT_FALSE(frozen.signs().is_repeating) << i;
+  }
+}
+
 // Guidance is to be gone a tenth of a second after a source began to hang; 80 ms leave 20 for the work on
 // the picture that tells it.
 TEST(FrozenPicture, IsSuspectedWithin80MsAtEveryRate) {

@@ -20,10 +20,11 @@ class Source {
     (void)repeated_.observe(largest, kNoise, ++frame_ * 1'000'000'000LL / rate_);
     return repeated_.is_suspected();
   }
-  // Of the half second before the newest one.
+  // Of the 0.4 s before the newest one.
   [[nodiscard]] double share() const {
-    return repeated_.share(frame_ * 1'000'000'000LL / rate_ - 500'000'000);
+    return repeated_.share(frame_ * 1'000'000'000LL / rate_ - 400'000'000);
   }
+  [[nodiscard]] double shown_for_ms() const { return static_cast<double>(repeated_.shown_for_ns()) * 1e-6; }
   // A live scene in motion.
   void live(int count) {
     std::uniform_real_distribution<double> motion(10.5, 14.5);
@@ -83,6 +84,74 @@ TEST(RepeatedPictures, OfACoarseEncoderAreToldByTheStop) {
   EXPECT_LE(source.suspected_after_ms({1.0, 0.89, 0.40, 0.31, 0.31, 0.14, 0.09, 0.06, 0.09, 0.04}), 84);
 }
 
+// What a source that hangs goes on showing is as old as its last live picture, from the first one that
+// repeats it to the one that is suspected: also where an encoder refines the first ones, and the third is
+// suspected.
+TEST(RepeatedPictures, AreAsOldAsWhatTheyShow) {
+  for (int until = 0; until < 15; ++until) {
+    Source source(30);
+    source.live(60);
+    EXPECT_EQ(source.shown_for_ms(), 0);
+    const std::vector<double> steps = hanging_h264(until);
+    int repeats = 0;
+    while (!source.give(steps[static_cast<std::size_t>(repeats)]))
+      EXPECT_NEAR(source.shown_for_ms(), 1000.0 * ++repeats / 30, 0.01) << until;
+    EXPECT_GE(repeats, 1) << until;
+    EXPECT_LE(repeats, 2) << until;
+    EXPECT_EQ(source.shown_for_ms(), 0) << "no pose stands";
+  }
+}
+
+// One picture that is shown twice is as old as that, and the next one is new. Nothing is suspected.
+TEST(RepeatedPictures, OfWhichOneAloneIsRepeatedAreNewAgainWithTheNext) {
+  for (const int rate : {25, 30, 60}) {
+    Source source(rate);
+    for (int i = 0; i < 5; ++i) {
+      source.live(20);
+      EXPECT_FALSE(source.give(0));
+      EXPECT_NEAR(source.shown_for_ms(), 1000.0 / rate, 0.01) << rate;
+      EXPECT_FALSE(source.give(12));
+      EXPECT_EQ(source.shown_for_ms(), 0) << rate;
+    }
+  }
+}
+
+// A scope that stops from one picture to the next keeps its noise: with the second one of it that is known.
+TEST(RepeatedPictures, OfAScopeThatStopsAtOnceAreNewAgainWithTheSecond) {
+  Source source(30);
+  source.live(60);
+  EXPECT_FALSE(source.give(2.2));
+  EXPECT_GT(source.shown_for_ms(), 0);
+  for (int i = 0; i < 30; ++i) {
+    EXPECT_FALSE(source.give(2.1));
+    EXPECT_EQ(source.shown_for_ms(), 0) << i;
+  }
+}
+
+// x264 refines a picture that hangs in small steps: it is suspected 0.2 s later, hung for 0.3 s all the same,
+// and too old to be shown meanwhile. One of constant rate (4 Mb/s) goes on to refine it, from one key frame
+// to the next, and it stays suspected. As measured at 960 x 540 and 30 pictures a second, `probe_wet`.
+TEST(RepeatedPictures, OfAnEncoderThatRefinesInSmallStepsAreToldAndStayTold) {
+  const std::vector<double> crf_18{0.84, 0.85, 0.69, 0.69, 0.40, 0.34, 0.28, 0.22, 0.16, 0.12, 0.05, 0.08};
+  const std::vector<double> rate_4m{1.16, 0.97, 1.01, 0.91, 0.56, 0.42, 0.30, 0.43, 0.25, 0.29, 1.15, 0.47,
+                                    0.57, 0.38, 0.46, 0.51, 0.52, 0.46, 0.18, 0.22, 0.20, 0.20, 0.20, 0.13};
+  for (const std::vector<double>& steps : {crf_18, rate_4m}) {
+    RepeatedPictures repeated;
+    repeated.begin(0);
+    std::int64_t time_ns = 0;
+    const auto give = [&](double largest) {
+      (void)repeated.observe(largest, 2.4, time_ns += 33'333'333);
+      return repeated.is_suspected();
+    };
+    for (int i = 0; i < 30; ++i) EXPECT_FALSE(give(i % 2 == 0 ? 46 : 70));
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      EXPECT_EQ(give(steps[i]), i >= 5) << i << ' ' << steps[0];
+      EXPECT_TRUE(i >= 5 || repeated.shown_for_ns() > 33'000'000 * static_cast<std::int64_t>(i + 1)) << i;
+      EXPECT_EQ(repeated.hanging_share(time_ns - 300'000'000) >= 0.8, i >= 8) << i << ' ' << steps[0];
+    }
+  }
+}
+
 // Before anything is known of the source, and after it hung a moment ago.
 TEST(RepeatedPictures, AreToldAtOnceAlsoOfASourceThatIsNotKnown) {
   Source source(30);
@@ -131,20 +200,21 @@ TEST(RepeatedPictures, OfAConverterAreItsHabit) {
   }
 }
 
-// Four pictures in five repeat, and an encoder refines each: more than 0.6 of the last half second repeat
-// from 0.4 s on, which is what is told, and none once all move again. A picture that moved and the four after
-// it, as measured at 960 x 540 of x264 at CRF 18, 23 and 28 and at 4 Mb/s, and of openh264.
+// Four pictures in five repeat, and an encoder refines each: more than 0.65 of the last 0.4 s repeat from the
+// eleventh picture on, which is what is told, and none once all move again. A picture that moved and the four
+// after it, as measured at 960 x 540 of x264 at CRF 18, 23 and 28 and at 4 Mb/s, and of openh264, of which
+// the first one may be refined as much as noise changes it.
 TEST(RepeatedPictures, Hazard28ThatAnEncoderRefinesBetweenTwoThatMoveAreCounted) {
   for (const std::vector<double>& five :
        {std::vector<double>{98, 1.88, 1.64, 1.14, 0.71}, std::vector<double>{86, 1.90, 1.47, 0.89, 0.98},
         std::vector<double>{100, 0.88, 1.18, 0.80, 0.54}, std::vector<double>{87, 0.53, 0.95, 0.81, 0.59},
-        std::vector<double>{49, 0.53, 0, 0, 0}}) {
+        std::vector<double>{49, 0.53, 0, 0, 0}, std::vector<double>{53, 1.65, 0.43, 0.20, 0}}) {
     Source source(30);
     source.live(30);
     for (std::size_t i = 0; i < 60; ++i) {
       (void)source.give(five[i % 5]);
-      if (i >= 12) {
-        EXPECT_GT(source.share(), 0.6) << i << ' ' << five[1];
+      if (i >= 10) {
+        EXPECT_GT(source.share(), 0.65) << i << ' ' << five[1];
       }
     }
     source.live(16);

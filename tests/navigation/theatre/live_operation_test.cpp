@@ -101,6 +101,36 @@ TEST_F(LiveOperationTest, Hazard3ASlowSourceAndARefusedTouchArePublished) {
   live_.end_source();
 }
 
+// What a picture shows that repeats the one before is as old as that one: a source that hangs guides no
+// longer than one that is silent.
+TEST_F(LiveOperationTest, Hazard3ARepeatedPictureIsAsOldAsTheOneThatItRepeats) {
+  static constexpr int kRate = 30;
+  class EachTwice : public test::PlainSource {
+   public:
+    EachTwice() : PlainSource(1000, false, kRate) {}
+    [[nodiscard]] camera::FramePtr next() override {
+      const std::int64_t index = PlainSource::next()->index;
+      auto frame = std::make_shared<camera::Frame>(
+          test::round_frame(index, static_cast<std::uint8_t>(100 + 7 * (index / 2 % 15))));
+      frame->timestamp_ns = index * 1'000'000'000 / kRate;
+      return frame;
+    }
+  };
+  TheatreSource source = test::plain_source(0, false, SourceKind::Live);
+  source.open = [] { return std::make_unique<EachTwice>(); };
+  live_.start(source);
+  // On a busy machine the picture that another one repeats may not have been looked at: that one is new then.
+  LiveStatePtr seen;
+  ASSERT_TRUE(waits_for([&] {
+    seen = live_.latest();
+    return seen->picture != nullptr && seen->picture->index > 4 && seen->shown_for_s > 0;
+  }));
+  EXPECT_EQ(seen->picture->index % 2, 1);
+  EXPECT_NEAR(seen->shown_for_s, 1.0 / kRate, 1e-6);
+  EXPECT_NEAR(seen->age_s(seen->captured_s + 0.01), 0.01 + 1.0 / kRate, 1e-6);
+  live_.end_source();
+}
+
 // A gap in a recording's time stamps freezes nobody's screen: it is passed over, and what is pressed
 // meanwhile is taken at once.
 TEST_F(LiveOperationTest, AGapInARecordingIsNotWaitedFor) {
