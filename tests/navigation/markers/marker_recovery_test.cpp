@@ -185,6 +185,20 @@ TEST_F(MarkerRecovery, FindsAMarkerOfWhichSomethingDarkLeavesTwoSides) {
   expect_near(seen[1], beside);
 }
 
+// Followed behind something bright that takes two fifths of it and whose light passes for other cells, so
+// that they no more say which marker it is: it is where it was, and its edges lie where they are predicted.
+TEST_F(MarkerRecovery, FollowsAMarkerWhoseHiddenCellsSayOtherwise) {
+  PictureOptions soft;
+  soft.blur_px = 1.6;
+  auto shown = RenderedPicture(camera_, {{codes_[0], 4, pose_}}, soft);
+  for (int frame = 0; frame < 3; ++frame)
+    expect_near(tracker_->track(shown.view(), camera_, frame * kFrameNs)[0], pose_);
+  const int left = static_cast<int>(seen_at(pose_, -0.3, -0.3).x());
+  shown.cover(0, 0, left, 600, 200);
+  for (int frame = 3; frame < 6; ++frame)
+    expect_near(tracker_->track(shown.view(), camera_, frame * kFrameNs)[0], pose_);
+}
+
 // Out of sight for four frames, then half a side away and under a highlight.
 TEST_F(MarkerRecovery, FindsALostMarkerWhereItWentUnderAHighlight) {
   for (int frame = 0; frame < 2; ++frame)
