@@ -103,7 +103,9 @@ class MarkerTrack {
 
   // The edges about a pose that little speaks for. What they lead to, if they and the cells say that it is
   // the marker, is good enough to go on from in the next frame.
-  void suppose(const TrackedFrame& frame, const geometry::RigidTransform& start);
+  // Through a smear a corner leads to another tilt as well: its edges have to look sharp, or something
+  // is_calm.
+  void suppose(const TrackedFrame& frame, const geometry::RigidTransform& start, bool is_calm);
   // Tracked, and since the frame before moved by too little to be smeared; before there was one: not known.
   [[nodiscard]] bool is_calm(const TrackedFrame& frame, const MarkerObservation& observation) const;
   [[nodiscard]] bool is_gone_on_from() const { return guess_.has_value(); }  // in this frame
