@@ -22,7 +22,7 @@ using geometry::RigidTransform;
 
 constexpr std::size_t kLikelyCandidates = 256;  // memory set aside
 // The work of fits in one frame, counted in small direct ones; three of these make a whole one.
-constexpr int kFitsAFrame = 80;
+constexpr int kFitsAFrame = 80, kFitsForCorners = 60;
 // Squares with its code in which a marker is looked for, in one frame.
 constexpr int kMostSquares = 3;
 constexpr std::size_t kSearchesForCovered = 3;
@@ -260,8 +260,9 @@ class EdgeTracker final : public MarkerTracker {
       if (observations_[i].is_tracked()) seen_.push_back(observations_[i].corners_px);
       is_any_calm |= tracks_[i].is_calm(frame, observations_[i]);
     }
-    // Through a smear a corner leads to another tilt as well: something has to be seen that hardly moves.
-    if (!is_any_calm) return;
+    // Where nothing is seen that hardly moves most of what is missing is smeared, and found by no corner: not
+    // in a frame that fits have made long.
+    if (!is_any_calm && frame.fits_left < kFitsForCorners) return;
     const auto all = corner_search_.find(search_.small_picture(), frame.camera, codes_, is_sought_, seen_);
     int left = kMostSupposed;
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
@@ -269,7 +270,7 @@ class EdgeTracker final : public MarkerTracker {
       for (const SupposedSquare& supposed : all) {
         if (&track != &tracks_[supposed.index] || is_of_another(supposed.square) || left-- <= 0) continue;
         const auto starts = poses_of_square(supposed.square.tangent, supposed.turn, track.marker().size_mm);
-        for (const RigidTransform& start : starts) track.suppose(frame, start);
+        for (const RigidTransform& start : starts) track.suppose(frame, start, is_any_calm);
       }
     }
   }

@@ -91,13 +91,15 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
   return false;
 }
 
-void MarkerTrack::suppose(const TrackedFrame& frame, const RigidTransform& start) {
+void MarkerTrack::suppose(const TrackedFrame& frame, const RigidTransform& start, bool is_calm) {
   if (!(start.translation_mm.z() > 0) || cell_px(frame, start) < options_.min_cell_px) return;
   Smear picture;
   SmearTrend trend;
   const EdgePose fit = fit_edges(frame, start, true, picture, trend);
   frame.fits_left -= kEdgesAsFits;
   if (!fit.converged || fit.share[0] + fit.share[1] < kMinStartShare) return;
+  const double px_per_mm = cell_px(frame, fit.camera_from_marker) * cells_ / marker_.size_mm;
+  if (!is_calm && moved_px(picture.motion, px_per_mm) > options_.smeared_px) return;
   MarkerObservation seen;
   report_edges(frame, fit, picture, true, seen);
   if (seen.is_tracked() && is_confirmed_by_code(frame, fit.camera_from_marker))

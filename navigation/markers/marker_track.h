@@ -103,7 +103,9 @@ class MarkerTrack {
 
   // The edges about a pose that little speaks for. What they lead to, if they and the cells say that it is
   // the marker, is good enough to go on from in the next frame.
-  void suppose(const TrackedFrame& frame, const geometry::RigidTransform& start);
+  // Through a smear a corner leads to another tilt as well: its edges have to look sharp, or something
+  // is_calm.
+  void suppose(const TrackedFrame& frame, const geometry::RigidTransform& start, bool is_calm);
   // Tracked, and since the frame before moved by too little to be smeared; before there was one: not known.
   [[nodiscard]] bool is_calm(const TrackedFrame& frame, const MarkerObservation& observation) const;
   [[nodiscard]] bool is_gone_on_from() const { return guess_.has_value(); }  // in this frame
@@ -193,9 +195,15 @@ class MarkerTrack {
                      MarkerObservation& observation);
   // It went on to there since it was seen last.
   [[nodiscard]] bool goes_on_to(const TrackedFrame& frame, const geometry::RigidTransform& pose) const;
-  // The cells at the pose, as far as they are seen, are this marker's.
+  // What the cells at the pose say of this marker, as far as they are seen; and that they are its own.
+  [[nodiscard]] SeenCode seen_code(const TrackedFrame& frame, const geometry::RigidTransform& pose) const;
   [[nodiscard]] bool is_confirmed_by_code(const TrackedFrame& frame,
-                                          const geometry::RigidTransform& pose) const;
+                                          const geometry::RigidTransform& pose) const {
+    return seen_code(frame, pose).is_confirmed();
+  }
+  // The edges of a pose by few of them are this marker's, and not of what lies before it.
+  [[nodiscard]] bool are_few_edges_its_own(const TrackedFrame& frame, const EdgePose& fit,
+                                           bool is_found) const;
   [[nodiscard]] bool stood_lately(const TrackedFrame& frame) const;  // a pose did, a short while ago
   // A pose stood a short while ago, and a hand may have turned the marker from there to this one.
   [[nodiscard]] bool goes_on_from_published(const TrackedFrame& frame,

@@ -8,12 +8,12 @@ namespace arthronaut::markers {
 
 using geometry::RigidTransform;
 
-bool MarkerTrack::is_confirmed_by_code(const TrackedFrame& frame, const RigidTransform& pose) const {
+SeenCode MarkerTrack::seen_code(const TrackedFrame& frame, const RigidTransform& pose) const {
   for (std::size_t i = 0; i < frame.codes.declared.size(); ++i) {
-    if (frame.codes.declared[i].id != code_.id) continue;
-    return see_code(frame.image, frame.camera, pose, marker_.size_mm, frame.codes, i).is_confirmed();
+    if (frame.codes.declared[i].id == code_.id)
+      return see_code(frame.image, frame.camera, pose, marker_.size_mm, frame.codes, i);
   }
-  return false;
+  return {};
 }
 
 bool MarkerTrack::goes_on_to(const TrackedFrame& frame, const RigidTransform& pose) const {

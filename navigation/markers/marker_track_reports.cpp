@@ -21,6 +21,10 @@ constexpr double kMuchBetter = 0.5;
 // Where fewer edges are found, in the mean of both ways, they scatter by less than this, in their predicted
 // sigmas, and the cells agree; or some are of what covers the marker.
 constexpr double kManyEdges = 0.75, kMaxPartScale = 2;
+// Or the marker goes on to where it was going, they scatter by no more than is predicted, and of the inner
+// cells this many agree, and so many times those that say the opposite: what covers hides cells, too.
+constexpr double kPredictedScale = 1;
+constexpr int kMinCellsOfPart = 5, kMostCells = 2;
 // Where fewer are, something hides or bends a part: one half has to hold the pose by itself.
 constexpr double kNearlyAllEdges = 0.9;
 // How well it is known how a marker moves now: by two sightings in the mean of the way between them, of which
@@ -125,6 +129,15 @@ void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit
     observation.state = MarkerState::Ambiguous;
 }
 
+bool MarkerTrack::are_few_edges_its_own(const TrackedFrame& frame, const EdgePose& fit, bool is_found) const {
+  if (fit.scale >= kMaxPartScale) return false;
+  const RigidTransform& pose = fit.camera_from_marker;
+  const SeenCode code = seen_code(frame, pose);
+  if (code.is_confirmed()) return true;
+  return !is_found && fit.scale < kPredictedScale && stood_lately(frame) && goes_on_to(frame, pose) &&
+         code.agreeing_inside >= std::max(kMinCellsOfPart, kMostCells * code.opposite_inside);
+}
+
 RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture,
                                    bool is_found, MarkerObservation& observation) {
   observation.camera_from_marker = fit.camera_from_marker;
@@ -168,7 +181,7 @@ RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fi
     observation.state = judge(fit, observation, other, false);
   // The outline of what lies before a marker passes for the edges that it hides.
   if (observation.is_tracked() && fit.share[0] + fit.share[1] < 2 * kManyEdges &&
-      !(fit.scale < kMaxPartScale && is_confirmed_by_code(frame, fit.camera_from_marker)))
+      !are_few_edges_its_own(frame, fit, is_found))
     observation.state = MarkerState::Covered;
   // The edges settled on one tilt, the corners that they make speak for another one, and from there the edges
   // do not come back: corners that glow or dirt moved are unlike the edges, too, where tilt is seen badly.
