@@ -141,8 +141,7 @@ void PlanView::add_pane_actions(widgets::Actions& actions) {
   actions.add(
       {"plan.click_here",
        "Click here",
-       "Places what is being placed, or sets a measuring's point: at the framed slice's cross-hair, or "
-       "at the cross in the middle of the 3D view",
+       "Places, or sets a measuring's point: at the framed slice's cross-hair, or in the 3D view's middle",
        GLFW_KEY_SPACE,
        0,
        false,

@@ -257,7 +257,8 @@ void draw_version_words(const widgets::Ui& ui, const PlanPanel& panel, std::size
   } else if (draw_row(ui, {"version_words." + std::to_string(version.number),
                            !version.words.note.empty()   ? version.words.note
                            : !version.words.name.empty() ? "Name and note..."
-                                                         : "No name: click here, or Shift+K for the newest",
+                           : place == panel.version      ? "No name: click here, or Shift+K"
+                                                         : "No name: click here",
                            false, false})) {
     clicked.named = place;
   }
@@ -269,7 +270,7 @@ void draw_version_words(const widgets::Ui& ui, const PlanPanel& panel, std::size
 void draw_versions(const widgets::Ui& ui, const PlanPanel& panel, float room_below_px, PanelClick& clicked) {
   ImGui::Separator();
   button_pair(ui, "plan.keep", "plan.export");
-  button_pair(ui, "plan.markups", "plan.side");
+  button_pair(ui, "plan.markups", "plan.side", 0.57F);  // for "Take markups" and its key
   ImGui::BeginChild("versions", {0, ImGui::GetContentRegionAvail().y - room_below_px});
   if (panel.versions.empty())
     widgets::text_in(ui.theme.body, widgets::kQuietText,

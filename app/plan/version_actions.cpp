@@ -40,6 +40,7 @@ void PlanView::keep_version() {
     state_.hint = {"Kept as version " + std::to_string(kept.number) + ". Shift+K gives it a name and a note",
                    true, model_->revision()};
     load_versions();
+    state_.version_row = 0;  // it, which Shift+K then names
   } catch (const std::runtime_error& error) {
     state_.hint = {error.what()};
   }
@@ -126,8 +127,7 @@ void PlanView::add_version_actions(widgets::Actions& actions) {
   actions.add(
       {"plan.name_version",
        "Name version",
-       "A name and a note for the version that is chosen by the page keys, at first the one that was kept "
-       "last; a click on the line below a version's row gives them to that one",
+       "A name and a note for the chosen version, at first the newest; a click on the line below a row, too",
        GLFW_KEY_K,
        GLFW_MOD_SHIFT,
        false,

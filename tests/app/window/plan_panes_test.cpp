@@ -110,6 +110,8 @@ TEST_F(PlanWindow, TheViewAndTheVersionsGoByKeysAlone) {
   ASSERT_TRUE(app.wait_for_state("version_row", "1"));
   app.press("Return");
   EXPECT_TRUE(app.wait_for_state("undo", "Take version 1"));
+  app.press("k");  // the newest is the one that Shift+K names
+  EXPECT_TRUE(app.wait_for_state("version_row", "3"));
 }
 
 // Beside the slices, too, every button of the rows lies beside the panel and over no other: two of them ran
@@ -117,7 +119,8 @@ TEST_F(PlanWindow, TheViewAndTheVersionsGoByKeysAlone) {
 TEST_F(PlanWindow, NoButtonOfTheRowsRunsUnderThePanel) {
   const auto folder = folder_ / "Imaged.arthro";
   write_knee_with_ct(folder);
-  for (const auto& [width, height] : {std::pair{1024, 768}, {1280, 800}, {1366, 768}, {1920, 1080}}) {
+  for (const auto& [width, height] :
+       {std::pair{1024, 768}, {1280, 800}, {1366, 768}, {1920, 1080}, {3840, 2160}}) {
     SCOPED_TRACE(std::to_string(width) + " x " + std::to_string(height));
     const VirtualDisplay display(width, height);
     RunningWorkstation app(display, folder_.path(), {folder.string()});
