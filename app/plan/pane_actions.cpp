@@ -3,6 +3,7 @@
 
 #include <array>
 #include <tuple>
+#include <utility>
 
 #include "app/plan/plan_view.h"
 #include "app/plan/tunnel_moves.h"
@@ -39,12 +40,14 @@ void PlanView::draw_aiming_cross(const widgets::Ui& ui, const widgets::Rect& are
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImVec2 middle = area.center();
   const float reach = ui.theme.px(14), gap = ui.theme.px(4);
-  for (const float sign : {-1.F, 1.F}) {
-    draw.AddLine({middle.x + sign * gap, middle.y}, {middle.x + sign * reach, middle.y}, widgets::kAccent,
-                 ui.theme.px(2));
-    draw.AddLine({middle.x, middle.y + sign * gap}, {middle.x, middle.y + sign * reach}, widgets::kAccent,
-                 ui.theme.px(2));
-  }
+  // With a dark seam: it is read over bone and tunnels alike.
+  for (const auto& [color, wide] : {std::pair{widgets::kBackground, 5.F}, std::pair{widgets::kText, 2.F}})
+    for (const float sign : {-1.F, 1.F}) {
+      draw.AddLine({middle.x + sign * gap, middle.y}, {middle.x + sign * reach, middle.y}, color,
+                   ui.theme.px(wide));
+      draw.AddLine({middle.x, middle.y + sign * gap}, {middle.x, middle.y + sign * reach}, color,
+                   ui.theme.px(wide));
+    }
 }
 
 void PlanView::click_here() {
