@@ -53,6 +53,8 @@ class BonePane {
   void look_from(scene::ViewDirection view);
   // A point of a bone straight from outside, 160 mm away; the bone alone and whole.
   void look_at(const Eigen::Vector3d& point_mm, bones::BoneKind bone);
+  // As a hand turns, shifts or zooms it: what is shown stays.
+  void look(const scene::SceneCamera& camera) { pane_.look(camera); }
   // nullopt: from no named side, at a point.
   [[nodiscard]] const std::optional<scene::ViewDirection>& looked_from() const { return looked_from_; }
   // From there, and not turned by hand since.

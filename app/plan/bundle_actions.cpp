@@ -69,7 +69,8 @@ void PlanView::plan_bundles() {
     if (single) history_.apply_tunnels({{am, for_graft(*single, am.bundle)}}, what);
     work_on(single ? pl : am);
     show_page(PanelPage::Checks);  // where P places the entry
-    state_.hint = {"No default for two bundles: " + missing->made.message + ". Press P and place the entry."};
+    state_.hint = {"No default for two bundles: " + ended(missing->made.message) +
+                   " Press P and place the entry."};
   });
 }
 
@@ -80,7 +81,7 @@ void PlanView::plan_single() {
     const auto here = model_->plan_fit(beside).is_valid() ? model_->tunnel(beside) : std::nullopt;
     const bool is_usable = made.front().made.is_usable();
     if (!is_usable && !here) {
-      state_.hint = {"No default for one tunnel: " + made.front().made.message + "."};
+      state_.hint = {"No default for one tunnel: " + ended(made.front().made.message)};
       return;
     }
     work_on(beside.bone);

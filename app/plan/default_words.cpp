@@ -12,8 +12,7 @@ std::string default_in_words(const std::vector<MadeTunnel>& made, bool took_the_
   for (const MadeTunnel& one : made) {
     const std::string name = tunnels::name_of(one.key);
     if (!one.made.is_usable()) {
-      words += "No default for the " + name + ": " + one.made.message;
-      words += one.made.message.ends_with('?') ? "\n" : ".\n";
+      words += "No default for the " + name + ": " + ended(one.made.message) + "\n";
       continue;
     }
     words += "Default " + name + ": " + one.made.place + ".";
@@ -30,6 +29,12 @@ std::string default_in_words(const std::vector<MadeTunnel>& made, bool took_the_
   if (took_the_place) words += "Ctrl+Z brings back the plan that was there.\n";
   if (!words.empty()) words.pop_back();
   return files::with_signs(std::move(words));
+}
+
+std::string ended(std::string sentence) {
+  constexpr std::string_view kEnds = ".?!";
+  if (sentence.empty() || kEnds.find(sentence.back()) == std::string_view::npos) sentence += '.';
+  return sentence;
 }
 
 }  // namespace arthronaut::plan

@@ -19,4 +19,7 @@ struct MadeTunnel {
 // rests on that nobody has confirmed, and how to have back what it took the place of.
 [[nodiscard]] std::string default_in_words(const std::vector<MadeTunnel>& made, bool took_the_place);
 
+// With a full stop at its end, where no other mark ends it: what follows is a sentence of its own.
+[[nodiscard]] std::string ended(std::string sentence);
+
 }  // namespace arthronaut::plan

@@ -57,9 +57,12 @@ void PlanView::place_landmark(const scene::SceneRay& ray) {
                    ". Click on it, or press Esc."};
     return;
   }
-  put_landmark(lies_within_bone(landmark()) ? middle_behind(model_->surface(state_.key.bone), *met, ray)
-                                            : met->point_mm,
-               "Place", false);
+  put_landmark_there(lies_within_bone(landmark()) ? middle_behind(model_->surface(state_.key.bone), *met, ray)
+                                                  : met->point_mm);
+}
+
+void PlanView::put_landmark_there(const Eigen::Vector3d& point_mm) {
+  put_landmark(point_mm, "Place", false);
   state_.placing = Placing::Nothing;
   state_.hint = {};
 }

@@ -4,9 +4,16 @@
 
 #include "app/widgets/list_rows.h"
 #include "app/widgets/tooltip.h"
+#include "app/widgets/wrapped_text.h"
 #include "planning/landmarks/off_shape.h"
 
 namespace arthronaut::plan {
+
+namespace {
+
+constexpr float kPicture_px = 180;  // at scale 1, square
+
+}  // namespace
 
 std::vector<LandmarkRow> landmark_rows(const open_case::PlanModel& model, bones::BoneKind bone) {
   std::vector<LandmarkRow> rows;
@@ -65,7 +72,7 @@ std::optional<std::size_t> next_proposed(const std::vector<LandmarkRow>& rows, s
 
 std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_case::PlanModel& model,
                                               bones::BoneKind bone, std::size_t selected,
-                                              float room_below_px) {
+                                              LandmarkDrawing& drawing, float room_below_px) {
   std::optional<std::size_t> clicked;
   const std::vector<LandmarkRow> rows = landmark_rows(model, bone);
   if (rows.empty()) return clicked;
@@ -75,12 +82,21 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
     return off_proposal_mm(model, bone, name).value_or(0) > landmarks::kFarFromShape_mm;
   };
   const std::string about = row.title + ": " + row.meaning + ".";
-  // Below the list: what the selected one means, of however many lines, its state, the buttons.
-  const float lines =
-      ui.theme.body
-          ->CalcTextSizeA(ui.theme.body->FontSize, 1e9F, ImGui::GetContentRegionAvail().x, about.c_str())
-          .y;
-  ImGui::BeginChild("landmarks", {0, ImGui::GetContentRegionAvail().y - lines - room_below_px});
+  const std::string word = state_in_words(row.state, off_proposal_mm(model, bone, row.name));
+  // Below the list: its picture beside what the selected one means and its state, of however many lines; the
+  // buttons.
+  const float picture = ui.theme.px(kPicture_px), gap = ui.theme.px(12);
+  ImFont* const body = ui.theme.body;
+  const auto beside = [&](const std::string& text) {
+    return widgets::wrapped(body, text, ImGui::GetContentRegionAvail().x - picture - gap);
+  };
+  const auto height_of = [&](const std::string& lines) {
+    return body->CalcTextSizeA(body->FontSize, 1e9F, 0, lines.c_str()).y;
+  };
+  const std::string about_lines = beside(about), state_lines = beside(word);
+  const float question = std::max(picture, height_of(about_lines) + height_of(state_lines));
+  ImGui::BeginChild("landmarks", {0, ImGui::GetContentRegionAvail().y - question - room_below_px});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, ui.theme.px(2)});
   const float height = ui.theme.px(34);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -107,13 +123,17 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
     if (ImGui::IsRectVisible(at, {at.x + width, at.y + height}))
       ui.log.note_button("plan.landmark." + rows[i].name, at, {at.x + width, at.y + height});
   }
+  ImGui::PopStyleVar();
   ImGui::EndChild();
-  widgets::text_in(ui.theme.body, widgets::kText, about);
-  const std::string word = state_in_words(row.state, off_proposal_mm(model, bone, row.name));
-  widgets::text_in(
-      ui.theme.body,
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  drawing.draw(ui, {at.x, at.y, picture, picture}, model.knee().side, bone, row.name);
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddText(body, body->FontSize, {at.x + picture + gap, at.y}, widgets::kText, about_lines.c_str());
+  draw.AddText(
+      body, body->FontSize, {at.x + picture + gap, at.y + height_of(about_lines)},
       row.state == LandmarkRow::State::Proposed || is_far(row.name) ? widgets::kCaution : widgets::kQuietText,
-      word);
+      state_lines.c_str());
+  ImGui::Dummy({0, question});
   ui.log.note_state("landmark_state", word);
   return clicked;
 }

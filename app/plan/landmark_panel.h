@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/case/plan_model.h"
+#include "app/plan/landmark_drawing.h"
 #include "app/widgets/controls.h"
 
 namespace arthronaut::plan {
@@ -36,10 +37,11 @@ struct LandmarkRow {
 [[nodiscard]] std::optional<std::size_t> next_proposed(const std::vector<LandmarkRow>& rows,
                                                        std::size_t from);
 
-// Leaves so much room below what it says of the selected one. Returns the row that was clicked.
+// What is said of the selected one stands beside its picture; so much room is left below. Returns the row
+// that was clicked.
 [[nodiscard]] std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui,
                                                             const open_case::PlanModel& model,
                                                             bones::BoneKind bone, std::size_t selected,
-                                                            float room_below_px);
+                                                            LandmarkDrawing& drawing, float room_below_px);
 
 }  // namespace arthronaut::plan

@@ -23,6 +23,7 @@ void PlanView::add_actions(widgets::Actions& actions) {
   add_bundle_actions(actions);
   add_survey_actions(actions);
   add_slice_actions(actions);
+  add_pane_actions(actions);
   add_measuring_actions(actions);
   add_volume_actions(actions);
   add_history_actions(actions);
@@ -196,13 +197,16 @@ void PlanView::place_entry(const scene::SceneRay& ray) {
                    ", or press Tab to plan the other bone."};
     return;
   }
+  put_entry_there(met->point_mm);
+}
+
+void PlanView::put_entry_there(const Eigen::Vector3d& point_mm) {
   const auto tunnel = model_->tunnel(state_.key);
   change("Place the entry of the", false,
-         tunnel
-             ? with_entry_at(*tunnel, met->point_mm)
-             : for_graft(tunnels::first_tunnel(state_.key.bone, met->point_mm, model_->axes(state_.key.bone),
-                                               model_->surface(state_.key.bone)),
-                         state_.key.bundle));
+         tunnel ? with_entry_at(*tunnel, point_mm)
+                : for_graft(tunnels::first_tunnel(state_.key.bone, point_mm, model_->axes(state_.key.bone),
+                                                  model_->surface(state_.key.bone)),
+                            state_.key.bundle));
   state_.placing = Placing::Nothing;
   state_.hint = {};
 }

@@ -195,7 +195,7 @@ void draw_tools(const widgets::Ui& ui, const tunnels::TunnelKey& key) {
 // One of a list that can be clicked on.
 struct ListRow {
   std::string id, text;
-  bool is_here = false, is_faint = false;
+  bool is_here = false, is_faint = false, is_chosen = false;  // chosen: keys act on it
 };
 
 bool draw_row(const widgets::Ui& ui, const ListRow& row) {
@@ -208,6 +208,8 @@ bool draw_row(const widgets::Ui& ui, const ListRow& row) {
   if (row.is_here || ImGui::IsItemHovered())
     draw.AddRectFilled(at, {at.x + width, at.y + height},
                        row.is_here ? IM_COL32(28, 74, 104, 255) : IM_COL32(38, 47, 57, 255), ui.theme.px(6));
+  if (row.is_chosen)
+    draw.AddRect(at, {at.x + width, at.y + height}, widgets::kAccent, ui.theme.px(6), 0, ui.theme.px(2));
   ImFont* font = ui.theme.body;
   const std::string fitting = widgets::fitting(font, row.text, width - ui.theme.px(20));
   widgets::draw_text(draw, font, at.x + ui.theme.px(10), at.y + (height - font->FontSize) / 2,
@@ -253,7 +255,8 @@ void draw_version_words(const widgets::Ui& ui, const PlanPanel& panel, std::size
   } else if (draw_row(ui, {"version_words." + std::to_string(version.number),
                            !version.words.note.empty()   ? version.words.note
                            : !version.words.name.empty() ? "Name and note..."
-                                                         : "No name: click here, or Shift+K for the newest",
+                           : place == panel.version      ? "No name: click here, or Shift+K"
+                                                         : "No name: click here",
                            false, false})) {
     clicked.named = place;
   }
@@ -265,7 +268,7 @@ void draw_version_words(const widgets::Ui& ui, const PlanPanel& panel, std::size
 void draw_versions(const widgets::Ui& ui, const PlanPanel& panel, float room_below_px, PanelClick& clicked) {
   ImGui::Separator();
   button_pair(ui, "plan.keep", "plan.export");
-  button_pair(ui, "plan.markups", "plan.side");
+  button_pair(ui, "plan.markups", "plan.side", 0.57F);  // for "Take markups" and its key
   ImGui::BeginChild("versions", {0, ImGui::GetContentRegionAvail().y - room_below_px});
   if (panel.versions.empty())
     widgets::text_in(ui.theme.body, widgets::kQuietText,
@@ -276,8 +279,12 @@ void draw_versions(const widgets::Ui& ui, const PlanPanel& panel, float room_bel
     const bool is_same = std::ranges::all_of(differences, [](const cases::TunnelDifference& difference) {
       return difference.kind == cases::TunnelDifference::Kind::Same;
     });
-    if (draw_row(ui, {"version." + std::to_string(version.number), version.title(), is_same, false}))
+    const float top = ImGui::GetCursorScreenPos().y;
+    const bool is_chosen = i == panel.version;
+    if (draw_row(ui,
+                 {"version." + std::to_string(version.number), version.title(), is_same, false, is_chosen}))
       clicked.version = i;
+    if (is_chosen) widgets::bring_into_sight(i, top, ImGui::GetCursorScreenPos().y - top);
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      "Kept " + files::local_time_in_words(version.kept_utc) +
                          (cases::side_refusal(version, panel.model.knee().side).empty()
@@ -322,7 +329,7 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
       const bool has_roof =
           panel.key.bone == bones::BoneKind::Femur && panel.model.has_bone(bones::BoneKind::Femur);
       clicked.landmark = draw_landmark_list(ui, panel.model, panel.key.bone, panel.landmark,
-                                            ui.theme.px(has_roof ? 378 : 252) + more);
+                                            panel.landmark_drawing, ui.theme.px(has_roof ? 316 : 190) + more);
       if (has_roof) {
         widgets::text_in(ui.theme.body, widgets::kText, roof_line_in_words(panel.model));
         widgets::action_button(ui, "plan.roof", ImGui::GetContentRegionAvail().x);

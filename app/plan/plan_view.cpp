@@ -35,6 +35,18 @@ const char* name_of(open_case::PlanStatus::Save save) {
   return "";
 }
 
+// From left to right in as many rows as the area is wide enough for; they are cut off it.
+void draw_button_rows(const widgets::Ui& ui, widgets::Rect& area, std::initializer_list<const char*> ids) {
+  const float height = ui.theme.px(44), gap = ui.theme.px(8);
+  widgets::Rect row = area.cut_top(height, ui.theme.px(9));
+  for (const char* id : ids) {
+    const float width = widgets::action_button_width(ui, id);
+    if (width > row.width && row.x > area.x) row = area.cut_top(height, ui.theme.px(9));
+    ImGui::SetCursorScreenPos(row.cut_left(width, gap).min());
+    widgets::action_button(ui, id, width);
+  }
+}
+
 }  // namespace
 
 PlanView::PlanView(std::function<void()> make_current, const std::function<void()>& wake,
@@ -47,7 +59,8 @@ PlanView::PlanView(std::function<void()> make_current, const std::function<void(
       survey_(wake),
       export_(wake),
       defaults_(wake),
-      tour_defaults_(wake) {}
+      tour_defaults_(wake),
+      landmark_drawing_(wake) {}
 
 mode::ModeTitle PlanView::title() const {
   return {"plan", "mode.plan", "Plan", "Place the tunnels", GLFW_KEY_F1};
@@ -93,6 +106,7 @@ void PlanView::tick(double now_s) {
                    model_->revision()};  // beside another plan it would be of that
   if (volume_.is_on()) slices_.want();
   slices_.tick();
+  if (model_ != nullptr && state_.page == PanelPage::Landmarks) landmark_drawing_.follow(model_->knee().side);
   volume_.follow(slices_.shared_volume());
   bones_.show_volume(volume_.item());
 }
@@ -114,24 +128,17 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const open_case::PlanStatus& status = history_.status();
   widgets::Rect rest = area;
   const widgets::Rect panel = rest.cut_right(ui.theme.px(470), ui.theme.px(12));
-  const auto row = [&](std::initializer_list<const char*> ids) {
-    for (const char* id : ids) {
-      widgets::action_button(ui, id);
-      ImGui::SameLine(0, ui.theme.px(8));
-    }
-  };
-  ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(44), ui.theme.px(8)).min());
+  const auto row = [&](std::initializer_list<const char*> ids) { draw_button_rows(ui, rest, ids); };
   row({"plan.anterior", "plan.posterior", "plan.medial", "plan.lateral", "plan.distal", "plan.notch",
        "plan.plateau", "plan.see_through"});
-  ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(44), ui.theme.px(10)).min());
-  row({"plan.grid", "plan.map", "plan.aims", "plan.xray", "plan.volume", "plan.slices", "plan.paint"});
-  if (state_.shows_slices) {
-    // A row of their own: beside the others they would run under the panel.
-    ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(44), ui.theme.px(10)).min());
+  if (volume_.is_on())
+    row({"plan.grid", "plan.map", "plan.aims", "plan.xray", "plan.volume", "plan.volume_less",
+         "plan.volume_more", "plan.slices", "plan.paint"});
+  else
+    row({"plan.grid", "plan.map", "plan.aims", "plan.xray", "plan.volume", "plan.slices", "plan.paint"});
+  if (state_.shows_slices)
     row({"plan.along", "plan.window", "plan.fit", "plan.cross_to_entry", "plan.cross_to_thinnest",
          "plan.distance", "plan.angle", "plan.unmeasure"});
-  }
-  if (volume_.is_on()) row({"plan.volume_less", "plan.volume_more"});
   follow_tour();
   const std::optional<TourCard> card = tour_.card();
   if (card) draw_tour(ui, rest.cut_top(ui.theme.px(88), ui.theme.px(10)), *card);
@@ -146,6 +153,7 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
     const widgets::Rect axial = rest.cut_top((rest.height - gap) / 2, gap);
     draw_bones(ui, bones);
     draw_slices(ui, {axial, left, rest});
+    if (slices_.volume() != nullptr) draw_keyed_pane(ui, {bones, axial, left, rest});
   } else {
     draw_bones(ui, rest);
   }
@@ -162,9 +170,10 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
                        plan_review::side_doubt(bone_doubts_),
                        doubt_count};
   const NextStep next = next_step(*model_, step);
-  const PanelClick clicked = draw_plan_panel(ui, panel,
-                                             {*model_, history_, state_.key, state_.page, state_.landmark,
-                                              versions_, version_field_, bone_doubts_, next});
+  const PanelClick clicked =
+      draw_plan_panel(ui, panel,
+                      {*model_, history_, state_.key, state_.page, state_.landmark, versions_,
+                       chosen_version(), version_field_, landmark_drawing_, bone_doubts_, next});
   if (clicked.step) history_.go_to(*clicked.step);
   if (clicked.landmark) select_landmark(*clicked.landmark);
   if (clicked.version) take_version(*clicked.version);
@@ -181,6 +190,10 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
                                : state_.placing == Placing::Landmark ? "landmark"
                                                                      : "nothing");
   ui.log.note_state("hint", state_.hint.text);
+  ui.log.note_state("keyed_pane", std::to_string(state_.keyed_pane));
+  ui.log.note_state("version_row", state_.page == PanelPage::Steps && !versions_.empty()
+                                       ? std::to_string(versions_[chosen_version()].version.number)
+                                       : "");
   ui.log.note_state("volume", volume_.in_words(slices_.reason()));
   const auto& from = bones_.looked_from();
   ui.log.note_state("view_direction", state_.shows_lateral         ? "the radiograph"
@@ -250,6 +263,7 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   if (state_.placing != Placing::Nothing || history_.is_read_only())
     for (PaneMark& mark : shown) mark.can_be_dragged = false;
   follow(bones_.draw(ui, area, shown));
+  draw_aiming_cross(ui, area);
   draw_hint(ui, draw_survey_legend(ui, area), bones_.handles_on_screen(area, shown));
 }
 

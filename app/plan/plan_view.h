@@ -16,6 +16,7 @@
 #include "app/plan/bone_pane.h"
 #include "app/plan/default_work.h"
 #include "app/plan/export_work.h"
+#include "app/plan/landmark_drawing.h"
 #include "app/plan/landmark_panel.h"
 #include "app/plan/lateral_view.h"
 #include "app/plan/plan_steps.h"
@@ -65,7 +66,7 @@ class PlanView : public mode::Mode {
   [[nodiscard]] bool awaits_text() const override { return version_field_.awaits_text(); }
   [[nodiscard]] bool is_busy() const override {
     return history_.is_moving() || defaults_.is_running() || slices_.is_loading() || volume_.is_preparing() ||
-           awaits_shape();
+           landmark_drawing_.is_preparing() || awaits_shape();
   }
 
  private:
@@ -79,18 +80,29 @@ class PlanView : public mode::Mode {
   void add_tunnel_actions(widgets::Actions& actions);
   void add_placing_actions(widgets::Actions& actions);
   void place_entry(const scene::SceneRay& ray);
+  void put_entry_there(const Eigen::Vector3d& point_mm);  // ends the placing
   [[nodiscard]] bool can_stop_placing() const;
   void add_slice_actions(widgets::Actions& actions);
   void add_measuring_actions(widgets::Actions& actions);
   void add_volume_actions(widgets::Actions& actions);
+
+  // pane_actions.cpp
+  void add_pane_actions(widgets::Actions& actions);
+  // Of the three the one in which keys act; nullopt: in the 3D view.
+  [[nodiscard]] std::optional<std::size_t> keyed_slice() const;
+  // Where the mouse was pressed last keys act: the 3D view, and the slices.
+  void draw_keyed_pane(const widgets::Ui& ui, const std::array<widgets::Rect, 4>& panes);
+  void draw_aiming_cross(const widgets::Ui& ui, const widgets::Rect& area) const;
+  void click_here();
 
   // version_actions.cpp
   void add_version_actions(widgets::Actions& actions);
   void load_versions();
   void load_bone_doubts();
   void keep_version();
-  void take_version(std::size_t place);  // in versions_
-  void name_version(std::size_t place);  // opens its field
+  void take_version(std::size_t place);              // in versions_
+  [[nodiscard]] std::size_t chosen_version() const;  // as a place in versions_; 0 where there is none
+  void name_version(std::size_t place);              // opens its field
   void say_of_version(int number, const cases::VersionWords& words);
   void export_plan();
 
@@ -106,6 +118,7 @@ class PlanView : public mode::Mode {
   void confirm_landmarks(bool all);
   void follow_landmark(const PaneEvent& event);
   void place_landmark(const scene::SceneRay& ray);
+  void put_landmark_there(const Eigen::Vector3d& point_mm);  // ends the placing
   // how: "Drag"; the step names the landmark.
   void put_landmark(const Eigen::Vector3d& point_mm, const std::string& how, bool continues);
   [[nodiscard]] std::string landmark() const;  // that is selected; empty without a bone
@@ -190,7 +203,9 @@ class PlanView : public mode::Mode {
     bool is_held = false;  // the mouse drags something of the plan: its step goes on
     // Where the aim's handle is while it is held: under the mouse, wherever the tunnel ends.
     std::optional<Eigen::Vector3d> held_aim_mm = {};
-    bool along = false;  // the slices, of the tunnel that is worked on
+    std::size_t keyed_pane = 0;   // the 3D view, or 1 + the slice
+    std::size_t version_row = 0;  // that keys take, from the newest
+    bool along = false;           // the slices, of the tunnel that is worked on
     bool shows_slices = false, shows_lateral = false, shows_grid = true;
     bool shows_map = false, shows_aims = false;
     std::shared_ptr<const Survey> survey = nullptr;  // of what is planned now; null: none is there
@@ -225,6 +240,7 @@ class PlanView : public mode::Mode {
   std::filesystem::path case_folder_;
   std::vector<KeptVersion> versions_;  // the oldest first
   VersionField version_field_;
+  LandmarkDrawing landmark_drawing_;
   cases::BoneDoubts bone_doubts_;
   std::map<tunnels::TunnelKey, TunnelMesh> tunnel_meshes_;
   ViewState state_;
@@ -238,7 +254,9 @@ struct PlanPanel {
   PanelPage page;
   std::size_t landmark;  // the row that is selected
   const std::vector<KeptVersion>& versions;
+  std::size_t version;  // that keys take
   VersionField& version_field;
+  LandmarkDrawing& landmark_drawing;
   const cases::BoneDoubts& doubts;
   NextStep next;
 };

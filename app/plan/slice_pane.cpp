@@ -61,6 +61,13 @@ void SlicePane::show(const Eigen::Vector3d& center_mm, double extent_mm) {
   is_fitted_ = true;
 }
 
+void SlicePane::zoom(double steps, const Eigen::Vector3d& fixed_mm) {
+  const double zoomed = std::clamp(mm_per_px_ * std::pow(0.88, steps), 0.01, 5.0);
+  const Eigen::Vector3d away = fixed_mm - center_mm_, n = normal();
+  center_mm_ += (1 - zoomed / mm_per_px_) * (away - n.dot(away) * n);
+  mm_per_px_ = zoomed;
+}
+
 double SlicePane::step_mm(const images::Volume& volume) const {
   // The spacing of the volume's axis that runs nearest to the normal.
   const Eigen::Matrix3d axes = volume.lps_from_index.linear();
@@ -173,7 +180,7 @@ SliceEvent SlicePane::follow_mouse(const widgets::Rect& rect, const SliceContent
       window.level -= per_px * way.y;
       event.window = window;
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || (left && io.KeyShift)) {
-      center_mm_ -= mm_per_px_ * (way.x * right_ + way.y * down_);
+      shift({way.x, way.y});
     } else if (press_paints_) {
       if (!event.painted && under_mouse != pressed_mm_) event.painted = {pressed_mm_, under_mouse, false};
       pressed_mm_ = under_mouse;
@@ -193,10 +200,7 @@ SliceEvent SlicePane::follow_mouse(const widgets::Rect& rect, const SliceContent
     if (content.brush_mm && io.KeyShift) {
       event.brush_steps = io.MouseWheel;
     } else if (io.KeyCtrl) {  // what is under the mouse stays there
-      const double zoom = std::clamp(mm_per_px_ * std::pow(0.88, io.MouseWheel), 0.01, 5.0);
-      const Eigen::Vector2d from_center = mouse - 0.5 * (size.cast<double>() - Eigen::Vector2d::Ones());
-      center_mm_ += (mm_per_px_ - zoom) * (from_center.x() * right_ + from_center.y() * down_);
-      mm_per_px_ = zoom;
+      zoom(io.MouseWheel, under_mouse);
     } else {
       // A touchpad scrolls by fractions of a step: they add up.
       const float steps = std::trunc(wheel_steps_ += io.MouseWheel);

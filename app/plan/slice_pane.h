@@ -108,6 +108,14 @@ class SlicePane {
   // and moves the cross-hair with Ctrl, the wheel with Shift changes the brush's size.
   SliceEvent draw(const widgets::Ui& ui, const char* name, const widgets::Rect& rect,
                   const SliceContent& content);
+  // What the mouse does, for keys: nearer by steps of the wheel, a place staying where it is; the picture by
+  // so many pixels.
+  void zoom(double steps, const Eigen::Vector3d& fixed_mm);
+  void shift(const Eigen::Vector2d& by_px) { center_mm_ -= way_mm(by_px); }
+  // So many pixels right and down in the picture.
+  [[nodiscard]] Eigen::Vector3d way_mm(const Eigen::Vector2d& px) const {
+    return mm_per_px_ * (px.x() * right_ + px.y() * down_);
+  }
   // How far one step of the wheel goes.
   [[nodiscard]] double step_mm(const images::Volume& volume) const;
   [[nodiscard]] Eigen::Vector3d normal() const { return right_.cross(down_); }

@@ -144,6 +144,20 @@ void SlicePanes::set_cross_in(std::size_t pane, const Eigen::Vector3d& point_mm)
   cross_mm_ = on_axis(*tunnel_, point_mm);
 }
 
+void SlicePanes::scroll(std::size_t pane, int images) {
+  set_cross_in(pane, cross_mm_ + images * panes_[pane].step_mm(*volume_) * panes_[pane].normal());
+}
+
+void SlicePanes::move_cross(std::size_t pane, const Eigen::Vector2d& by_px) {
+  set_cross_in(pane, cross_mm_ + panes_[pane].way_mm(by_px));
+}
+
+// A drag that does not fit what was begun is a measurement of its own.
+void SlicePanes::add_measured(const std::vector<Eigen::Vector3d>& points_mm) {
+  if (points_mm_.size() + points_mm.size() > points_asked()) points_mm_.clear();
+  points_mm_.insert(points_mm_.end(), points_mm.begin(), points_mm.end());
+}
+
 void SlicePanes::show_point(const Eigen::Vector3d& point_mm) {
   cross_mm_ = tunnel_ ? on_axis(*tunnel_, point_mm) : point_mm;
   if (tunnel_) turned_deg_ = geometry::deg_from_rad(turned_to_hold_rad(*tunnel_, point_mm));
@@ -204,9 +218,7 @@ void SlicePanes::draw(const widgets::Ui& ui, const std::array<widgets::Rect, 3>&
     const SliceEvent event = panes_[i].draw(ui, kNames[i], areas[i], content);
     if (event.cross_mm) set_cross_in(i, *event.cross_mm);
     if (event.window) window_ = *event.window;
-    // A drag that does not fit what was begun is a measurement of its own.
-    if (points_mm_.size() + event.measured_mm.size() > points_asked()) points_mm_.clear();
-    points_mm_.insert(points_mm_.end(), event.measured_mm.begin(), event.measured_mm.end());
+    add_measured(event.measured_mm);
     if (!event.reaching_mm.empty()) reaching_mm_ = event.reaching_mm;
     if (event.value) {
       const std::string text =

@@ -57,7 +57,16 @@ class SlicePanes {
   void turn(double by_deg) { turned_deg_ = std::remainder(turned_deg_ + by_deg, 360); }
   [[nodiscard]] double turned_deg() const { return turned_deg_; }
 
+  // What the mouse does in one of the three (0 to 2), for keys: to the next images, the cross-hair by so many
+  // pixels right and down, nearer about the cross-hair, the picture by so many pixels. Precondition:
+  // volume().
+  void scroll(std::size_t pane, int images);
+  void move_cross(std::size_t pane, const Eigen::Vector2d& by_px);
+  void zoom(std::size_t pane, double steps) { panes_[pane].zoom(steps, cross_mm_); }
+  void shift(std::size_t pane, const Eigen::Vector2d& by_px) { panes_[pane].shift(by_px); }
+
   void use(MeasuringTool tool);
+  void measure_here() { add_measured({cross_mm_}); }  // a point at the cross-hair. Precondition: a tool
   [[nodiscard]] MeasuringTool tool() const { return tool_; }
   // A measurement whose last point was just set; once.
   [[nodiscard]] std::optional<std::vector<Eigen::Vector3d>> take_measured();
@@ -77,6 +86,7 @@ class SlicePanes {
   void lay_along(const TunnelAxis& tunnel);
   // Where the cross-hair is wanted in a slice: of one along the tunnel what is across it is a turn.
   void set_cross_in(std::size_t pane, const Eigen::Vector3d& point_mm);
+  void add_measured(const std::vector<Eigen::Vector3d>& points_mm);
   [[nodiscard]] std::size_t points_asked() const { return tool_ == MeasuringTool::Angle ? 3 : 2; }
 
   std::function<void()> wake_;

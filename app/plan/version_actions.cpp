@@ -1,6 +1,8 @@
 // What is kept of a plan beside the one that is worked on, and what goes to other programs.
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "app/plan/plan_view.h"
@@ -38,6 +40,7 @@ void PlanView::keep_version() {
     state_.hint = {"Kept as version " + std::to_string(kept.number) + ". Shift+K gives it a name and a note",
                    true, model_->revision()};
     load_versions();
+    state_.version_row = 0;  // it, which Shift+K then names
   } catch (const std::runtime_error& error) {
     state_.hint = {error.what()};
   }
@@ -50,6 +53,10 @@ void PlanView::take_version(std::size_t place) {
     return;
   }
   history_.apply_plan(version.plan, "Take version " + std::to_string(version.number));
+}
+
+std::size_t PlanView::chosen_version() const {
+  return versions_.empty() ? 0 : versions_.size() - 1 - std::min(state_.version_row, versions_.size() - 1);
 }
 
 void PlanView::name_version(std::size_t place) {
@@ -120,14 +127,42 @@ void PlanView::add_version_actions(widgets::Actions& actions) {
   actions.add(
       {"plan.name_version",
        "Name version",
-       "A name and a note for the version that was kept last; a click on the line below a version's row "
-       "gives them to that one",
+       "A name and a note for the chosen version, at first the newest; a click on the line below a row, too",
        GLFW_KEY_K,
        GLFW_MOD_SHIFT,
        false,
        [this] { return model_ != nullptr && !versions_.empty() && !history_.is_read_only(); },
        {},
-       [this] { name_version(versions_.size() - 1); }});
+       [this] { name_version(chosen_version()); }});
+  // On the page of the steps, which lists them, the newest first.
+  const auto lists = [this] {
+    return model_ != nullptr && state_.page == PanelPage::Steps && !versions_.empty();
+  };
+  for (const auto& [id, label, key, by] :
+       {std::tuple{"plan.version_below", "Older version", GLFW_KEY_PAGE_DOWN, 1},
+        std::tuple{"plan.version_above", "Newer version", GLFW_KEY_PAGE_UP, -1}})
+    actions.add({id,
+                 label,
+                 "Chooses it in the list, for Enter to take it",
+                 key,
+                 0,
+                 true,
+                 lists,
+                 {},
+                 [this, step = by] {
+                   const auto count = static_cast<int>(versions_.size());
+                   const int row = static_cast<int>(versions_.size() - 1 - chosen_version());
+                   state_.version_row = static_cast<std::size_t>((row + step + count) % count);
+                 }});
+  actions.add({"plan.version_take",
+               "Take version",
+               "The chosen version becomes the plan; undo brings back the one that was there",
+               GLFW_KEY_ENTER,
+               0,
+               false,
+               [this, lists] { return lists() && !history_.is_read_only(); },
+               {},
+               [this] { take_version(chosen_version()); }});
   actions.add(
       {"plan.export",
        "Export",

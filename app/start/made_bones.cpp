@@ -8,6 +8,7 @@
 
 #include "app/scene/scene_content.h"
 #include "app/widgets/list_rows.h"
+#include "app/widgets/wrapped_text.h"
 
 namespace arthronaut::start {
 
@@ -56,12 +57,19 @@ constexpr std::array<Point, 8> kFibula{{{-0.4F, 1},
 
 void draw_sketch(const widgets::Ui& ui, const widgets::Rect& area, Side side, bool is_chosen) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const float mirror = side == Side::Right ? 1.F : -1.F, words = ui.theme.body->FontSize + ui.theme.px(6);
+  const float mirror = side == Side::Right ? 1.F : -1.F, line = ui.theme.body->FontSize + ui.theme.px(4);
+  // Beside slices the area is narrow.
+  const auto fitted = [&](std::string_view text) {
+    return widgets::lines_within(ui.theme.body, text, area.width - ui.theme.px(12), ui.theme.body->FontSize);
+  };
+  const widgets::LinesWithin seen_from = fitted("seen from in front:"),
+                             fibula =
+                                 fitted(side == Side::Right ? "fibula at its left" : "fibula at its right");
   draw.AddRectFilled(area.min(), area.max(), widgets::kBackground, ui.theme.px(6));
   draw.AddRect(area.min(), area.max(), is_chosen ? widgets::kAccent : widgets::kPanelEdge, ui.theme.px(6), 0,
                ui.theme.px(is_chosen ? 3 : 1));
-  const float size = std::min(area.width, area.height - 2 * words - ui.theme.px(16)) / 2;
-  const ImVec2 middle{area.center().x, area.y + words + ui.theme.px(8) + size};
+  const float size = std::min(area.width, area.height - 3 * line - ui.theme.px(16)) / 2;
+  const ImVec2 middle{area.center().x, area.y + line + ui.theme.px(8) + size};
   const auto outline = [&](const auto& points, ImU32 color, float wide) {
     std::array<ImVec2, 16> at{};
     std::transform(points.begin(), points.end(), at.begin(), [&](const Point& p) {
@@ -72,15 +80,19 @@ void draw_sketch(const widgets::Ui& ui, const widgets::Rect& area, Side side, bo
   outline(kFemur, widgets::kQuietText, 2);
   outline(kTibia, widgets::kQuietText, 2);
   outline(kFibula, widgets::kAccent, 3);
-  const auto centered = [&](ImFont* font, float y, ImU32 color, const std::string& text) {
-    const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
-    widgets::draw_text(draw, font, area.center().x - wide / 2, y, color, text);
+  const auto centered = [&](ImFont* font, float letters_px, float y, ImU32 color, const std::string& text) {
+    const float wide = font->CalcTextSizeA(letters_px, 1e9F, 0, text.c_str()).x;
+    draw.AddText(font, letters_px, {area.center().x - wide / 2, y}, color, text.c_str());
+    return ImVec4{area.center().x - wide / 2, y, area.center().x + wide / 2, y + letters_px};
   };
-  centered(ui.theme.strong, area.y + ui.theme.px(4), widgets::kText,
+  centered(ui.theme.strong, ui.theme.strong->FontSize, area.y + ui.theme.px(4), widgets::kText,
            side == Side::Right ? "Right knee (R)" : "Left knee (L)");
-  centered(ui.theme.body, area.y + area.height - words, widgets::kQuietText,
-           side == Side::Right ? "seen from in front: fibula at its left"
-                               : "seen from in front: fibula at its right");
+  const ImVec4 view = centered(ui.theme.body, seen_from.letters_px, area.y + area.height - 2 * line,
+                               widgets::kQuietText, seen_from.lines);
+  const ImVec4 told = centered(ui.theme.body, fibula.letters_px, area.y + area.height - line,
+                               widgets::kQuietText, fibula.lines);
+  ui.log.note("start.sketch_words_" + std::string(bones::to_text(side)), {std::min(view.x, told.x), view.y},
+              {std::max(view.z, told.z), told.w});
 }
 
 // LPS: x grows to the patient's left.

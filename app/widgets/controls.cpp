@@ -26,6 +26,11 @@ void draw_text(ImDrawList& draw, ImFont* font, const ImVec2& at, ImU32 color, st
   draw.AddText(font, font->FontSize, at, color, text.data(), text.data() + text.size(), wrap);
 }
 
+// What a key needs at a button's right; 0 of none.
+float key_room(const Ui& ui, const std::string& key) {
+  return key.empty() ? 0 : text_size(ui.theme.body, key).x + ui.theme.px(18);
+}
+
 }  // namespace
 
 ImU32 color_of(Severity severity) {
@@ -53,6 +58,13 @@ void begin_panel(const Ui& ui, const char* name, const Rect& rect, std::string_v
 
 void end_panel() { ImGui::EndChild(); }
 
+float action_button_width(const Ui& ui, std::string_view action_id) {
+  const Action* action = ui.actions.find(action_id);
+  if (action == nullptr) return 0;
+  return text_size(ui.theme.body, action->label).x + key_room(ui, key_name(action->key, action->mods)) +
+         2 * ImGui::GetStyle().FramePadding.x;
+}
+
 void action_button(const Ui& ui, std::string_view action_id, float width, float height) {
   const Action* action = ui.actions.find(action_id);
   if (action == nullptr) return;
@@ -61,8 +73,8 @@ void action_button(const Ui& ui, std::string_view action_id, float width, float 
   std::string key = key_name(action->key, action->mods), key_in_tooltip;
   const ImGuiStyle& style = ImGui::GetStyle();
   const ImVec2 label_size = text_size(ui.theme.body, action->label);
-  const float key_width = key.empty() ? 0 : text_size(ui.theme.body, key).x + ui.theme.px(18);
-  if (width <= 0) width = label_size.x + key_width + 2 * style.FramePadding.x;
+  const float key_width = key_room(ui, key);
+  if (width <= 0) width = action_button_width(ui, action_id);
   // Where both do not fit beside each other, however close, the label is what has to be read.
   const float closest = key.empty() ? 0 : key_width - ui.theme.px(11);
   if (label_size.x + closest + 2 * style.FramePadding.x > width + 0.5F) key_in_tooltip.swap(key);

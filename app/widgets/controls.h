@@ -35,6 +35,8 @@ void end_panel();
 // A button for an action: its label, its key, greyed while it is not possible. Width 0: as wide as the label
 // needs. What must be held fills while it is held, by the key or by the mouse.
 void action_button(const Ui& ui, std::string_view action_id, float width = 0, float height = 0);
+// How wide its label and key need it; 0 of no action.
+[[nodiscard]] float action_button_width(const Ui& ui, std::string_view action_id);
 
 void draw_sign(ImDrawList& draw, const ImVec2& center, float radius, Severity severity);
 // Severity, name, and what there is to say; wraps.

@@ -51,5 +51,12 @@ TEST(DefaultWords, SayWhyThereIsNone) {
             "No default for the femur: no joint's end is seen; is it cut off?");
 }
 
+// A message may be a question: "...is it cut off through the joint's end?" is ended by its own mark.
+TEST(DefaultWords, ASentenceEndsOnce) {
+  EXPECT_EQ(ended("the condyles are not marked"), "the condyles are not marked.");
+  EXPECT_EQ(ended("is it cut off through the joint's end?"), "is it cut off through the joint's end?");
+  EXPECT_EQ(ended("It is."), "It is.");
+}
+
 }  // namespace
 }  // namespace arthronaut::plan

@@ -13,7 +13,7 @@ TEST(KeyList, ShowsEveryExplanationWhole) {
   ImGui::CreateContext();
   const widgets::Theme theme = widgets::build_theme(*ImGui::GetIO().Fonts, 1, 40);
   constexpr float kRoom_px = 720, kHeight_px = 1000;
-  for (const std::size_t count : {1U, 2U, 50U, 75U}) {
+  for (const std::size_t count : {1U, 2U, 50U, 75U, 100U}) {
     std::vector<std::string> explanations;
     for (std::size_t i = 0; i < count; ++i)
       explanations.push_back(i % 3 != 0

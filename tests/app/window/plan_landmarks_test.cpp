@@ -67,6 +67,29 @@ TEST_F(PlanLandmarks, TheArrowsGoThroughTheListAndMoveNoTunnel) {
   EXPECT_EQ(app.state("undo"), "") << "no tunnel was moved";
 }
 
+// What is meant by the landmark is drawn beside its words, of this knee's side, and over no handle.
+TEST_F(PlanLandmarks, APictureShowsWhatIsMeant) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  EXPECT_FALSE(app.widgets().contains("plan.landmark_picture"));
+  app.press("l");
+  ASSERT_TRUE(app.wait_for_state("landmark_picture", "blumensaat_anterior, notch, right", 60));
+  ASSERT_TRUE(app.wait_for_widget("plan.landmark_picture"));
+  const Area picture = app.widgets().at("plan.landmark_picture"), view = app.widgets().at("plan.view");
+  EXPECT_GE(picture.x, view.x + view.width) << "it would cover handles";
+  EXPECT_LE(picture.x + picture.width, 1280);
+  EXPECT_GT(picture.height, 100);
+  for (const char* button : {"plan.landmark_confirm", "plan.landmark_place", "plan.roof"}) {
+    ASSERT_TRUE(app.wait_for_widget(button)) << button;
+    EXPECT_GE(app.widgets().at(button).y, picture.y + picture.height) << button;
+  }
+  app.press("Next");
+  ASSERT_TRUE(app.wait_for_state("landmark_picture", "blumensaat_posterior, notch, right"));
+  app.press("Tab");
+  ASSERT_TRUE(app.wait_for_state("landmark_picture", "plateau_anterior, plateau, right"));
+}
+
 // A click places, also where a landmark lies that could be taken hold of.
 TEST_F(PlanLandmarks, ALandmarkIsPlacedWhereOneLies) {
   const VirtualDisplay display(1280, 720);

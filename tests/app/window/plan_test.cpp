@@ -214,23 +214,7 @@ TEST_F(PlanWindow, SlicesAreScrolledWindowedAndMeasuredIn) {
 // tissue, and the bones again. Without images it says that there are none.
 TEST_F(PlanWindow, ImagesTakeTheBonesPlaceByAKey) {
   const auto folder = folder_ / "Imaged.arthro";
-  cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "imaged");
-  images::Volume volume;
-  volume.size = {110, 110, 140};
-  volume.modality_in_file = "CT";
-  volume.lps_from_index.linear() *= 1.5;
-  volume.lps_from_index.translation() = -0.75 * volume.size.cast<double>();
-  painting::Labels labels(static_cast<std::size_t>(volume.size.prod()), painting::kNothing);
-  for (const auto& [kind, bone] : knee.bones) painting::add_bone(labels, volume, bone.mesh, painting::kFemur);
-  for (const std::uint8_t label : labels) volume.values.push_back(label == painting::kNothing ? 40.F : 900.F);
-  cases::save_case(folder, knee);
-  knee.images.push_back({.file = "",
-                         .modality = volume.modality_in_file,
-                         .source = "NRRD",
-                         .size = volume.size,
-                         .spacing_mm = volume.spacing_mm()});
-  cases::store_image(folder, 1, images::encoded(volume), knee.images.back());
-  cases::save_case(folder, knee);
+  write_knee_with_ct(folder);
   const VirtualDisplay display(1280, 720);
   {
     RunningWorkstation app(display, folder_.path(), {folder.string()});

@@ -70,6 +70,12 @@ TEST_F(StartWindow, ImportsAFolderAsksForTheSideAndFindsTheCaseAgain) {
     ASSERT_TRUE(app.wait_for_state("import", "asking", 240));
     EXPECT_TRUE(app.wait_for_state("made_bones", "shown"));
     ASSERT_TRUE(app.wait_for_widget("start.sketch_left"));
+    for (const char* side : {"left", "right"}) {
+      const Area sketch = app.widgets().at(std::string("start.sketch_") + side),
+                 words = app.widgets().at(std::string("start.sketch_words_") + side);
+      EXPECT_GE(words.x, sketch.x) << side;
+      EXPECT_LE(words.x + words.width, sketch.x + sketch.width) << side;
+    }
     // The shapes alone told a side: Enter does not pass that by.
     ASSERT_TRUE(app.state("import_side").starts_with("look: ")) << app.state("import_side");
     app.press("Return");
