@@ -25,10 +25,11 @@ geometry::TriangleMesh lifted(const geometry::TriangleMesh& band) {
   return mesh;
 }
 
-std::string tibial_doubt(const open_case::PlanModel& model, const tunnels::Tunnel& tibial,
-                         const cases::BoneDoubts& doubts) {
+std::string tibial_doubt(const open_case::PlanModel& model, const tunnels::Tunnel& tibial) {
   if (const cases::PlanFit fit = model.plan_fit(tibial.key()); !fit.is_valid()) return fit.reason;
-  return plan_review::entry_doubt(tibial, doubts);
+  const std::string unseen =
+      model.surroundings(BoneKind::Tibia).unseen.reached(tibial.entry_mm, tibial.diameter_mm / 2);
+  return unseen.empty() ? "" : "it reaches " + unseen;
 }
 
 }  // namespace
@@ -67,7 +68,7 @@ IsometryAsked isometry_asked(const open_case::PlanModel& model, const tunnels::T
                        (check->source.empty() ? "" : ": " + check->source)};
   // The check was made: the tunnel's graft has a tibial end, and the knee a hinge.
   const plan_review::MeasuredTunnel& tibial = *plan_review::other_end(key, model.tunnels());
-  if (const std::string doubt = tibial_doubt(model, tibial.tunnel, doubts); !doubt.empty())
+  if (const std::string doubt = tibial_doubt(model, tibial.tunnel); !doubt.empty())
     return {.why_not = "the tibial entry is in doubt: " + doubt};
   const tunnels::PlanSurroundings& femur = model.surroundings(BoneKind::Femur);
   if (!femur.axes || femur.axes->origin != landmarks::AnatomicalAxes::Origin::FromLandmarks)
