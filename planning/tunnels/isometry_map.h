@@ -31,7 +31,8 @@ struct LengthChange {
                                    const Eigen::Vector3d& normal, const landmarks::AnatomicalAxes& axes,
                                    const BoneExtents& extents);
 
-// The triangles of the surface's mesh() whose corners all are. Empty where there are none, and once
+// The triangles of the surface's mesh() whose corners all are, split until no edge is longer than 0.5 mm.
+// Empty where there are none, and once
 // is_cancelled says so. Rays from every corner that faces medially: run it beside the screen.
 [[nodiscard]] geometry::TriangleMesh lateral_wall(const geometry::Surface& femur,
                                                   const landmarks::AnatomicalAxes& axes,
@@ -52,7 +53,7 @@ struct IsometryMap {
   double least_mm = 0, greatest_mm = 0;  // at the wall's corners
 };
 
-// The change is asked at each corner of the wall and taken as linear between: on triangles of 3 mm within 0.1
+// The change is asked at each corner of the wall and taken as linear between: on lateral_wall() within 0.1
 // mm. Bands are step_mm wide and begin at multiples of it. Throws InvalidInput unless step_mm is positive.
 [[nodiscard]] IsometryMap isometry_map(const geometry::TriangleMesh& wall,
                                        const Eigen::Vector3d& tibial_opening_mm,

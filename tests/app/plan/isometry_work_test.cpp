@@ -53,7 +53,7 @@ TEST_F(Isometry, SaysOfTheEntryWhatTheCheckSays) {
   const std::string entry = "This entry: ";
   ASSERT_TRUE(lines[1].starts_with(entry)) << lines[1];
   EXPECT_TRUE(check->text.starts_with(lines[1].substr(entry.size()))) << check->text << "\n" << lines[1];
-  EXPECT_THAT(lines[2], HasSubstr("the condyles' centres, a hinge: no roll-back"));
+  EXPECT_THAT(lines[2], HasSubstr("spheres through the posterior condyles, a hinge: no roll-back"));
   const tunnels::TunnelGeometry& in_femur = model_.measured(BoneKind::Femur);
   const auto here = asked.request->at(in_femur.entry_on_surface_mm, in_femur.entry.normal);
   ASSERT_TRUE(here);
@@ -108,7 +108,7 @@ TEST_F(Isometry, IsNotShownOfWhatIsInDoubt) {
   EXPECT_TRUE(asked({{BoneKind::Tibia, {"a sentence"}}}).request);
 
   landmarks::Landmarks marks = model_.landmarks(BoneKind::Femur);
-  marks.at("lateral_condyle_center") += 14 * model_.axes(BoneKind::Femur).anterior;
+  marks.at("lateral_condyle_posterior") += 14 * model_.axes(BoneKind::Femur).anterior;
   model_.set_landmarks(BoneKind::Femur, marks, model_.landmark_states(BoneKind::Femur));
   await_shape();
   EXPECT_THAT(asked().why_not, HasSubstr("the femur's hinge is in doubt: Landmarks"));

@@ -114,7 +114,7 @@ TEST_F(IsometryOfKnee, SaysOfAPlaceWhatTheCheckSaysOfATunnelThere) {
   EXPECT_NEAR(area_of_bands(map), geometry::surface_area_mm2(wall), 1e-6);
   int asked = 0;
   for (const IsometryBand& band : map.bands) {
-    for (std::size_t i = 0; i < band.mesh.triangles.size(); i += 7) {
+    for (std::size_t i = 0; i < band.mesh.triangles.size(); i += 97) {
       Vector3d at = Vector3d::Zero();
       for (const std::int32_t corner : band.mesh.triangles[i])
         at += band.mesh.vertices_mm[static_cast<std::size_t>(corner)] / 3;
