@@ -2,6 +2,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/plan/plan_view.h"
 #include "app/widgets/tooltip.h"
@@ -14,7 +15,7 @@ void PlanView::add_isometry_action(widgets::Actions& actions) {
   actions.add(
       {"plan.isometry", "Isometry",
        "How much the graft's length changes from 0 to 120 degrees of flexion, wherever on the lateral "
-       "wall of the notch it could begin: steps of 2 mm, the tibia turned about a fixed hinge",
+       "wall of the notch it could begin: steps of 2 mm up to 20, the tibia turned about a fixed hinge",
        GLFW_KEY_M, GLFW_MOD_SHIFT, false,
        [this] {
          return model_ != nullptr && state_.key.bone == BoneKind::Femur &&
@@ -46,11 +47,11 @@ void PlanView::follow_isometry() {
   state_.shown_revision = 0;
 }
 
-// Each line between two steps has its number on the bone.
+// Every other line between two steps has its number on the bone: more would stand on each other.
 void PlanView::add_isometry_marks(std::vector<PaneMark>& marks) const {
   if (state_.isometry == nullptr) return;
   for (const tunnels::IsometryBand& band : state_.isometry->map.bands)
-    if (band.line_at_mm)
+    if (band.line_at_mm && std::fmod(band.from_mm, 2 * tunnels::IsometrySteps{}.step_mm) == 0)
       marks.push_back({PaneMark::Shape::Dot, "", widgets::fixed(band.from_mm, 0), *band.line_at_mm,
                        widgets::kText, false,
                        "On this line the graft's length changes by " + widgets::fixed(band.from_mm, 0) +
@@ -90,7 +91,7 @@ void PlanView::draw_isometry_scale(const widgets::Ui& ui, const widgets::Rect& a
     draw.AddText(ui.theme.body, font, {is_centred ? x - wide / 2 : x, area.y + area.height - font},
                  widgets::kText, words.c_str());
   };
-  const float left = area.x + ui.theme.px(12), unit = ui.theme.px(54);
+  const float left = area.x + ui.theme.px(12), unit = ui.theme.px(150);
   const float swatch =
       std::min((area.width - unit - ui.theme.px(24)) / static_cast<float>(bands.size()), ui.theme.px(64));
   float x = left;
@@ -99,8 +100,8 @@ void PlanView::draw_isometry_scale(const widgets::Ui& ui, const widgets::Rect& a
                        widgets::color_of(isometry_color(i, bands.size())));
     text(x, widgets::fixed(bands[i].from_mm, 0), true);
   }
-  text(x, widgets::fixed(bands.back().to_mm, 0), true);
-  text(x + ui.theme.px(20), "mm", false);
+  if (std::isfinite(bands.back().to_mm)) text(x, widgets::fixed(bands.back().to_mm, 0), true);
+  text(x + ui.theme.px(20), std::isfinite(bands.back().to_mm) ? "mm" : "mm and more", false);
 }
 
 }  // namespace arthronaut::plan

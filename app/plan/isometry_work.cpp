@@ -105,7 +105,7 @@ scene::Color isometry_color(std::size_t band, std::size_t count) {
 }
 
 ShownIsometry shown_isometry(const IsometryRequest& of, const geometry::TriangleMesh& wall) {
-  ShownIsometry shown{of, tunnels::isometry_map(wall, of.tibial_opening_mm, of.axis, kIsometryStep_mm), {}};
+  ShownIsometry shown{of, tunnels::isometry_map(wall, of.tibial_opening_mm, of.axis), {}};
   const auto& bands = shown.map.bands;
   for (std::size_t i = 0; i < bands.size(); ++i)
     shown.items.push_back({std::make_shared<const geometry::TriangleMesh>(lifted(bands[i].mesh)),

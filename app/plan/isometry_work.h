@@ -16,8 +16,6 @@
 
 namespace arthronaut::plan {
 
-inline constexpr double kIsometryStep_mm = 2;
-
 // All that the map rests on; it is read by another thread. The femoral tunnel is none of it: while that is
 // dragged over the map, the map stays.
 struct IsometryRequest {

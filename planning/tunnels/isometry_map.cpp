@@ -142,8 +142,10 @@ geometry::TriangleMesh lateral_wall(const geometry::Surface& femur, const landma
 }
 
 IsometryMap isometry_map(const geometry::TriangleMesh& wall, const Vector3d& tibial_opening_mm,
-                         const graft::FlexionAxis& axis, double step_mm) {
-  if (!(step_mm > 0)) throw InvalidInput("isometry map: step_mm must be positive");
+                         const graft::FlexionAxis& axis, const IsometrySteps& steps) {
+  const double step_mm = steps.step_mm;
+  if (!(step_mm > 0 && steps.one_from_mm > 0))
+    throw InvalidInput("isometry map: step_mm and one_from_mm must be positive");
   IsometryMap map;
   if (wall.empty()) return map;
   std::vector<Vector4d> corners(wall.vertices_mm.size());
@@ -157,13 +159,17 @@ IsometryMap isometry_map(const geometry::TriangleMesh& wall, const Vector3d& tib
     map.least_mm = std::min(map.least_mm, change_mm);
     map.greatest_mm = std::max(map.greatest_mm, change_mm);
   }
-  const double first = std::floor(map.least_mm / step_mm);
-  const auto count = static_cast<std::size_t>(std::floor(map.greatest_mm / step_mm) - first) + 1;
+  const double last = std::round(steps.one_from_mm / step_mm);
+  const double first = std::min(std::floor(map.least_mm / step_mm), last);
+  const auto count =
+      static_cast<std::size_t>(std::min(std::floor(map.greatest_mm / step_mm), last) - first) + 1;
   map.bands.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     map.bands[i].from_mm = step_mm * (first + static_cast<double>(i));
     map.bands[i].to_mm = step_mm * (first + static_cast<double>(i + 1));
   }
+  if (first + static_cast<double>(count - 1) == last)
+    map.bands.back().to_mm = std::numeric_limits<double>::infinity();
   for (const auto& [a, b, c] : wall.triangles) {
     const Polygon triangle{corners[static_cast<std::size_t>(a)], corners[static_cast<std::size_t>(b)],
                            corners[static_cast<std::size_t>(c)]};

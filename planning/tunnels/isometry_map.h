@@ -41,11 +41,17 @@ struct LengthChange {
 
 // A step of the map: what of the wall has a change from from_mm to to_mm.
 struct IsometryBand {
-  double from_mm = 0, to_mm = 0;
-  geometry::TriangleMesh mesh;  // each triangle with corners of its own
+  double from_mm = 0, to_mm = 0;  // to_mm of the last may be infinite, see IsometrySteps
+  geometry::TriangleMesh mesh;    // each triangle with corners of its own
   // On the line where the change is from_mm, the place nearest to the wall's middle; nullopt of the first
   // band, which ends at no line below.
   std::optional<Eigen::Vector3d> line_at_mm = {};
+};
+
+struct IsometrySteps {
+  double step_mm = 2;  // bands are so wide and begin at multiples of it
+  // A multiple of it: all that changes by more is one band. Where the graft was, no change is near that.
+  double one_from_mm = 20;
 };
 
 struct IsometryMap {
@@ -54,9 +60,9 @@ struct IsometryMap {
 };
 
 // The change is asked at each corner of the wall and taken as linear between: on lateral_wall() within 0.1
-// mm. Bands are step_mm wide and begin at multiples of it. Throws InvalidInput unless step_mm is positive.
+// mm. Throws InvalidInput unless both steps are positive.
 [[nodiscard]] IsometryMap isometry_map(const geometry::TriangleMesh& wall,
                                        const Eigen::Vector3d& tibial_opening_mm,
-                                       const graft::FlexionAxis& axis, double step_mm);
+                                       const graft::FlexionAxis& axis, const IsometrySteps& steps = {});
 
 }  // namespace arthronaut::tunnels

@@ -108,8 +108,7 @@ void isometry_map_on_the_wall(benchmark::State& state) {
   const auto wall = tunnels::lateral_wall(*knee().femur, *knee().of_femur.axes, knee().of_femur.extents);
   std::size_t bands = 0;
   for (auto _ : state)
-    bands =
-        tunnels::isometry_map(wall, knee().tibial.entry_on_surface_mm, *knee().of_knee.axis, 2).bands.size();
+    bands = tunnels::isometry_map(wall, knee().tibial.entry_on_surface_mm, *knee().of_knee.axis).bands.size();
   state.counters["bands"] = static_cast<double>(bands);
 }
 BENCHMARK(isometry_map_on_the_wall)->Unit(benchmark::kMillisecond);

@@ -53,7 +53,7 @@ TEST(IsometryMap, CutsTheWallAtItsSteps) {
     strip.triangles.push_back({at, at + 1, at + 2});
     strip.triangles.push_back({at + 1, at + 3, at + 2});
   }
-  const IsometryMap map = isometry_map(strip, kTibial_mm, kHinge, 2);
+  const IsometryMap map = isometry_map(strip, kTibial_mm, kHinge);
   EXPECT_NEAR(map.least_mm, 0, 1e-9);
   EXPECT_NEAR(map.greatest_mm, length_change({0, 6, 0}, kTibial_mm, kHinge).change_mm, 0.05);
   ASSERT_EQ(map.bands.size(), 4U);  // up to 6.6 mm
@@ -70,8 +70,13 @@ TEST(IsometryMap, CutsTheWallAtItsSteps) {
     ASSERT_TRUE(band.line_at_mm);
     EXPECT_NEAR(length_change(*band.line_at_mm, kTibial_mm, kHinge).change_mm, band.from_mm, 0.01);
   }
-  EXPECT_TRUE(isometry_map({}, kTibial_mm, kHinge, 2).bands.empty());
-  EXPECT_THROW((void)isometry_map(strip, kTibial_mm, kHinge, 0), InvalidInput);
+  EXPECT_TRUE(isometry_map({}, kTibial_mm, kHinge).bands.empty());
+  EXPECT_THROW((void)isometry_map(strip, kTibial_mm, kHinge, {.step_mm = 0}), InvalidInput);
+  // What changes by 4 mm and more, as one.
+  const IsometryMap coarse = isometry_map(strip, kTibial_mm, kHinge, {.step_mm = 2, .one_from_mm = 4});
+  ASSERT_EQ(coarse.bands.size(), 3U);
+  EXPECT_TRUE(std::isinf(coarse.bands.back().to_mm));
+  EXPECT_NEAR(area_of_bands(coarse), 12, 1e-6);
 }
 
 class IsometryOfKnee : public ::testing::Test {
@@ -109,7 +114,7 @@ TEST_F(IsometryOfKnee, SaysOfAPlaceWhatTheCheckSaysOfATunnelThere) {
   const TunnelGeometry in_tibia = measure(tibial, geometry::Surface(tibia));
   ASSERT_TRUE(in_tibia.enters_bone);
   const geometry::TriangleMesh wall = lateral_wall(*femur_, *of_femur_.axes, of_femur_.extents);
-  const IsometryMap map = isometry_map(wall, in_tibia.entry_on_surface_mm, *knee.axis, 2);
+  const IsometryMap map = isometry_map(wall, in_tibia.entry_on_surface_mm, *knee.axis);
   ASSERT_GT(map.bands.size(), 2U);
   EXPECT_NEAR(area_of_bands(map), geometry::surface_area_mm2(wall), 1e-6);
   int asked = 0;
