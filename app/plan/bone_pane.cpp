@@ -198,8 +198,11 @@ PaneEvent BonePane::draw(const widgets::Ui& ui, const widgets::Rect& area,
   const BoneKind axes_of =
       only_.value_or(model_->has_bone(BoneKind::Femur) ? BoneKind::Femur : BoneKind::Tibia);
   draw_edge_words(ui, area, edge_words(right, camera.up.normalized(), model_->axes(axes_of)));
-  draw_marks(ui, area, marks, input.is_hovered && !input.handle_dragged);  // a tooltip would hide the place
+  const bool is_resting = input.is_hovered && !input.handle_dragged;  // a tooltip would hide the place
+  const bool has_said = draw_marks(ui, area, marks, is_resting);
   PaneEvent event;
+  if (is_resting && !has_said)
+    event.hover = scene::ray_through(pane_.camera(), input.mouse_px, input.size_px);
   if (input.was_clicked) event.click = scene::ray_through(pane_.camera(), input.mouse_px, input.size_px);
   if (input.handle_pressed) event.pressed = held_;
   if (input.handle_dragged) {
@@ -227,7 +230,7 @@ std::vector<Eigen::Vector2d> BonePane::outline_on_screen(const std::vector<Eigen
   return outline;
 }
 
-void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
+bool BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
                           const std::vector<PaneMark>& marks, bool is_hovered) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.PushClipRect(area.min(), area.max(), true);
@@ -296,6 +299,7 @@ void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
   }
   if (under_mouse != nullptr) widgets::tooltip_at_mouse(ui, under_mouse->tooltip);
   draw.PopClipRect();
+  return under_mouse != nullptr;
 }
 
 }  // namespace arthronaut::plan

@@ -39,6 +39,7 @@ struct PaneEvent {
   std::optional<scene::SceneRay> click;  // pressed and let go in one place, on no mark
   std::string pressed;                   // id of the mark that was pressed just now; empty: none
   std::string dragged;                   // id of the mark that is dragged; empty: none
+  std::optional<scene::SceneRay> hover;  // under the mouse, where no mark says anything
   scene::SceneRay drag_ray =
       {};  // through the mark, not the mouse: where it was taken hold of stays under the mouse
 };
@@ -85,7 +86,8 @@ class BonePane {
   [[nodiscard]] bool is_out_of_sight(const PaneMark& mark) const;
   [[nodiscard]] std::vector<Eigen::Vector2d> outline_on_screen(const std::vector<Eigen::Vector3d>& outline_mm,
                                                                const Eigen::Vector2d& size_px) const;
-  void draw_marks(const widgets::Ui& ui, const widgets::Rect& area, const std::vector<PaneMark>& marks,
+  // Whether one of them says something under the mouse.
+  bool draw_marks(const widgets::Ui& ui, const widgets::Rect& area, const std::vector<PaneMark>& marks,
                   bool is_hovered) const;
 
   const open_case::PlanModel* model_ = nullptr;

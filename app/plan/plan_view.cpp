@@ -57,6 +57,7 @@ PlanView::PlanView(std::function<void()> make_current, const std::function<void(
       slices_(wake),
       volume_(wake),
       survey_(wake),
+      isometry_(wake),
       export_(wake),
       defaults_(wake),
       tour_defaults_(wake),
@@ -132,10 +133,11 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   row({"plan.anterior", "plan.posterior", "plan.medial", "plan.lateral", "plan.distal", "plan.notch",
        "plan.plateau", "plan.see_through"});
   if (volume_.is_on())
-    row({"plan.grid", "plan.map", "plan.aims", "plan.xray", "plan.volume", "plan.volume_less",
-         "plan.volume_more", "plan.slices", "plan.paint"});
+    row({"plan.grid", "plan.map", "plan.isometry", "plan.aims", "plan.xray", "plan.volume",
+         "plan.volume_less", "plan.volume_more", "plan.slices", "plan.paint"});
   else
-    row({"plan.grid", "plan.map", "plan.aims", "plan.xray", "plan.volume", "plan.slices", "plan.paint"});
+    row({"plan.grid", "plan.map", "plan.isometry", "plan.aims", "plan.xray", "plan.volume", "plan.slices",
+         "plan.paint"});
   if (state_.shows_slices)
     row({"plan.along", "plan.window", "plan.fit", "plan.cross_to_entry", "plan.cross_to_thinnest",
          "plan.distance", "plan.angle", "plan.unmeasure"});
@@ -240,6 +242,7 @@ void PlanView::show_content() {
         plateau && view == scene::ViewDirection::Plateau)
       add_grid(*plateau);
   }
+  if (state_.isometry != nullptr && bones_.shows(BoneKind::Femur)) content.bones = state_.isometry->items;
   bones_.set_content(std::move(content));
   state_.shown_revision = model_->revision();
 }
@@ -256,14 +259,17 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
     state_.survey = std::move(survey);
     state_.shown_revision = 0;
   }
+  follow_isometry();
   if (state_.shown_revision != model_->revision()) show_content();
   std::vector<PaneMark> shown = marks();
   // A click places, also where a handle is: one that took it would be another landmark, or nothing. Of a case
   // that may only be looked at nothing is dragged.
   if (state_.placing != Placing::Nothing || history_.is_read_only())
     for (PaneMark& mark : shown) mark.can_be_dragged = false;
-  follow(bones_.draw(ui, area, shown));
+  const PaneEvent event = bones_.draw(ui, area, shown);
   draw_aiming_cross(ui, area);
+  say_isometry_at(ui, event.hover);
+  follow(event);
   draw_hint(ui, draw_survey_legend(ui, area), bones_.handles_on_screen(area, shown));
 }
 
@@ -287,7 +293,8 @@ void PlanView::add_norm_marks(std::vector<PaneMark>& marks) const {
              (surroundings.quadrant ? scene::norm_ellipse(*surroundings.quadrant, bundle)
                                     : scene::norm_ellipse(*surroundings.plateau, bundle))
                  .words,
-         footprint->outline_mm});
+         // Over the map of lengths the mouse asks that.
+         is_isometry_wanted() ? std::vector<Eigen::Vector3d>{} : footprint->outline_mm});
   }
 }
 
@@ -316,6 +323,7 @@ std::vector<PaneMark> PlanView::marks() const {
   }
   if (state_.shows_grid) add_norm_marks(marks);
   add_map_marks(marks);
+  add_isometry_marks(marks);
   const auto tunnel = model_->tunnel(state_.key);
   if (!tunnel) return marks;
   const tunnels::TunnelGeometry& measured = model_->measured(state_.key);

@@ -16,6 +16,7 @@
 #include "app/plan/bone_pane.h"
 #include "app/plan/default_work.h"
 #include "app/plan/export_work.h"
+#include "app/plan/isometry_work.h"
 #include "app/plan/landmark_drawing.h"
 #include "app/plan/landmark_panel.h"
 #include "app/plan/lateral_view.h"
@@ -141,6 +142,14 @@ class PlanView : public mode::Mode {
   [[nodiscard]] std::shared_ptr<const Survey> wanted_survey();
   [[nodiscard]] bool is_entry_hidden() const;  // by bone, from where one looks
   void add_map_marks(std::vector<PaneMark>& marks) const;
+  // How the graft's length changes, by where it begins: isometry_view.cpp.
+  void add_isometry_action(widgets::Actions& actions);
+  [[nodiscard]] bool is_isometry_wanted() const;
+  void follow_isometry();
+  void add_isometry_marks(std::vector<PaneMark>& marks) const;
+  void say_isometry_at(const widgets::Ui& ui, const std::optional<scene::SceneRay>& mouse) const;
+  [[nodiscard]] std::vector<std::string> isometry_lines() const;
+  void draw_isometry_scale(const widgets::Ui& ui, const widgets::Rect& area) const;
   // At the picture's lower edge; returns what it leaves of it.
   widgets::Rect draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const;
 
@@ -207,8 +216,10 @@ class PlanView : public mode::Mode {
     std::size_t version_row = 0;  // that keys take, from the newest
     bool along = false;           // the slices, of the tunnel that is worked on
     bool shows_slices = false, shows_lateral = false, shows_grid = true;
-    bool shows_map = false, shows_aims = false;
-    std::shared_ptr<const Survey> survey = nullptr;  // of what is planned now; null: none is there
+    bool shows_map = false, shows_aims = false, shows_isometry = false;
+    std::shared_ptr<const Survey> survey = nullptr;           // of what is planned now; null: none is there
+    std::shared_ptr<const ShownIsometry> isometry = nullptr;  // likewise
+    std::string no_isometry = {};                             // why there is none; empty: it is being made
     PanelPage page = PanelPage::Checks;
     Hint hint = {};
     std::uint64_t shown_revision = 0;
@@ -233,6 +244,7 @@ class PlanView : public mode::Mode {
   VolumeDrawing volume_;
   LateralView lateral_;
   TunnelSurvey survey_;
+  IsometryWork isometry_;
   ExportWork export_;
   DefaultWork defaults_, tour_defaults_;  // the plan's to be, and what the tour compares the plan with
   std::function<void(std::vector<MadeTunnel>)> take_made_;  // by defaults_

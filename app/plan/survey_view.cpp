@@ -7,6 +7,10 @@
 
 namespace arthronaut::plan {
 
+namespace {
+constexpr float kScaleLines = 1.7F;  // of text: the steps' colours and their numbers
+}
+
 void PlanView::add_survey_actions(widgets::Actions& actions) {
   const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.key).has_value(); };
   actions.add(
@@ -16,11 +20,13 @@ void PlanView::add_survey_actions(widgets::Actions& actions) {
        GLFW_KEY_M, 0, false, has_tunnel, [this] { return state_.shows_map; },
        [this] {
          state_.shows_map = !state_.shows_map;
+         state_.shows_isometry = false;  // one map at a time
          // A map behind the bone would be asked for and not be seen.
          if (state_.shows_map && is_entry_hidden())
            look_from(state_.key.bone == bones::BoneKind::Femur ? scene::ViewDirection::Notch
                                                                : scene::ViewDirection::Plateau);
        }});
+  add_isometry_action(actions);
   actions.add(
       {"plan.aims", "Aims",
        "The ways to this entry: through the anteromedial portal at 100 to 130 degrees of flexion, and from "
@@ -71,7 +77,7 @@ widgets::Rect PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets:
   std::vector<std::string> lines;
   if (volume_.is_on()) lines.push_back(volume_.in_words(slices_.reason()));
   if (!is_shown) {
-    // What is drawn of the images alone.
+    // What is drawn of the images, and how lengths change.
   } else if (state_.survey == nullptr) {
     lines.emplace_back(model_->tunnel(state_.key) ? "Looking about the entry: " + share
                                                   : "There is no tunnel yet");
@@ -98,10 +104,13 @@ widgets::Rect PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets:
                       " ways leave well");
     }
   }
+  for (std::string& line : isometry_lines()) lines.push_back(std::move(line));
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float font = ui.theme.body->FontSize, step = font * 1.25F;
   // Above the word at the picture's lower edge, which says where that is.
-  const float bottom = area.y + area.height - ui.theme.px(14) - step;
+  float bottom = area.y + area.height - ui.theme.px(14) - step;
+  const bool has_scale = state_.isometry != nullptr;
+  if (has_scale) bottom -= kScaleLines * step;
   float y = bottom - step * static_cast<float>(lines.size());
   widgets::Rect rest = area;
   if (lines.empty()) return rest;
@@ -110,9 +119,11 @@ widgets::Rect PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets:
   float wide = 0;
   for (const std::string& line : lines)
     wide = std::max(wide, ui.theme.body->CalcTextSizeA(font, 1e9F, 0, line.c_str()).x);
+  const float end = bottom + (has_scale ? kScaleLines * step : 0);
   draw.AddRectFilled({area.x + ui.theme.px(10), y - ui.theme.px(4)},
-                     {area.x + ui.theme.px(22) + wide, bottom + ui.theme.px(4)}, IM_COL32(12, 16, 20, 210),
+                     {area.x + ui.theme.px(22) + wide, end + ui.theme.px(4)}, IM_COL32(12, 16, 20, 210),
                      ui.theme.px(6));
+  if (has_scale) draw_isometry_scale(ui, {area.x + ui.theme.px(16), bottom, wide, kScaleLines * step});
   for (const std::string& line : lines) {
     const ImVec2 at{area.x + ui.theme.px(16), y};
     draw.AddText(ui.theme.body, font, {at.x + 1, at.y + 1}, widgets::kBackground, line.c_str());

@@ -6,6 +6,7 @@
 #include "planning/geometry/rigid_transform.h"
 #include "planning/graft/graft_course.h"
 #include "planning/graft/roof_clearance.h"
+#include "planning/tunnels/isometry_map.h"
 #include "planning/tunnels/knee_pose.h"
 #include "planning/tunnels/place_checks.h"
 #include "planning/tunnels/tunnel_pair.h"
@@ -127,8 +128,7 @@ PlanCheck check_length_change(const graft::GraftCourse& course,
                               const graft::FlexionAxis& axis, const PlanNorms& norms) {
   PlanCheck check{.verdict = Verdict::Fine,
                   .name = "Length over flexion",
-                  .text = number_text(course.change_mm(), "mm") + " from 0 to 120 deg, longest at " +
-                          number_text(course.longest_at_deg, "deg"),
+                  .text = to_text(LengthChange{course.change_mm(), course.longest_at_deg}),
                   .source = "the tibia turned about " + std::string(graft::to_text(axis.origin)) +
                             ", no roll-back; up to 2 to 3 mm is customary",
                   .value = course.change_mm(),

@@ -8,6 +8,7 @@
 #include "planning/phantom/phantom_knee.h"
 #include "planning/plan_review/plan_review.h"
 #include "planning/tunnels/entry_map.h"
+#include "planning/tunnels/isometry_map.h"
 #include "planning/tunnels/knee_checks.h"
 
 namespace arthronaut {
@@ -92,6 +93,25 @@ void patch_within_the_footprint(benchmark::State& state) {
   state.counters["mm2"] = area_mm2;
 }
 BENCHMARK(patch_within_the_footprint)->Unit(benchmark::kMillisecond);
+
+// Beside the screen: the wall of the notch once a bone and its landmarks, the map on it once a tibial entry.
+void lateral_wall_of_the_notch(benchmark::State& state) {
+  std::size_t triangles = 0;
+  for (auto _ : state)
+    triangles =
+        tunnels::lateral_wall(*knee().femur, *knee().of_femur.axes, knee().of_femur.extents).triangles.size();
+  state.counters["triangles"] = static_cast<double>(triangles);
+}
+BENCHMARK(lateral_wall_of_the_notch)->Unit(benchmark::kMillisecond);
+
+void isometry_map_on_the_wall(benchmark::State& state) {
+  const auto wall = tunnels::lateral_wall(*knee().femur, *knee().of_femur.axes, knee().of_femur.extents);
+  std::size_t bands = 0;
+  for (auto _ : state)
+    bands = tunnels::isometry_map(wall, knee().tibial.entry_on_surface_mm, *knee().of_knee.axis).bands.size();
+  state.counters["bands"] = static_cast<double>(bands);
+}
+BENCHMARK(isometry_map_on_the_wall)->Unit(benchmark::kMillisecond);
 
 // Once a bone.
 void prepare_a_bone(benchmark::State& state) {
