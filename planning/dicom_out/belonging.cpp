@@ -26,13 +26,6 @@ bool are_digits(const std::string& text, std::size_t at, std::size_t count) {
                      [](char c) { return c >= '0' && c <= '9'; });
 }
 
-// "1990-01-31" as DICOM writes it. What is no date is not passed on.
-std::string dicom_date(std::string date) {
-  if (date.size() == 10 && date[4] == '-' && date[7] == '-')
-    date = date.substr(0, 4) + date.substr(5, 2) + date.substr(8);
-  return date.size() == 8 && are_digits(date, 0, 8) ? date : "";
-}
-
 DicomOrigin own_study(const cases::Case& knee, const std::string& case_name) {
   DicomOrigin own;
   own.study_uid = uid_of("study", case_name);
@@ -87,7 +80,6 @@ std::map<bones::BoneKind, Belonging> belongings_of(const ExportContents& content
   if (contents.is_deidentified) return without_identity(contents, case_name);
   Belonging own;
   own.patient = contents.identity.value_or(cases::Identity{});
-  own.patient.birth_date = dicom_date(own.patient.birth_date);
   own.study = own_study(contents.knee, case_name);
   std::map<bones::BoneKind, Belonging> belongings;
   const Belonging* of_images = nullptr;

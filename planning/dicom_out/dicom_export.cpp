@@ -7,6 +7,7 @@
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/plan_file.h"
 #include "planning/dicom_out/dicom_object.h"
+#include "planning/dicom_out/lawful.h"
 #include "planning/dicom_out/object_bytes.h"
 #include "planning/dicom_out/uid.h"
 #include "planning/files/atomic_file.h"
@@ -144,6 +145,14 @@ void say_of_which_study(const ExportContents& contents, const Belongings& belong
   if (!contents.identity) summary.notes.push_back("The case knows no patient: none is named.");
 }
 
+// Bones are of one patient, and mostly of one study: what is said of it is said once.
+void make_lawful(Belongings& belongings, ExportSummary& summary) {
+  for (auto& [kind, belonging] : belongings)
+    for (std::string& note : dicom_out::make_lawful(belonging))
+      if (std::ranges::find(summary.notes, note) == summary.notes.end())
+        summary.notes.push_back(std::move(note));
+}
+
 void write_all(const fs::path& folder, std::vector<Object>& objects, ExportSummary& summary) {
   files::make_whole_folder(folder, [&](const fs::path& unfinished) {
     for (Object& object : objects) {
@@ -159,7 +168,7 @@ void write_all(const fs::path& folder, std::vector<Object>& objects, ExportSumma
 ExportSummary export_dicom(const ExportContents& contents, const fs::path& folder) {
   files::refuse_taken(folder);
   if (contents.knee.bones.empty()) throw InvalidInput("dicom: the case holds no bone");
-  const Belongings belongings = belongings_of(contents);
+  Belongings belongings = belongings_of(contents);
   const Belonging& of_case = belongings.begin()->second;
   const cases::Plan plan = cases::with_named_meshes(contents.knee);
   const ObjectSetting setting{.side = contents.knee.side,
@@ -167,6 +176,7 @@ ExportSummary export_dicom(const ExportContents& contents, const fs::path& folde
                               .plan_hash = plan.tunnels.empty() ? "" : cases::short_plan_hash(plan)};
   ExportSummary summary;
   say_of_which_study(contents, belongings, summary);
+  make_lawful(belongings, summary);
   if (!setting.plan_hash.empty()) summary.notes.push_back("Of the plan " + setting.plan_hash + ".");
   std::vector<Object> objects;
   add_bones(contents, setting, belongings, objects);

@@ -14,7 +14,8 @@
 // but to a frame of its own, as nobody says that the mesh lies where the images do. Without any study (a
 // phantom, meshes, a case of an older version) there is a new one. Plan, report and pictures belong to the
 // study of the first bone, and each tunnel to the frame of its own. No patient's data are made up: what is
-// not known is empty.
+// not known is empty. What the images say against DICOM's rules is written as these allow, but for what
+// identifies, and is told (lawful.h).
 //
 // De-identified, patient and study are new, dates are empty (1900 where one is asked for), no image is named,
 // and pictures are left out, since a name may be drawn into them. The report must then name nobody: that is

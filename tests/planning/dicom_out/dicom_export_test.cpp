@@ -344,6 +344,28 @@ TEST_F(DicomExport, AMeshBesideImagesHasAFrameOfItsOwn) {
   EXPECT_EQ(tibia[DCM_SourceInstanceSequence], "(absent)");
 }
 
+// Under which the images are filed: a part of it would be another patient's, or nobody's.
+TEST_F(DicomExport, Hazard20WhatIdentifiesIsWrittenAsItCame) {
+  be_of_images();
+  const std::string number(65, '7'), issuer(65, 'x');
+  contents_.identity->patient_id = number;
+  for (auto& [kind, study] : contents_.studies) {
+    study.study_uid = "1.02.3";
+    study.patient_id_issuer = issuer;
+    study.accession_number = "12345678901234567";
+  }
+  const auto notes = write().notes;
+  for (const char* name : {"PatientID", "IssuerOfPatientID", "StudyInstanceUID"})
+    EXPECT_THAT(notes, testing::Contains(testing::StartsWith(std::string(name) + " is not as DICOM allows")));
+  for (const std::string& name : all_names()) {
+    Dicom object = read(name);
+    EXPECT_EQ(object[DCM_PatientID], number);
+    EXPECT_EQ(object[DCM_IssuerOfPatientID], issuer);
+    EXPECT_EQ(object[DCM_StudyInstanceUID], "1.02.3");
+    EXPECT_EQ(object[DCM_AccessionNumber], "");
+  }
+}
+
 TEST_F(DicomExport, TheSameCaseGivesTheSameBytes) {
   be_of_images();
   write("a");
