@@ -81,4 +81,45 @@ void FlowingPages::table(const std::vector<double>& widths_mm, std::vector<std::
   }
 }
 
+void FlowingPages::pairs(const std::vector<std::vector<std::string>>& rows) {
+  const std::vector<double> beside{38, 47, 38, 47}, alone{38, 132};
+  const auto height_mm = [&](const std::vector<std::string>& row) {
+    return pdf_.row_height_mm(row.size() > 2 ? beside : alone, row, false);
+  };
+  // A sentence is not broken to stand beside another one.
+  const double line_mm = height_mm({"", ""});
+  const auto is_short = [&](const std::vector<std::string>& row) {
+    return height_mm({"", row.back(), "", ""}) <= line_mm;
+  };
+  for (std::size_t at = 0; at < rows.size();) {
+    std::vector<std::string> row = rows[at++];
+    if (at < rows.size() && is_short(row) && is_short(rows[at])) {
+      row.insert(row.end(), rows[at].begin(), rows[at].end());
+      ++at;
+    }
+    const auto& widths_mm = row.size() > 2 ? beside : alone;
+    while (kTopMm + height_mm(row) > bottom_mm()) {
+      if (const auto begun = pdf_.take_lines(widths_mm, row, bottom_mm() - y_mm_); !begun.empty())
+        y_mm_ = pdf_.row(left_mm(), y_mm_, widths_mm, begun);
+      need(bottom_mm());
+    }
+    need(height_mm(row));
+    y_mm_ = pdf_.row(left_mm(), y_mm_, widths_mm, row);
+  }
+  y_mm_ += 2;
+}
+
+void FlowingPages::list(const std::vector<double>& widths_mm, std::vector<std::vector<std::string>> rows,
+                        std::size_t most) {
+  if (rows.size() > most + 1) {
+    const auto first = static_cast<std::ptrdiff_t>(1 + (most + 1) / 2),
+               rest = static_cast<std::ptrdiff_t>(rows.size() - 1 - most);
+    std::vector<std::string> gap(widths_mm.size());
+    gap.back() = "\u2026 and " + std::to_string(rest) + " more here: the report as JSON has them all";
+    rows.erase(rows.begin() + first, rows.begin() + first + rest);
+    rows.insert(rows.begin() + first, std::move(gap));
+  }
+  table(widths_mm, std::move(rows));
+}
+
 }  // namespace arthronaut::report

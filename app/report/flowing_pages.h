@@ -27,9 +27,16 @@ class FlowingPages {
   void sentence(const std::string& text, const TextStyle& style = {});
   // The first row is the heading and stands above every page's part.
   void table(const std::vector<double>& widths_mm, std::vector<std::vector<std::string>> rows);
+  // Names and their values; two such rows beside each other where both values are short, read line by line.
+  void pairs(const std::vector<std::vector<std::string>>& rows);
+  // A table of which no more than `most` rows are shown below the heading, the first and the last; between
+  // them stands how many more there are, and that the report as JSON has them.
+  void list(const std::vector<double>& widths_mm, std::vector<std::vector<std::string>> rows,
+            std::size_t most);
   void skip(double height_mm) { y_mm_ += height_mm; }
 
   [[nodiscard]] PdfDocument& pdf() { return pdf_; }
+  [[nodiscard]] int page_count() const { return page_; }
   [[nodiscard]] double left_mm() const { return (pdf_.width_mm() - kWidthMm) / 2; }
   [[nodiscard]] double y_mm() const { return y_mm_; }
   [[nodiscard]] double bottom_mm() const { return pdf_.height_mm() - 18; }

@@ -156,7 +156,7 @@ void draw_other_sessions(FlowingPages& pages, const Content& content) {
     if (!other.plans.empty()) rows.insert(rows.begin() + 1, {"Plan in force", other.plans});
     if (other.has_broken_registration) rows.push_back({"Registration", "NOT READABLE"});
     std::ranges::move(rows_of(other.safety), std::back_inserter(rows));
-    pages.table({70, 100}, rows);
+    pages.pairs(rows);
   }
 }
 

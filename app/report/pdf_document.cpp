@@ -3,6 +3,7 @@
 #include <hpdf.h>
 
 #include <algorithm>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -237,21 +238,23 @@ std::vector<std::string> PdfDocument::take_lines(const std::vector<double>& widt
   return taken;
 }
 
+double PdfDocument::row(double x_mm, double y_mm, const std::vector<double>& widths_mm,
+                        const std::vector<std::string>& cells, bool is_heading) {
+  const TextStyle style = cell_style(is_heading);
+  double x = x_mm;
+  for (std::size_t c = 0; c < cells.size() && c < widths_mm.size(); ++c) {
+    paragraph(x + kCellPadMm, y_mm + line_height_mm(style), widths_mm[c] - 2 * kCellPadMm, cells[c], style);
+    x += widths_mm[c];
+  }
+  y_mm += row_height_mm(widths_mm, cells, is_heading);
+  line(x_mm, y_mm, x_mm + std::accumulate(widths_mm.begin(), widths_mm.end(), 0.0), y_mm,
+       is_heading ? 0.35 : 0.12, is_heading ? kAccent : kGray);
+  return y_mm;
+}
+
 double PdfDocument::table(double x_mm, double y_mm, const std::vector<double>& widths_mm,
                           const std::vector<std::vector<std::string>>& rows) {
-  double total_mm = 0;
-  for (const double w : widths_mm) total_mm += w;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const TextStyle style = cell_style(r == 0);
-    double x = x_mm;
-    for (std::size_t c = 0; c < rows[r].size() && c < widths_mm.size(); ++c) {
-      paragraph(x + kCellPadMm, y_mm + line_height_mm(style), widths_mm[c] - 2 * kCellPadMm, rows[r][c],
-                style);
-      x += widths_mm[c];
-    }
-    y_mm += row_height_mm(widths_mm, rows[r], r == 0);
-    line(x_mm, y_mm, x_mm + total_mm, y_mm, r == 0 ? 0.35 : 0.12, r == 0 ? kAccent : kGray);
-  }
+  for (std::size_t r = 0; r < rows.size(); ++r) y_mm = row(x_mm, y_mm, widths_mm, rows[r], r == 0);
   return y_mm + 2;
 }
 

@@ -62,6 +62,9 @@ class PdfDocument {
   // table. Cells that are too long are broken into lines. Does not look where the page ends.
   double table(double x_mm, double y_mm, const std::vector<double>& widths_mm,
                const std::vector<std::vector<std::string>>& rows);
+  // One row of such a table that is no heading. Returns the y below it.
+  double row(double x_mm, double y_mm, const std::vector<double>& widths_mm,
+             const std::vector<std::string>& cells, bool is_heading = false);
   [[nodiscard]] double row_height_mm(const std::vector<double>& widths_mm,
                                      const std::vector<std::string>& cells, bool is_heading);
   // Takes the beginning off a row, as many lines of each cell as make it no higher than this; empty, and the

@@ -100,15 +100,22 @@ void draw_postop_section(FlowingPages& pages, const Content& content) {
                                                 {"Least wall"},
                                                 {"Metal in it"},
                                                 {"Bone off the images' edges, RMS"}};
-  constexpr double kName_mm = 54;
-  const auto count = static_cast<double>(content.postoperative.size());
-  std::vector<double> widths_mm{kName_mm};
-  for (const auto& [key, comparison] : content.postoperative) {
-    const auto cells = column(content, key);
+  if (content.postoperative.size() == 1) {
+    const auto cells = column(content, content.postoperative.begin()->first);
+    rows.front() = {"Tunnel"};
     for (std::size_t row = 0; row < rows.size(); ++row) rows[row].push_back(cells[row]);
-    widths_mm.push_back((FlowingPages::kWidthMm - kName_mm) / count);
+    pages.pairs(rows);
+  } else {
+    constexpr double kName_mm = 54;
+    const auto count = static_cast<double>(content.postoperative.size());
+    std::vector<double> widths_mm{kName_mm};
+    for (const auto& [key, comparison] : content.postoperative) {
+      const auto cells = column(content, key);
+      for (std::size_t row = 0; row < rows.size(); ++row) rows[row].push_back(cells[row]);
+      widths_mm.push_back((FlowingPages::kWidthMm - kName_mm) / count);
+    }
+    pages.table(widths_mm, rows);
   }
-  pages.table(widths_mm, rows);
   for (const auto& [key, comparison] : content.postoperative)
     if (!comparison.kept_because.empty())
       pages.sentence(

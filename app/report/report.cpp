@@ -1,10 +1,12 @@
 #include "app/report/report.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <optional>
 #include <vector>
 
+#include "app/report/achieved_section.h"
 #include "app/report/flowing_pages.h"
 #include "app/report/other_sessions.h"
 #include "app/report/pdf_document.h"
@@ -27,7 +29,6 @@
 #include "planning/cases/case.h"
 #include "planning/cases/plan_file.h"
 #include "planning/files/atomic_file.h"
-#include "planning/files/format.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 #include "planning/tunnels/tunnel.h"
@@ -37,20 +38,48 @@ namespace arthronaut::report {
 namespace {
 
 constexpr double kWidthMm = FlowingPages::kWidthMm;
+// A report is two to four pages. What does not fit is laid out anew, more closely each time; of numbers and
+// warnings nothing is ever left out, of lists the middle is.
+struct Layout {
+  std::size_t most_rows;  // of a list
+  double picture_share;   // of the plan's pictures, height to width; 0: they stand beside the result's
+  bool is_flowing;        // theatre begins below the plan, and the sheets come last
+};
+constexpr int kMostPages = 4;
+constexpr std::array<Layout, 4> kLayouts{
+    {{1'000'000, 1, false}, {24, 0.72, false}, {8, 0.72, true}, {4, 0, true}}};
+
 class Report {
  public:
-  Report(const Content& content, const ReportOptions& options)
+  // `stills`: null for strangers, and where there is no session. Measured, it has no pictures, for its number
+  // of pages.
+  Report(const Content& content, const ReportOptions& options, const Stills* stills, const Layout& layout,
+         bool is_measured)
       : content_(content),
         options_(options),
+        stills_(stills),
+        layout_(layout),
+        is_measured_(is_measured),
         pdf_("Arthronaut report: " + content.knee.name, options.paper),
         pages_(pdf_, content.knee.name + ", " + cases::plan_in_words(content.knee)) {}
 
   // Whole.
   PdfDocument& drawn() {
     const auto grafts = planned_grafts(content_.knee.plan);
-    parts_ = 3 + static_cast<double>(grafts.size());
+    parts_ = 2 + static_cast<double>(grafts.size());
     begin_part("Drawing the plan");
     plan_page();
+    if (!layout_.is_flowing) sheets(grafts);
+    navigate_page();
+    result_pictures();
+    draw_settings_section(pages_, content_);
+    if (layout_.is_flowing) sheets(grafts);
+    return pdf_;
+  }
+  [[nodiscard]] int page_count() const { return pages_.page_count(); }
+
+ private:
+  void sheets(const std::vector<norms::Bundle>& grafts) {
     for (const norms::Bundle graft : grafts) {
       begin_part("Drawing the plan on one sheet");
       const std::string of_graft = graft == norms::Bundle::Whole          ? ""
@@ -59,6 +88,7 @@ class Report {
       // It hangs on the wall by itself.
       pages_.begin_page("The plan on one sheet: " + std::string(bones::to_text(content_.knee.side)) +
                         " knee" + of_graft);
+      if (is_measured_) continue;
       draw_plan_sheet(pdf_,
                       {.left_mm = pages_.left_mm(),
                        .top_mm = pages_.y_mm(),
@@ -67,15 +97,9 @@ class Report {
                        .picture_px_per_mm = options_.picture_px_per_mm},
                       content_, graft);
     }
-    begin_part("Taking the session's pictures");
-    navigate_page();
-    result_pictures();
-    draw_settings_section(pages_, content_);
-    return pdf_;
   }
-
- private:
   void begin_part(const std::string& what) {
+    if (is_measured_) return;
     options_.tell(what, kGatheredShare + (1 - kGatheredShare) * std::min(1.0, done_++ / parts_));
   }
   // What a picture shows beside the plan.
@@ -84,28 +108,37 @@ class Report {
     std::vector<Eigen::Vector3d> touched_points_mm;
   };
 
-  // Two pictures side by side with their names; of the plan alone where there is no result.
-  void pictures(scene::ViewDirection left, scene::ViewDirection right,
-                const std::optional<Result>& result = std::nullopt) {
-    const double width = (kWidthMm - 6) / 2, needed = result ? 0.72 * width : width;
+  struct Picture {
+    scene::ViewDirection view = scene::ViewDirection::Anterior;
+    std::string of = {};             // what the caption says beside the view
+    const Result* result = nullptr;  // null: of the plan alone
+  };
+
+  // In a row, with their names.
+  void pictures(const std::vector<Picture>& shown, double share) {
+    constexpr double kGap_mm = 6;
+    const auto count = static_cast<double>(shown.size());
+    const double width = (kWidthMm - kGap_mm * (count - 1)) / count, needed = share * width;
     pages_.need(needed + 8);
     const double y = pages_.y_mm() + 3;
     double x = pages_.left_mm();
-    for (const scene::ViewDirection view : {left, right}) {
+    for (const Picture& one : shown) {
+      if (is_measured_) break;
       scene::PictureRequest request;
       request.knee = &content_.knee;
-      request.view = view;
+      request.view = one.view;
       request.width = static_cast<int>(options_.picture_px_per_mm * width);
       request.height = static_cast<int>(options_.picture_px_per_mm * needed);
       request.light_background = true;
-      if (result) {
-        request.achieved = result->achieved;
-        request.curve_points_in_bone = result->touched_points_mm;
+      if (one.result != nullptr) {
+        request.achieved = one.result->achieved;
+        request.curve_points_in_bone = one.result->touched_points_mm;
       }
       const auto picture = scene::render_plan_picture(request);
       pdf_.image(x, y, width, picture.rgb, picture.width, picture.height);
-      pdf_.text(x, y + needed + 3.5, std::string(scene::to_text(view)), {.size_pt = 8, .ink = kGray});
-      x += width + 6;
+      pdf_.text(x, y + needed + 3.5, std::string(scene::to_text(one.view)) + one.of,
+                {.size_pt = 8, .ink = kGray});
+      x += width + kGap_mm;
     }
     pages_.skip(needed + 8);
   }
@@ -139,12 +172,13 @@ class Report {
   void plan_page();
   void say_plan_fit(const tunnels::TunnelKey& key);
   void navigate_page();
-  // is_own: drilled in the session that is told of.
-  void result_section(const operation::AchievedTunnel& achieved, bool is_own);
   void result_pictures();
 
   const Content& content_;
   const ReportOptions options_;
+  const Stills* stills_;
+  const Layout layout_;
+  const bool is_measured_;
   PdfDocument pdf_;
   FlowingPages pages_;
   double parts_ = 1, done_ = 0;
@@ -152,18 +186,18 @@ class Report {
 
 void Report::plan_page() {
   pages_.begin_page("ACL reconstruction: the plan");
-  std::vector<std::vector<std::string>> about = {{"Case", ""}};
+  std::vector<std::vector<std::string>> about;
   if (content_.identity) about.push_back({"Patient", content_.identity->in_words()});
   about.insert(about.end(),
                {{"Name", content_.knee.name}, {"Side", std::string(bones::to_text(content_.knee.side))}});
   if (!content_.knee.plan.tunnels.empty())
-    about.push_back({"Plan", "SHA-256 " + cases::plan_sha256(cases::with_named_meshes(content_.knee))});
+    about.push_back({"Plan, SHA-256", cases::plan_sha256(cases::with_named_meshes(content_.knee))});
   if (!content_.knee.created_utc.empty())
     about.push_back({"Created", files::utc_in_words(content_.knee.created_utc)});
   if (!options_.made_utc.empty() && !options_.is_deidentified)
     about.push_back({"Report made", files::utc_in_words(options_.made_utc)});
   about.push_back({"Versions", versions_in_words()});
-  pages_.table({45, 125}, about);
+  pages_.pairs(about);
   draw_plan_verdicts(pages_, content_);
   pages_.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
   draw_result_summary(pages_, content_);
@@ -187,7 +221,9 @@ void Report::plan_page() {
     pages_.table({16, 34, 30, 20, 20, 18, 32}, rows);
     for (const auto& [key, tunnel] : content_.knee.plan.tunnels) say_plan_fit(key);
   }
-  pictures(scene::ViewDirection::Anterior, scene::ViewDirection::Lateral);
+  if (layout_.picture_share > 0)
+    pictures({{.view = scene::ViewDirection::Anterior}, {.view = scene::ViewDirection::Lateral}},
+             layout_.picture_share);
 }
 
 // A plan is of the mesh that it was made on, and of no other.
@@ -202,43 +238,13 @@ void Report::say_plan_fit(const tunnels::TunnelKey& key) {
   }
 }
 
-void Report::result_section(const operation::AchievedTunnel& achieved, bool is_own) {
-  pages_.heading("Planned against achieved: " + tunnels::name_of(achieved.planned.key()));
-  if (const std::string since = changed_since(content_, achieved.planned); !since.empty())
-    pages_.sentence(since, {.bold = true, .ink = kWarning});
-  const auto planned_measured = operation::compare(achieved.planned, achieved.measured);
-  std::vector<std::vector<std::string>> rows = {
-      {"Comparison", "Offset of the entry", "Offset of the axis", "Angle"},
-      {"As navigation measured it, against the plan", number(planned_measured.entry_mm, " mm", 2),
-       number(planned_measured.axis_to_entry_mm, " mm", 2), number(planned_measured.angle_deg, "°", 2)}};
-  if (achieved.truth) {
-    const auto planned_true = operation::compare(achieved.planned, *achieved.truth);
-    const auto measured_true = operation::compare(*achieved.truth, achieved.measured);
-    rows.push_back({"As it truly lies (simulator), against the plan", number(planned_true.entry_mm, " mm", 2),
-                    number(planned_true.axis_to_entry_mm, " mm", 2), number(planned_true.angle_deg, "°", 2)});
-    rows.push_back({"Error of navigation: measured against true", number(measured_true.entry_mm, " mm", 2),
-                    number(measured_true.axis_to_entry_mm, " mm", 2),
-                    number(measured_true.angle_deg, "°", 2)});
-  }
-  pages_.table({80, 32, 32, 26}, rows);
-  if (const auto place = place_of(content_, achieved)) {
-    std::string words = "As navigation measured it: entry " + postop::off_in_words(*place);
-    if (const std::string grid = postop::grid_in_words(*place); !grid.empty()) words += "; " + grid;
-    if (const std::string wall = postop::wall_in_words(*place); !wall.empty())
-      words += "; least wall " + wall;
-    pages_.sentence(words + ".");
-  }
-  pages_.sentence(
-      "Depth reached " + (achieved.depth_mm ? number(*achieved.depth_mm, " mm") : "not known") +
-          ". Predicted error of these figures, one sigma: " + number(achieved.sigma_offset_mm, " mm", 2) +
-          ", " + number(achieved.sigma_angle_deg, "°", 2) + ". Median of " +
-          std::to_string(achieved.pose_count) + " poses of guide or drill at the planned entry" +
-          (is_own ? seen_and_said(*content_.session, achieved) : "") + ".",
-      {.size_pt = 8.5, .ink = kGray});
-}
-
 void Report::navigate_page() {
-  pages_.begin_page("In theatre");
+  if (layout_.is_flowing) {
+    pages_.continue_as("In theatre");
+    pages_.heading("In theatre");
+  } else {
+    pages_.begin_page("In theatre");
+  }
   for (const auto& [session, reason] : content_.unreadable)
     pages_.sentence(session.empty() ? "NOT READABLE, and not in this report: a session of this case."
                                     : "NOT READABLE, and not in this report: the session " + session + " (" +
@@ -273,6 +279,7 @@ void Report::navigate_page() {
       {"Frames", frames_in_words(figures)},
       {"World marker tracked", number(figures.world_percent, " % of the frames that came")},
       {"Lens mark found", number(figures.mark_percent, " % of the frames that came")},
+      {"Recorded by", program_in_words(header.program_version, header.build)},
       {"Record by its hashes", recording::check_words(content_.check)},
       {"Last hash of the record", content_.last_hash.empty() ? "none" : in_groups(content_.last_hash)}};
   if (figures.other_medium_percent > 0)
@@ -282,15 +289,16 @@ void Report::navigate_page() {
   if (const std::string plan = plans_in_words(plans_in_force(session)); !plan.empty())
     rows.push_back({"Plan in force", plan});
   std::ranges::move(rows_of(content_.safety), std::back_inserter(rows));
-  pages_.table({70, 100}, rows);
+  pages_.pairs(rows);
   if (content_.registration) draw_registration(pages_, *content_.registration);
   if (!content_.registration_problem.empty())
     pages_.sentence("NOT READABLE: the registration: " + content_.registration_problem,
                     {.bold = true, .ink = kWarning});
-  draw_time_line(pages_, content_);
-  for (const operation::AchievedTunnel& achieved : content_.achieved) result_section(achieved, true);
+  draw_time_line(pages_, content_, layout_.most_rows);
+  for (const operation::AchievedTunnel& achieved : content_.achieved)
+    draw_achieved(pages_, content_, achieved, true);
   for (const Content::Earlier& earlier : content_.earlier) {
-    result_section(earlier.achieved, false);
+    draw_achieved(pages_, content_, earlier.achieved, false);
     pages_.sentence("Drilled in " +
                         (earlier.session.empty() ? "an earlier session" : "the session " + earlier.session) +
                         ".",
@@ -302,30 +310,59 @@ void Report::navigate_page() {
   draw_postop_section(pages_, content_);
 }
 
+// What navigation and the images show stands in one row.
 void Report::result_pictures() {
+  constexpr double kShare = 0.72;
+  const Result imaged = {tunnels_in_the_images(content_), {}};
+  Result navigated;
+  std::vector<Picture> shown;
+  std::string legend = "Blue: as planned.";
+  const auto show = [&](const Result& result, const std::string& of) {
+    for (const scene::ViewDirection view : {joint_view(), scene::ViewDirection::Lateral})
+      shown.push_back({.view = view, .of = of, .result = &result});
+  };
   if (content_.session) {
     pages_.continue_as("Result, camera and tools");
-    if (!options_.is_deidentified) draw_stills_section(pages_, content_);
+    if (stills_ != nullptr) draw_stills_section(pages_, *stills_);
     begin_part("Drawing what was achieved");
-    const Result navigated =
-        content_.is_of_another_surface ? Result{} : Result{navigated_tunnels(), touched_points()};
-    pictures(joint_view(), scene::ViewDirection::Lateral, navigated);
-    std::string legend = "Blue: as planned.";
+    if (!content_.is_of_another_surface) navigated = {navigated_tunnels(), touched_points()};
+    show(navigated, imaged.achieved.empty() ? "" : ", by navigation");
     if (!navigated.achieved.empty())
       legend += " Banded: as drilled, measured by navigation or, of a simulation, as it truly lies.";
     if (!navigated.touched_points_mm.empty()) legend += " Dots: where the probe touched the bone.";
-    pages_.sentence(legend, {.size_pt = 8, .ink = kGray});
   }
-  const Result imaged = {tunnels_in_the_images(content_), {}};
   if (!imaged.achieved.empty()) {
-    pictures(joint_view(), scene::ViewDirection::Lateral, imaged);
-    pages_.sentence(
-        "Blue: as planned. Banded: as the CT after the operation shows it, where that is reliable.",
-        {.size_pt = 8, .ink = kGray});
-  } else if (!content_.session) {
-    pages_.heading("The plan from the joint and from its inner side", (kWidthMm - 6) / 2 + 8);
-    pictures(joint_view(), scene::ViewDirection::Medial);
+    show(imaged, ", by the CT after");
+    legend += content_.session ? " By the CT after, banded: as it shows the tunnel, where that is reliable."
+                               : " Banded: as the CT after the operation shows it, where that is reliable.";
   }
+  constexpr std::size_t kMostInARow = 4;
+  if (layout_.picture_share == 0 && !shown.empty() && shown.size() + 2 <= kMostInARow)
+    shown.insert(shown.begin(), {{.view = scene::ViewDirection::Anterior, .of = ", planned"},
+                                 {.view = scene::ViewDirection::Lateral, .of = ", planned"}});
+  if (shown.empty()) {
+    pages_.heading("The plan from the joint and from its inner side", (kWidthMm - 6) / 2 + 8);
+    return pictures({{.view = joint_view()}, {.view = scene::ViewDirection::Medial}}, 1);
+  }
+  pictures(shown, shown.size() > 2 ? 1 : kShare);
+  pages_.sentence(legend, {.size_pt = 8, .ink = kGray});
+}
+
+// The bytes of the PDF, laid out as openly as four pages allow.
+std::string pdf_of(const Content& content, const ReportOptions& options) {
+  options.tell("Taking the session's pictures", kGatheredShare);
+  std::optional<Stills> stills;
+  if (content.session && !options.is_deidentified) stills = take_stills(content);
+  const Stills* const shown = stills ? &*stills : nullptr;
+  const auto fits = [&](const Layout& layout) {
+    Report measured(content, options, shown, layout, true);
+    (void)measured.drawn();
+    return measured.page_count() <= kMostPages;
+  };
+  const auto layout = std::ranges::find_if(kLayouts, fits);
+  return Report(content, options, shown, layout == kLayouts.end() ? kLayouts.back() : *layout, false)
+      .drawn()
+      .bytes();
 }
 
 Content reportable(const std::filesystem::path& case_folder, const ReportOptions& options) {
@@ -351,13 +388,13 @@ std::vector<std::string> write_report(const std::filesystem::path& case_folder,
   else if (ending == ".csv")
     files::write_atomically(output, report_csv(content, options));
   else
-    Report(content, options).drawn().save(output);
+    files::write_atomically(output, pdf_of(content, options));
   return shortcomings_of(content);
 }
 
 std::string make_report(const std::filesystem::path& case_folder, const ReportOptions& options) {
   const Content content = reportable(case_folder, options);
-  return Report(content, options).drawn().bytes();
+  return pdf_of(content, options);
 }
 
 }  // namespace arthronaut::report

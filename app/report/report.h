@@ -1,4 +1,6 @@
-// The surgeon's report of a case: plan, theatre, planned against achieved, versions. Three pages or more.
+// The surgeon's report of a case: plan, theatre, planned against achieved, versions. Two to four pages: where
+// it would be more, pictures are smaller and the middle of a long list is left to the report as JSON.
+// Warnings are never cut, whatever it comes to.
 #pragma once
 
 #include <filesystem>

@@ -10,9 +10,7 @@ void draw_registration(FlowingPages& pages, const registration::RegistrationSumm
     return registration.has_pose ? number(value_mm, " mm", 2) : std::string("\u2013");
   };
   pages.heading("Registration of the bone");
-  pages.table({70, 100},
-              {{"Quantity", "Value"},
-               {"Verdict", registration.reliable ? "reliable" : "NOT RELIABLE"},
+  pages.pairs({{"Verdict", registration.reliable ? "reliable" : "NOT RELIABLE"},
                {"Touched points", std::to_string(registration.point_count)},
                {"Distance of the points to the bone, RMS", of_pose(registration.rms_mm)},
                {"Points that fit",
@@ -26,14 +24,14 @@ void draw_registration(FlowingPages& pages, const registration::RegistrationSumm
       {.size_pt = 8, .ink = kGray});
 }
 
-void draw_time_line(FlowingPages& pages, const Content& content) {
+void draw_time_line(FlowingPages& pages, const Content& content, std::size_t most_rows) {
   const recording::RecordedSession& session = *content.session;
   std::vector<std::vector<std::string>> rows;
   for (const Step& step : steps_of(session)) rows.push_back({clock_text(step.time_s), step.words});
   if (!rows.empty()) {
     pages.heading("Steps");
     rows.insert(rows.begin(), {"Time", "Step"});
-    pages.table({24, 146}, rows);
+    pages.list({24, 146}, rows, most_rows);
   }
   if (content.marks.empty() && content.marks_problem.empty()) return;
   pages.heading("Marks of who looked at the session");
@@ -42,7 +40,7 @@ void draw_time_line(FlowingPages& pages, const Content& content) {
     rows.push_back({clock_text(time_s(session, mark.timestamp_ns)),
                     (mark.note.empty() ? std::string("(no note)") : mark.note) + "  (frame " +
                         std::to_string(mark.frame) + ")"});
-  if (!content.marks.empty()) pages.table({24, 146}, rows);
+  if (!content.marks.empty()) pages.list({24, 146}, rows, most_rows);
   if (!content.marks_problem.empty())
     pages.sentence("NOT READABLE: " + content.marks_problem, {.ink = kWarning});
 }

@@ -7,7 +7,8 @@
 namespace arthronaut::report {
 
 void draw_registration(FlowingPages& pages, const registration::RegistrationSummary& registration);
-// Steps as the record has them, and what whoever looked at it marked. Precondition: there is a session.
-void draw_time_line(FlowingPages& pages, const Content& content);
+// Steps as the record has them, and what whoever looked at it marked, so many of each. Precondition: there is
+// a session.
+void draw_time_line(FlowingPages& pages, const Content& content, std::size_t most_rows);
 
 }  // namespace arthronaut::report

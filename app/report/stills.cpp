@@ -206,48 +206,53 @@ class Drawer {
 
 }  // namespace
 
-void draw_stills_section(FlowingPages& pages, const Content& content) {
-  constexpr double kGap_mm = 4, kWidth_mm = (FlowingPages::kWidthMm - 2 * kGap_mm) / 3;
-  constexpr TextStyle kCaption{.size_pt = 8, .bold = false, .ink = kGray};
+Stills take_stills(const Content& content) {
   constexpr const char* kUnreadable =
       "The session's video is not there, or cannot be read: there are no pictures of it.";
-  constexpr const char* kPartly =
-      "A picture is missing: the session's video has none of that moment, or cannot be read there.";
-  if (!content.session) return;
-  std::vector<std::pair<std::string, scene::Image>> stills;
-  Drawer drawer(content);
-  std::string why_none;
+  Stills stills;
   std::size_t wanted = 0;
+  Drawer drawer(content);
+  stills.has_overlay = drawer.has_overlay();
   try {
     if (content.session->video().empty()) {
-      why_none = "The session keeps no video: there are no pictures of it.";
-    } else {
-      recording::RecordedPictures pictures(recording::read_overview(content.session->folder()));
-      const auto moments = key_moments(*content.session, content.session->pipeline_options());
-      wanted = moments.size();
-      for (const Moment& moment : moments)
-        if (auto still = drawer.still(pictures, moment.frame))
-          stills.emplace_back(moment.caption, std::move(*still));
-      if (stills.empty())
-        why_none = "The session's video has no picture of a registered bone or an aimed guide.";
+      stills.why_none = "The session keeps no video: there are no pictures of it.";
+      return stills;
     }
+    recording::RecordedPictures pictures(recording::read_overview(content.session->folder()));
+    const auto moments = key_moments(*content.session, content.session->pipeline_options());
+    wanted = moments.size();
+    for (const Moment& moment : moments)
+      if (auto still = drawer.still(pictures, moment.frame))
+        stills.pictures.emplace_back(moment.caption, std::move(*still));
+    if (stills.pictures.empty())
+      stills.why_none = "The session's video has no picture of a registered bone or an aimed guide.";
   } catch (const InvalidInput&) {  // its words name the video's file, which is often the patient's name
-    why_none = kUnreadable;
+    stills.why_none = kUnreadable;
   } catch (const IoError&) {
-    why_none = kUnreadable;
+    stills.why_none = kUnreadable;
   }
-  pages.heading("Pictures of the session, with the plan", stills.empty() ? 6 : kWidth_mm + 6);
-  if (stills.empty()) return pages.sentence(why_none, kCaption);
+  stills.is_one_missing = stills.pictures.size() < wanted;
+  return stills;
+}
+
+void draw_stills_section(FlowingPages& pages, const Stills& stills) {
+  constexpr double kGap_mm = 4, kWidth_mm = (FlowingPages::kWidthMm - 2 * kGap_mm) / 3;
+  constexpr TextStyle kCaption{.size_pt = 8, .bold = false, .ink = kGray};
+  pages.heading("Pictures of the session, with the plan", stills.pictures.empty() ? 6 : kWidth_mm + 6);
+  if (stills.pictures.empty()) return pages.sentence(stills.why_none, kCaption);
   double x_mm = pages.left_mm();
   const double y_mm = pages.y_mm() + 2;
-  for (const auto& [caption, still] : stills) {
+  for (const auto& [caption, still] : stills.pictures) {
     pages.pdf().image(x_mm, y_mm, kWidth_mm, still.rgb, still.width, still.height);
     pages.pdf().text(x_mm, y_mm + kWidth_mm + 3.5, caption, kCaption);
     x_mm += kWidth_mm + kGap_mm;
   }
   pages.skip(kWidth_mm + 6);
-  if (stills.size() < wanted) pages.sentence(kPartly, kCaption);
-  if (!drawer.has_overlay())
+  if (stills.is_one_missing)
+    pages.sentence(
+        "A picture is missing: the session's video has none of that moment, or cannot be read there.",
+        kCaption);
+  if (!stills.has_overlay)
     pages.sentence("No plan is drawn on them: the case's bone is another than the session's.", kCaption);
 }
 

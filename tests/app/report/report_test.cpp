@@ -5,11 +5,14 @@
 #include <regex>
 #include <tuple>
 
+#include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session_marks.h"
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/identity.h"
+#include "planning/cases/plan_file.h"
 #include "planning/geometry/error.h"
 #include "planning/plan_review/plan_review.h"
+#include "planning/postop/achieved_file.h"
 #include "tests/app/report/page_edges.h"
 #include "tests/app/report/reported_case.h"
 
@@ -158,8 +161,9 @@ TEST_F(Report, Hazard19NamesThePatientOnlyWhenAsked) {
   expect_contains(pdf_text(), "1990-01-31");
 }
 
-// On either paper every page is of that paper, has its foot, and nothing comes near an edge: neither words
-// that have no space to be broken at, nor a table that is longer than a page.
+// On either paper there are four pages at most, every page is of that paper, has its foot, and nothing comes
+// near an edge: neither words that have no space to be broken at, nor a list that is longer than a page,
+// whose middle is left to the report as JSON.
 TEST_F(Report, FitsA4AndLetter) {
   knee_.name = std::string(160, 'W');
   cases::save_case(knee_folder(), knee_);
@@ -173,7 +177,7 @@ TEST_F(Report, FitsA4AndLetter) {
     SCOPED_TRACE(to_text(paper));
     write_report(knee_folder(), pdf(), {.paper = paper});
     const auto pages = test::pages_of(pdf());
-    EXPECT_GE(pages.size(), 5U);
+    EXPECT_EQ(pages.size(), 4U);
     for (const test::Page& page : pages) {
       EXPECT_NEAR(page.width_pt, width_pt, 0.1);
       EXPECT_NEAR(page.height_pt, height_pt, 0.1);
@@ -184,7 +188,66 @@ TEST_F(Report, FitsA4AndLetter) {
     const std::string text = pdf_text();
     for (std::size_t page = 1; page <= pages.size(); ++page)
       expect_contains(text, "page " + std::to_string(page) + " \u00B7 research software");
-    for (int i = 0; i < 90; ++i) expect_contains(text, "mark " + std::to_string(i) + " ");
+    for (const int i : {0, 1, 88, 89}) expect_contains(text, "mark " + std::to_string(i) + " ");
+    EXPECT_EQ(text.find("mark 45 "), std::string::npos);
+    expect_contains(text, "more here: the report as JSON has them all");
+  }
+  const auto json = pdf().parent_path() / "report.json";
+  write(json);
+  EXPECT_EQ(nlohmann::json::parse(files::read_text(json)).at("session").at("marks").size(), 90U);
+}
+
+// Whatever there is to be told: navigation and a CT after it, of both bones. Two grafts have two sheets, and
+// twice the tunnels.
+TEST_F(Report, HasTwoToFourPages) {
+  for (const bool is_double : {false, true}) {
+    if (is_double) {
+      const cases::Plan single = knee_.plan;
+      for (const auto& [key, tunnel] : single.tunnels)
+        for (const auto bundle : {norms::Bundle::Anteromedial, norms::Bundle::Posterolateral}) {
+          tunnels::Tunnel one = tunnel;
+          one.bundle = bundle;
+          one.diameter_mm = 6;
+          if (bundle == norms::Bundle::Posterolateral) one.entry_mm += 8 * one.direction.unitOrthogonal();
+          const auto mesh = single.mesh_sha256.find(key.bone);
+          knee_.plan.put(one, mesh == single.mesh_sha256.end() ? "" : mesh->second);
+        }
+      cases::save_case(knee_folder(), knee_);
+    }
+    std::map<tunnels::TunnelKey, postop::Comparison> comparisons;
+    std::vector<std::pair<std::string_view, std::string>> steps;
+    for (int i = 0; i < 40; ++i)
+      steps.emplace_back(recording::kAlarmEvent, i % 2 ? "" : "The control point has moved");
+    (void)text_of_session("live", steps);
+    for (const auto& [key, tunnel] : knee_.plan.tunnels) {
+      postop::Comparison& comparison = comparisons[key];
+      comparison.bone.is_found = comparison.bone.reliable = true;
+      comparison.tunnel.is_found = comparison.tunnel.reliable = true;
+      comparison.tunnel.reasons.clear();
+      comparison.tunnel.tunnel = tunnel;
+      operation::write_achieved_file(
+          cases::session_folders(knee_folder()).back() / operation::achieved_file_name(key),
+          {.planned = tunnel, .measured = tunnel, .depth_mm = 30, .pose_count = 42, .truth = {}});
+    }
+    postop::write_achieved_file(knee_folder() / "achieved.json", comparisons);
+    for (const Paper paper : {Paper::A4, Paper::Letter}) {
+      SCOPED_TRACE(std::string(to_text(paper)) + (is_double ? ", double bundle" : ""));
+      write(pdf(), {.paper = paper});
+      const auto pages = test::pages_of(pdf());
+      EXPECT_GE(pages.size(), 2U);
+      EXPECT_LE(pages.size(), is_double ? 6U : 4U);
+      for (const test::Page& page : pages) EXPECT_TRUE(page.words_lie_within(10)) << page.outermost;
+    }
+  }
+}
+
+// Whose hash it is can be searched for, on either paper; and of two builds of one version which made it.
+TEST_F(Report, NamesPlanAndBuildWhole) {
+  for (const Paper paper : {Paper::A4, Paper::Letter}) {
+    write(pdf(), {.paper = paper});
+    expect_contains(pdf_text(),
+                    cases::plan_sha256(cases::with_named_meshes(cases::load_case(knee_folder()))));
+    expect_contains(pdf_text(), ", build " + recording::build_identity().substr(0, 12));
   }
 }
 
