@@ -1,6 +1,7 @@
 #include "app/window/key_list.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "app/widgets/wrapped_text.h"
 
@@ -39,14 +40,30 @@ KeyListLayout key_list_layout(const ImFont* font, const std::vector<std::string>
 
 std::vector<KeyRow> key_rows(const widgets::Actions& actions, const std::vector<std::string_view>& prefixes,
                              const std::vector<mode::HeldKeys>& held) {
-  std::vector<KeyRow> rows;
-  for (const mode::HeldKeys& keys : held) rows.push_back({keys.keys, keys.words});
+  std::vector<KeyRow> here, everywhere;
+  std::string not_now;
+  for (const mode::HeldKeys& keys : held) here.push_back({keys.keys, keys.words});
   for (const widgets::Action& action : actions.all()) {
-    const bool here = std::any_of(prefixes.begin(), prefixes.end(),
-                                  [&](std::string_view prefix) { return action.id.starts_with(prefix); });
-    if (here && action.key != 0)
-      rows.push_back({widgets::key_name(action.key, action.mods), action.label + ": " + action.tooltip});
+    const bool is_shown = std::any_of(prefixes.begin(), prefixes.end(),
+                                      [&](std::string_view prefix) { return action.id.starts_with(prefix); });
+    if (!is_shown || action.key == 0) continue;
+    const std::string key = widgets::key_name(action.key, action.mods);
+    if (!action.can_run()) {
+      not_now += (not_now.empty() ? "" : ", ") + action.label + " (" + key + ")";
+      continue;
+    }
+    const bool is_of_window = action.id.starts_with("app.") || action.id.starts_with("mode.");
+    (is_of_window ? everywhere : here).push_back({key, action.label + ": " + action.tooltip});
   }
+  std::vector<KeyRow> rows;
+  const auto append = [&](const char* heading, std::vector<KeyRow> part) {
+    if (part.empty()) return;
+    rows.push_back({"", heading, KeyUse::Heading});
+    std::ranges::move(part, std::back_inserter(rows));
+  };
+  append("On this screen, now", std::move(here));
+  append("Everywhere", std::move(everywhere));
+  if (!not_now.empty()) append("Not possible now", {{"", not_now, KeyUse::NotNow}});
   return rows;
 }
 
@@ -68,12 +85,16 @@ bool draw_key_list(const widgets::Ui& ui, const std::vector<KeyRow>& shown) {
       x += column_width;
       y = margin + head;
     }
+    const bool is_heading = shown[i].use == KeyUse::Heading, is_now = shown[i].use == KeyUse::Now;
     draw.AddText(ui.theme.strong, layout.letters_px, {x, y}, widgets::kAccent, shown[i].key.c_str());
+    const float words_x = is_now ? x + key_width : x;
+    ImFont* const font = is_heading ? ui.theme.strong : ui.theme.body;
     float at = y;
     for (std::size_t from = 0, to = 0; from <= layout.words[i].size(); from = to + 1, at += layout.line_px) {
       to = std::min(layout.words[i].find('\n', from), layout.words[i].size());
       const std::string line = layout.words[i].substr(from, to - from);
-      draw.AddText(ui.theme.body, layout.letters_px, {x + key_width, at}, widgets::kText, line.c_str());
+      draw.AddText(font, layout.letters_px, {words_x, at},
+                   is_now || is_heading ? widgets::kText : widgets::kQuietText, line.c_str());
     }
     y = at;
   }

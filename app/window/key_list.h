@@ -20,10 +20,15 @@ struct KeyListLayout {
 [[nodiscard]] KeyListLayout key_list_layout(const ImFont* font, const std::vector<std::string>& explanations,
                                             float room_px, float height_px);
 
+enum class KeyUse { Heading, Now, NotNow };
 struct KeyRow {
-  std::string key, words;
+  std::string key, words;  // the key is empty in a heading and in what cannot be done
+  KeyUse use = KeyUse::Now;
 };
-// Those that are held down, and then the actions whose id starts with one of the prefixes.
+// Of the actions whose id starts with one of the prefixes, under a heading each: what this screen can do now,
+// those that are held down first; what all screens can ("app.", "mode."); what cannot be done as things
+// stand, by name alone and in one row. A key may do something else at another moment: whoever looks for it
+// now finds what it does now.
 [[nodiscard]] std::vector<KeyRow> key_rows(const widgets::Actions& actions,
                                            const std::vector<std::string_view>& prefixes,
                                            const std::vector<mode::HeldKeys>& held);

@@ -48,9 +48,28 @@ TEST(KeyList, HasTheKeysThatAreHeldDown) {
   actions.add({"navigate.touch", "Touch", "Elsewhere", GLFW_KEY_T, 0, false, {}, {}, [] {}});
   const std::vector<KeyRow> rows =
       key_rows(actions, {"train."}, {{"A D W S", "The tool left, right, up and down"}});
-  ASSERT_EQ(rows.size(), 2U);
-  EXPECT_EQ(rows[0].key, "A D W S");
-  EXPECT_EQ(rows[1].words, "Done: Ends the exercise");
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].use, KeyUse::Heading);
+  EXPECT_EQ(rows[1].key, "A D W S");
+  EXPECT_EQ(rows[2].words, "Done: Ends the exercise");
+}
+
+// One key means several things, each at its moment: the one that it means now is found first, and what cannot
+// be done stands apart.
+TEST(KeyList, ShowsWhatAKeyDoesNowBeforeWhatItCannot) {
+  widgets::Actions actions;
+  const auto add = [&](const char* id, const char* label, bool can_run) {
+    actions.add({id, label, "Words", GLFW_KEY_ENTER, 0, false, [can_run] { return can_run; }, {}, [] {}});
+  };
+  add("start.save", "Keep it", false);
+  add("start.accept", "Make the case", false);
+  add("app.quit", "Quit", true);
+  add("start.open", "Open", true);
+  std::vector<std::string> words;
+  for (const KeyRow& row : key_rows(actions, {"start.", "app."}, {})) words.push_back(row.words);
+  EXPECT_EQ(words,
+            (std::vector<std::string>{"On this screen, now", "Open: Words", "Everywhere", "Quit: Words",
+                                      "Not possible now", "Keep it (Enter), Make the case (Enter)"}));
 }
 
 }  // namespace
