@@ -123,6 +123,62 @@ TEST_F(DicomCommand, Hazard19DeidentifiedNamesNobody) {
       EXPECT_EQ(bytes.find(word), std::string::npos) << name << ": " << word;
 }
 
+// Readers of other origin than DCMTK, which wrote them: pydicom and GDCM find the same patient and study,
+// what is encapsulated byte for byte, and the picture's own colours.
+TEST_F(DicomCommand, PydicomAndGdcmReadTheSame) {
+  ASSERT_EQ(std::system("/usr/bin/python3 -c 'import pydicom, numpy' && command -v gdcmraw > /dev/null"), 0)
+      << "the packages python3-pydicom, python3-numpy and libgdcm-tools are needed";
+  take_phantom();
+  ASSERT_EQ(run("out").exit_code, 0);
+  const fs::path raw = folder_ / "raw", by_pydicom = folder_ / "by_pydicom", said = folder_ / "said.txt";
+  std::size_t encapsulated = 0, pictures = 0;
+  for (const auto& entry : fs::directory_iterator(folder_ / "out")) {
+    const std::string file = entry.path().string();
+    SCOPED_TRACE(file);
+    DcmFileFormat own;
+    ASSERT_TRUE(own.loadFile(file.c_str()).good());
+    ASSERT_EQ(
+        std::system(("/usr/bin/python3 -c \"import pydicom; d = pydicom.dcmread('" + file +
+                     "'); print(d.SOPClassUID, d.StudyInstanceUID, d.PatientID, sep='|', end=''); "
+                     "open('" +
+                     by_pydicom.string() +
+                     "', 'wb').write(d.EncapsulatedDocument[:d.EncapsulatedDocumentLength] if "
+                     "'EncapsulatedDocument' in d else d.pixel_array.tobytes() if 'PixelData' in d else "
+                     "b'')\" > " +
+                     said.string())
+                        .c_str()),
+        0);
+    EXPECT_EQ(files::read_text(said), text(*own.getDataset(), DCM_SOPClassUID) + "|" +
+                                          text(*own.getDataset(), DCM_StudyInstanceUID) + "|" +
+                                          text(*own.getDataset(), DCM_PatientID));
+    ASSERT_EQ(std::system(("gdcmdump " + file + " > " + said.string()).c_str()), 0);
+    EXPECT_THAT(files::read_text(said), HasSubstr(text(*own.getDataset(), DCM_StudyInstanceUID)));
+    const bool is_document = own.getDataset()->tagExists(DCM_EncapsulatedDocument);
+    const bool is_picture = own.getDataset()->tagExists(DCM_PixelData);
+    if (!is_document && !is_picture) continue;
+    ASSERT_EQ(std::system(("gdcmraw -t " + std::string(is_document ? "42,11" : "7fe0,10") + " -i " + file +
+                           " -o " + raw.string())
+                              .c_str()),
+              0);
+    std::string by_gdcm = files::read_text(raw);
+    const std::string expected = files::read_text(by_pydicom);
+    // A value is padded to an even length.
+    EXPECT_LE(by_gdcm.size() - expected.size(), 1U);
+    by_gdcm.resize(expected.size());
+    EXPECT_TRUE(by_gdcm == expected);
+    encapsulated += is_document;
+    pictures += is_picture;
+    if (entry.path().filename() == "report.dcm") {
+      EXPECT_THAT(expected, testing::StartsWith("%PDF-"));
+    }
+    if (is_picture && expected.size() == 6) {
+      EXPECT_EQ(expected, (std::string{'\xff', 0, 0, 0, 0, '\xff'}));
+    }
+  }
+  EXPECT_EQ(encapsulated, 5U) << "two bones, the same drilled, the report";
+  EXPECT_GE(pictures, 1U);
+}
+
 // Import without identity keeps no study either.
 TEST_F(DicomCommand, Hazard19WhatWasNotKeptIsNotTold) {
   test::write_dicom_series(folder_ / "ct", test::ellipsoid_ct());
