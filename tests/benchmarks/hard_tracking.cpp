@@ -5,6 +5,7 @@
 //   hard_tracking [--first CLIP] [--clips N] [--frames N] [--only KIND] [--half set|report] [--cache FOLDER]
 //                 [--jobs N]  clips at a time, each on a core of its own
 //                 [--rows N]  only clips of no more rows: larger ones take long to draw
+//                 [--from FRAME]  the first picture that is tracked: other first sights of the same clips
 //                 [--declare ID,ID,...]  these instead of 0, 2, 3 and 4: what is shown is 0, 2 and 3
 //                 [--aruco]
 //                 [--each]    every lost or wrong marker of the even seeds
@@ -28,7 +29,7 @@ namespace arthronaut::hard_clips {
 namespace {
 
 struct Choice {
-  int first = 0, clips = 3, frames = 40, jobs = 1, rows = 1 << 20;
+  int first = 0, clips = 3, frames = 40, jobs = 1, rows = 1 << 20, from = 0;
   std::string only, half;
   std::filesystem::path cache;
   bool with_aruco = false, tells_each = false;
@@ -156,6 +157,7 @@ Tally track_clip(const ClipRecipe& recipe, const Choice& choice, TrackerMaker ma
   Tally tally;
   int frame = 0;
   for (camera::GrayView picture = clip.next(); picture.data; picture = clip.next(), ++frame) {
+    if (frame < choice.from) continue;
     const double start = real_data::thread_cpu_ms();
     const auto seen = tracker->track(picture, clip.camera(), clip.timestamp_ns());
     tally.ms.push_back(real_data::thread_cpu_ms() - start);
@@ -243,6 +245,8 @@ int main(int argc, char** argv) {
       choice.jobs = std::atoi(argv[++i]);
     } else if (option == "--rows" && has_value) {
       choice.rows = std::atoi(argv[++i]);
+    } else if (option == "--from" && has_value) {
+      choice.from = std::atoi(argv[++i]);
     } else if (option == "--clips" && has_value) {
       choice.clips = std::atoi(argv[++i]);
     } else if (option == "--frames" && has_value) {
@@ -257,8 +261,8 @@ int main(int argc, char** argv) {
       std::fprintf(
           stderr,
           "usage: hard_tracking [--first CLIP] [--clips N] [--frames N] [--only KIND] "
-          "[--half set|report] [--cache FOLDER] [--jobs N] [--rows N] [--declare ID,ID,...] [--aruco] "
-          "[--each]\n");
+          "[--half set|report] [--cache FOLDER] [--jobs N] [--rows N] [--from FRAME] [--declare ID,ID,...] "
+          "[--aruco] [--each]\n");
       return 2;
     }
   }
