@@ -44,4 +44,8 @@ void ExposedCode::look(const LookedAt& at, SeenLevels& levels) const {
   processor_has_avx2() ? look_at_code_avx2(code_, at, levels) : look_at_code(code_, at, levels);
 }
 
+void ExposedCode::look_at_level(const LookedAt& at, SeenLevels& levels) const {
+  processor_has_avx2() ? look_at_level_avx2(code_, at, levels) : markers::look_at_level(code_, at, levels);
+}
+
 }  // namespace arthronaut::markers

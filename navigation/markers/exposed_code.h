@@ -31,6 +31,8 @@ class ExposedCode {
   // Along eight rays at once, smeared by sigmas in cells along the marker's x and y: 0 dark, 1 bright; the
   // margin of one cell around the square is bright. A cell must be at least two and a half sigma wide.
   void look(const LookedAt& at, SeenLevels& levels) const;
+  // The same levels without their derivatives, which are left as they were.
+  void look_at_level(const LookedAt& at, SeenLevels& levels) const;
 
  private:
   ExposedMoments code_;

@@ -13,7 +13,13 @@ bool processor_has_avx2() {
 #endif
 }
 
-void look_at_code(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen) { look(code, at, seen); }
+void look_at_code(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen) {
+  look<true>(code, at, seen);
+}
+
+void look_at_level(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen) {
+  look<false>(code, at, seen);
+}
 
 void explain_pixels(const FittedLight& light, const SeenPixels& pixels, const SeenLevels& levels,
                     ExplainedPixels& explained) {

@@ -75,6 +75,9 @@ struct ExplainedPixels {
 
 void look_at_code(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen);
 void look_at_code_avx2(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen);
+// The level alone, the same to the bit; what else SeenLevels holds is left as it was.
+void look_at_level(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen);
+void look_at_level_avx2(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen);
 
 void explain_pixels(const FittedLight& light, const SeenPixels& pixels, const SeenLevels& levels,
                     ExplainedPixels& explained);

@@ -4,7 +4,11 @@
 namespace arthronaut::markers {
 
 void look_at_code_avx2(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen) {
-  look(code, at, seen);
+  look<true>(code, at, seen);
+}
+
+void look_at_level_avx2(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen) {
+  look<false>(code, at, seen);
 }
 
 void explain_pixels_avx2(const FittedLight& light, const SeenPixels& pixels, const SeenLevels& levels,

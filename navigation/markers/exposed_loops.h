@@ -43,6 +43,8 @@ inline void brightness(const Ints& neighbours, int bit, Floats& cell) {
   cell = __builtin_convertvector((neighbours >> bit) & 1, Floats);
 }
 
+// Without the derivatives the levels are the same to the bit.
+template <bool kWithDerivatives>
 inline void look(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen) {
   Floats ray_x, ray_y, ray_z, sigma_x, sigma_y;
   load(at.ray_x, ray_x);
@@ -85,25 +87,26 @@ inline void look(const ExposedMoments& code, const LookedAt& at, SeenLevels& see
       brightness(neighbours, 3 * line + 2, right);
       const Floats first = centre - left, second = right - centre;
       const Floats mixed = left + across.level[0] * first + across.level[1] * second;
+      const Floats rise = mixed - above;
+      here = line == 0 ? mixed : here + over.level[line - 1] * rise;
+      above = mixed;
+      if constexpr (!kWithDerivatives) continue;
       const Floats mixed_by_column = across.by_place[0] * first + across.by_place[1] * second;
       const Floats mixed_by_smear = across.by_smear[0] * first + across.by_smear[1] * second;
       if (line == 0) {
-        here = mixed;
         by_column = mixed_by_column;
         here_smear = mixed_by_smear;
       } else {
-        const Floats rise = mixed - above;
-        here += over.level[line - 1] * rise;
         by_row += over.by_place[line - 1] * rise;
         by_column += over.level[line - 1] * (mixed_by_column - above_by_column);
         here_smear +=
             over.level[line - 1] * (mixed_by_smear - above_by_smear) + over.by_smear[line - 1] * rise;
       }
-      above = mixed;
       above_by_column = mixed_by_column;
       above_by_smear = mixed_by_smear;
     }
     level += here;
+    if constexpr (!kWithDerivatives) continue;
     smear += here_smear;
     // When the marker moves, the ray wanders over the code the other way; what moves along the normal or
     // tilts moves along the line of sight.
@@ -126,6 +129,7 @@ inline void look(const ExposedMoments& code, const LookedAt& at, SeenLevels& see
   }
   const float share = 1 / static_cast<float>(code.count);
   store(share * level, seen.level);
+  if constexpr (!kWithDerivatives) return;
   store(share * smear, seen.by_smear);
   store(share * in_plane[0], seen.by_pose[0]);
   store(share * in_plane[1], seen.by_pose[1]);

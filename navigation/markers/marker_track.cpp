@@ -215,8 +215,13 @@ std::optional<bool> MarkerTrack::stand_by_direct(const TrackedFrame& frame, cons
     learn_share(frame, direct.pose);
   }
   const bool is_sharp = direct.explains_picture() && smear_px < options_.smeared_px;
-  // What passes for out of focus may move: then the edges are of another tilt than the whole code.
-  if (is_sharp && fit.converged && are_unlike(fit.camera_from_marker, direct.pose.camera_from_marker)) {
+  // What passes for out of focus may move: then the edges are of another tilt than the whole code. Through a
+  // part of a cell they are still seen one by one: where they are of another tilt, the corners that they make
+  // have to be the code's all the more.
+  const bool has_loose_corners = direct.explains_picture() && observation.rms_px > options_.max_lone_rms_px &&
+                                 smear_px < options_.max_edges_smear_cells * cell;
+  if ((is_sharp || has_loose_corners) && fit.converged &&
+      are_unlike(fit.camera_from_marker, direct.pose.camera_from_marker)) {
     observation.state = MarkerState::Doubtful;
     go_on_from(direct.pose.camera_from_marker, misfit_of(fit));
     return false;

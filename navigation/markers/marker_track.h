@@ -41,8 +41,9 @@ struct MarkerTrackOptions {
   double min_direct_cell_px = 6;  // smaller ones are measured by their edges alone
   double smeared_px = 3;          // a motion over the exposure from which on the direct fit is the better one
   // The corners that single edges make under a direct fit lie no farther from it, or it fits something else;
-  // without an edge pose to agree with, they have to be its own all the more.
-  double max_direct_rms_px = 1.1, max_lone_rms_px = 0.5;
+  // without an edge pose to agree with, or one of another tilt through a smear of no more cells than this,
+  // they have to be its own all the more.
+  double max_direct_rms_px = 1.1, max_lone_rms_px = 0.5, max_edges_smear_cells = 0.65;
   // A motion over the exposure of more cells mixes each with its neighbours: single edges say nothing of it,
   // and another tilt may explain the picture as well. A pose stands only where one stood a short while ago,
   // turned no faster than a hand can but about the line of sight, where its turning is seen.

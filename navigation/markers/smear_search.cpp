@@ -32,6 +32,19 @@ bool shift(const camera::CameraModel& camera, const Eigen::Vector2i& by_px, Rigi
 
 }  // namespace
 
+const SmearSearch::Ray& SmearSearch::ray_of(const SquareSearch::SmallPicture& picture,
+                                            const camera::CameraModel& camera, const Point& point) {
+  Ray& kept = rays_[static_cast<std::size_t>(point.y & (kRaysAcross - 1)) * kRaysAcross +
+                    static_cast<std::size_t>(point.x & (kRaysAcross - 1))];
+  if (kept.x == point.x && kept.y == point.y) return kept;
+  const double middle = 0.5 * (picture.times - 1);
+  const auto ray = camera.ray(
+      {picture.left + middle + picture.times * point.x, picture.top + middle + picture.times * point.y});
+  kept = {point.x, point.y, ray.has_value(),
+          ray ? Eigen::Vector3f(ray->cast<float>()) : Eigen::Vector3f::Zero()};
+  return kept;
+}
+
 bool SmearSearch::place_points(const SquareSearch::SmallPicture& picture, const camera::CameraModel& camera,
                                const MarkerCode& code, double size_mm, const SmearedLook& look,
                                const ExposedPose& motion, ExposedCode& exposed) {
@@ -54,7 +67,7 @@ bool SmearSearch::place_points(const SquareSearch::SmallPicture& picture, const 
       at.ray_x[k] = at.ray_x[0], at.ray_y[k] = at.ray_y[0], at.ray_z[k] = at.ray_z[0];
       at.sigma_x[k] = at.sigma_x[0], at.sigma_y[k] = at.sigma_y[0];
     }
-    exposed.look(at, seen);
+    exposed.look_at_level(at, seen);
     for (int k = 0; k < lanes; ++k) {
       const double light = kDark + (1 - kDark) * std::clamp<double>(seen.level[k], 0, 1);
       points_[first + static_cast<std::size_t>(k)].level =
@@ -77,12 +90,11 @@ bool SmearSearch::place_points(const SquareSearch::SmallPicture& picture, const 
       Point point;
       point.x = static_cast<int>(std::lround(small.x()));
       point.y = static_cast<int>(std::lround(small.y()));
-      const auto ray = camera.ray(
-          {picture.left + middle + picture.times * point.x, picture.top + middle + picture.times * point.y});
-      if (!ray) continue;
-      at.ray_x[lanes] = static_cast<float>(ray->x());
-      at.ray_y[lanes] = static_cast<float>(ray->y());
-      at.ray_z[lanes] = static_cast<float>(ray->z());
+      const Ray& ray = ray_of(picture, camera, point);
+      if (!ray.is_known) continue;
+      at.ray_x[lanes] = ray.along.x();
+      at.ray_y[lanes] = ray.along.y();
+      at.ray_z[lanes] = ray.along.z();
       at.sigma_x[lanes] = at.sigma_y[lanes] = static_cast<float>(sigma_cells);
       points_.push_back(point);
       if (++lanes == kPixelsTogether) take();
@@ -118,6 +130,7 @@ SmearedPlace SmearSearch::find(const SquareSearch::SmallPicture& picture, const 
                                std::span<const ExposedPose> motions, double reach_px) {
   SmearedPlace best;
   if (picture.view.width <= 0) return best;
+  std::fill(rays_.begin(), rays_.end(), Ray());  // of another lens angle, or another part of the frame
   ExposedCode exposed(code, size_mm);
   Eigen::Vector2i best_shift(0, 0);
   const auto take = [&](const ExposedPose& motion, int reach, int step) {

@@ -3,7 +3,8 @@
 // the one that looks most like the frame is a start for the direct fit, and stands for nothing by itself.
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct SmearedLook {
 // Has its memory from the beginning.
 class SmearSearch {
  public:
-  SmearSearch() { points_.reserve(kMostPoints); }
+  SmearSearch() : rays_(kRaysAcross * kRaysAcross) { points_.reserve(kMostPoints); }
 
   // The likeliest of these motions, and where within reach_px (frame pixels) of its place; a score of -1:
   // none can be looked at.
@@ -43,12 +44,23 @@ class SmearSearch {
     int x = 0, y = 0;  // in the small picture
     float level = 0;   // grey, of what is 0 dark and 1 bright
   };
+  // Along which a pixel of the small picture is seen, which the motions share: those of the last pixels, kept
+  // by the last bits of their places.
+  struct Ray {
+    int x = std::numeric_limits<int>::min(), y = 0;
+    bool is_known = false;
+    Eigen::Vector3f along = Eigen::Vector3f::Zero();
+  };
+  static constexpr int kRaysAcross = 64;  // a power of two
+  const Ray& ray_of(const SquareSearch::SmallPicture& picture, const camera::CameraModel& camera,
+                    const Point& point);
   bool place_points(const SquareSearch::SmallPicture& picture, const camera::CameraModel& camera,
                     const MarkerCode& code, double size_mm, const SmearedLook& look,
                     const ExposedPose& motion, ExposedCode& exposed);
   [[nodiscard]] double score_at(const SquareSearch::SmallPicture& picture, int dx, int dy) const;
 
   std::vector<Point> points_;
+  std::vector<Ray> rays_;
 };
 
 }  // namespace arthronaut::markers

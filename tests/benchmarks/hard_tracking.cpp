@@ -5,6 +5,8 @@
 //   hard_tracking [--first CLIP] [--clips N] [--frames N] [--only KIND] [--half set|report] [--cache FOLDER]
 //                 [--jobs N]  clips at a time, each on a core of its own
 //                 [--rows N]  only clips of no more rows: larger ones take long to draw
+//                 [--from FRAME]  the first picture that is tracked: other first sights of the same clips
+//                 [--every N]  of the pictures from there on only every N-th is tracked
 //                 [--declare ID,ID,...]  these instead of 0, 2, 3 and 4: what is shown is 0, 2 and 3
 //                 [--aruco]
 //                 [--each]    every lost or wrong marker of the even seeds
@@ -28,7 +30,7 @@ namespace arthronaut::hard_clips {
 namespace {
 
 struct Choice {
-  int first = 0, clips = 3, frames = 40, jobs = 1, rows = 1 << 20;
+  int first = 0, clips = 3, frames = 40, jobs = 1, rows = 1 << 20, from = 0, every = 1;
   std::string only, half;
   std::filesystem::path cache;
   bool with_aruco = false, tells_each = false;
@@ -156,6 +158,7 @@ Tally track_clip(const ClipRecipe& recipe, const Choice& choice, TrackerMaker ma
   Tally tally;
   int frame = 0;
   for (camera::GrayView picture = clip.next(); picture.data; picture = clip.next(), ++frame) {
+    if (frame < choice.from || (frame - choice.from) % choice.every != 0) continue;
     const double start = real_data::thread_cpu_ms();
     const auto seen = tracker->track(picture, clip.camera(), clip.timestamp_ns());
     tally.ms.push_back(real_data::thread_cpu_ms() - start);
@@ -243,6 +246,10 @@ int main(int argc, char** argv) {
       choice.jobs = std::atoi(argv[++i]);
     } else if (option == "--rows" && has_value) {
       choice.rows = std::atoi(argv[++i]);
+    } else if (option == "--from" && has_value) {
+      choice.from = std::atoi(argv[++i]);
+    } else if (option == "--every" && has_value) {
+      choice.every = std::max(1, std::atoi(argv[++i]));
     } else if (option == "--clips" && has_value) {
       choice.clips = std::atoi(argv[++i]);
     } else if (option == "--frames" && has_value) {
@@ -254,11 +261,10 @@ int main(int argc, char** argv) {
     } else if (option == "--cache" && has_value) {
       choice.cache = argv[++i];
     } else {
-      std::fprintf(
-          stderr,
-          "usage: hard_tracking [--first CLIP] [--clips N] [--frames N] [--only KIND] "
-          "[--half set|report] [--cache FOLDER] [--jobs N] [--rows N] [--declare ID,ID,...] [--aruco] "
-          "[--each]\n");
+      std::fprintf(stderr,
+                   "usage: hard_tracking [--first CLIP] [--clips N] [--frames N] [--only KIND] "
+                   "[--half set|report] [--cache FOLDER] [--jobs N] [--rows N] [--from FRAME] [--every N] "
+                   "[--declare ID,ID,...] [--aruco] [--each]\n");
       return 2;
     }
   }

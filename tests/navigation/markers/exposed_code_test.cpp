@@ -150,6 +150,12 @@ TEST(ExposedKernel, GivesTheSameBitsOnEveryProcessor) {
     look_at_code(moments, at, plain);
     look_at_code_avx2(moments, at, wide);
     EXPECT_EQ(std::memcmp(&plain, &wide, sizeof plain), 0);
+    // What looks for levels alone gets the same ones.
+    SeenLevels plain_level{}, wide_level{};
+    look_at_level(moments, at, plain_level);
+    look_at_level_avx2(moments, at, wide_level);
+    EXPECT_EQ(std::memcmp(plain.level, plain_level.level, sizeof plain.level), 0);
+    EXPECT_EQ(std::memcmp(plain.level, wide_level.level, sizeof plain.level), 0);
   }
   std::normal_distribution<float> normal;
   float rows[kPixelsTogether][kProductSize], plain[kProductSize][kProductSize] = {},
