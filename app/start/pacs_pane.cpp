@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "planning/cases/identity.h"
 #include "planning/files/running_process.h"
 #include "planning/geometry/error.h"
 
@@ -42,6 +43,7 @@ void PacsPane::enter(const SendableCase& sendable, const fs::path& open_case) {
   std::error_code gone;  // the same by whatever way it was opened
   view_.is_another =
       !open_case.empty() && !sendable.folder.empty() && !fs::equivalent(open_case, sendable.folder, gone);
+  offer_patient(open_case);
   view_.page = Page::Search;
   view_.failure.clear();
   try {  // said on the screen, and the file left as it is
@@ -52,6 +54,19 @@ void PacsPane::enter(const SendableCase& sendable, const fs::path& open_case) {
   view_.peer = std::min(view_.peer, peers_.empty() ? 0 : peers_.size() - 1);
   view_.scrolls_to_peer = true;
   if (peers_.size() == 1 && !lights_.contains(peers_.front().name)) echo();
+}
+
+void PacsPane::offer_patient(const fs::path& open_case) {
+  if (view_.patient_id != view_.offered_id || !view_.patient_name.empty()) return;
+  view_.offered_id.clear();
+  for (const fs::path& folder : {view_.sendable.folder, open_case}) {
+    if (folder.empty() || !view_.offered_id.empty()) continue;
+    try {
+      if (const auto patient = cases::load_identity(folder)) view_.offered_id = patient->patient_id;
+    } catch (const std::runtime_error&) {  // the case itself says that it cannot be read
+    }
+  }
+  view_.patient_id = view_.offered_id;
 }
 
 PacsPane::~PacsPane() {
