@@ -15,7 +15,7 @@ namespace {
 struct CompareArguments {
   std::string case_folder, source, output, bone, series;
   std::vector<int> labels;
-  bool replaces = false;
+  bool replaces = false, takes_another_patient = false;
 };
 
 // Where it lies: which way its entry is off, its percentages, its wall.
@@ -74,15 +74,19 @@ void compare(Context& context, const CompareArguments& arguments) {
                                      arguments.bone,
                                      arguments.series,
                                      {arguments.labels.begin(), arguments.labels.end()}};
-  // What a case keeps of its own patient stays.
-  question.refuses_another_patient = !case_of_output.empty();
+  // What a case keeps of its own patient stays; elsewhere nobody waits for what he did not mean.
+  question.refuses_another_patient = !case_of_output.empty() || !arguments.takes_another_patient;
   question.on_progress = [&](const std::string&, double share) {
     progress.advance_to(static_cast<long>(100 * share));
   };
   const open_case::PostopAnswer answer = open_case::compare_with_postop(question);
-  if (!case_of_output.empty() && !answer.other_patient.empty())
+  if (question.refuses_another_patient && !answer.other_patient.empty())
     throw InvalidInput(arguments.source, "",
-                       "is of " + answer.other_patient + ": nothing is written into the case; -o elsewhere");
+                       "is of " + answer.other_patient + ", another patient than the case: " +
+                           (case_of_output.empty() ? "not compared; --another-patient"
+                                                   : "nothing is written into the case; --another-patient, "
+                                                     "and -o elsewhere,") +
+                           " compares it all the same");
   const bool keeps = !case_of_output.empty() && !arguments.replaces;
   std::vector<open_case::BetterKept> better;
   if (keeps) {
@@ -141,6 +145,9 @@ void add_compare_command(CLI::App& app, Context& context) {
   sub->add_flag("--replace", arguments->replaces,
                 "In a case: also in the place of a tunnel that it holds reliable, and that is not so now. "
                 "Default: that one stays");
+  sub->add_flag("--another-patient", arguments->takes_another_patient,
+                "Also where the images say that they are of another patient than the case; into a case "
+                "nothing is written then. Default: refused before anything is sought");
   sub->callback([&context, arguments] { compare(context, *arguments); });
 }
 

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/command_line/after_operation.h"
 #include "app/command_line/command.h"
 #include "app/command_line/interruption.h"
 #include "app/command_line/option_checks.h"
@@ -89,6 +90,8 @@ void import(Context& context, const ImportArguments& arguments) {
                               : importing::told_by(import.side_source);
   context.say("Wrote " + folder.string() + ": a " + std::string(bones::to_text(target.side)) + " knee" +
               (by.empty() ? "" : " (" + by + ")") + ".");
+  say_planned_cases(context, {import.identity, import.origin.study_date, import.origin.series_uid},
+                    arguments.source);
   if (!doubts.empty()) context.say_unreliable(folder.string(), doubts);
 }
 

@@ -4,6 +4,7 @@
 #include <stop_token>
 #include <thread>
 
+#include "app/command_line/after_operation.h"
 #include "app/command_line/command.h"
 #include "app/command_line/interruption.h"
 #include "app/command_line/option_checks.h"
@@ -11,6 +12,7 @@
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
+#include "planning/import/series_process.h"
 #include "planning/pacs/checks.h"
 #include "planning/pacs/web.h"
 
@@ -230,10 +232,20 @@ void get(const Context& context, const GetArguments& arguments) {
     files::write_json("-", json_of(where, arguments.request.series_uid, arguments.request.folder, summary));
     return;
   }
+  const auto say_whose = [&] {
+    importing::SeriesProcess looking({.source = arguments.request.folder});
+    constexpr double kLongestWait_s = 0.1;
+    while (looking.wait_for(kLongestWait_s) == importing::SeriesProcess::State::Running) {
+    }
+    if (!looking.list()) return;  // what is wrong with the images the import says
+    for (const images::ImageSeries& series : looking.list()->series)
+      say_planned_cases(context, taken_images(series), arguments.request.folder.string());
+  };
   const int fetched = summary.image_count - summary.kept_count;
   context.say(summary.message + (summary.way.empty()
                                      ? "; nothing had to be fetched"
                                      : files::format("; %d fetched by %s", fetched, summary.way.c_str())));
+  if (!context.quiet) say_whose();
 }
 
 void add_get(CLI::App& pacs_app, Context& context) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/command_line/after_operation.h"
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
 #include "planning/bones/mesh_file.h"
@@ -54,7 +55,7 @@ void print_json(const images::SeriesList& list) {
   files::write_json("-", document);
 }
 
-void print(const Context& context, const images::SeriesList& list) {
+void print(const Context& context, const images::SeriesList& list, const std::string& source) {
   for (const auto& series : list.series) {
     std::string line = series.modality.empty() ? series.format : series.modality;
     if (!series.number.empty()) line += " series " + series.number;
@@ -75,6 +76,7 @@ void print(const Context& context, const images::SeriesList& list) {
       if (!part.empty()) context.say("    " + part);
     if (!series.is_readable()) context.say("  ! cannot be opened: " + series.refusal);
     for (const auto& warning : series.warnings) context.say("  ! " + warning);
+    if (series.is_readable()) say_planned_cases(context, taken_images(series), source);
   }
   for (const auto& skipped : list.skipped)
     context.say("left out: " + skipped.file.string() + ": " + skipped.reason);
@@ -115,7 +117,7 @@ void list_series(const Context& context, const SeriesArguments& arguments) {
   if (arguments.as_json) {
     print_json(list);
   } else {
-    print(context, list);
+    print(context, list, arguments.source);
   }
 }
 

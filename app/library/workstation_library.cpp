@@ -1,5 +1,6 @@
 #include "app/library/workstation_library.h"
 
+#include <algorithm>
 #include <array>
 #include <exception>
 #include <string>
@@ -25,6 +26,22 @@ void note_case(const fs::path& case_folder, const fs::path& folder) noexcept {
   } catch (const std::exception& error) {  // as the header says
     log::warning(std::string("not in the list of cases: ") + error.what());
   }
+}
+
+std::vector<std::vector<library::PlannedCase>> planned_cases_of(std::span<const library::TakenImages> images,
+                                                                const fs::path& folder) noexcept {
+  std::vector<std::vector<library::PlannedCase>> cases(images.size());
+  try {
+    const auto names_a_patient = [](const library::TakenImages& one) {
+      return !one.patient.patient_id.empty();
+    };
+    if (std::ranges::none_of(images, names_a_patient)) return cases;
+    const std::vector<library::CaseRecord> records = open_library(folder)->look();
+    for (std::size_t i = 0; i < images.size(); ++i) cases[i] = library::planned_cases_of(records, images[i]);
+  } catch (const std::exception& error) {  // as the header says
+    log::warning(std::string("whether a case is of these images' patient is not known: ") + error.what());
+  }
+  return cases;
 }
 
 }  // namespace arthronaut::workstation_library

@@ -3,8 +3,11 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "planning/library/library.h"
+#include "planning/library/planned_cases.h"
 
 namespace arthronaut::workstation_library {
 
@@ -19,5 +22,12 @@ namespace arthronaut::workstation_library {
 // failure: `cases --add` finds the case again.
 void note_case(const std::filesystem::path& case_folder,
                const std::filesystem::path& folder = data_folder()) noexcept;
+
+// Of each of these images the cases that they may be of, taken after the operation
+// (library::planned_cases_of), with a look at every case. What goes wrong is logged and no failure: there are
+// none then.
+[[nodiscard]] std::vector<std::vector<library::PlannedCase>> planned_cases_of(
+    std::span<const library::TakenImages> images,
+    const std::filesystem::path& folder = data_folder()) noexcept;
 
 }  // namespace arthronaut::workstation_library

@@ -70,6 +70,8 @@ void add_by_word(const std::vector<std::filesystem::path>& sessions, Content& co
       const recording::SessionOverview then = recording::read_overview(*it);
       const bool is_own = content.session->folder() == *it;
       if (!is_own && !belongs_to(content, then.header)) return;
+      if (!is_own && !then.events_were_read)
+        throw InvalidInput(then.problems.empty() ? "what was done cannot be read" : then.problems.front());
       for (const recording::DrilledByWord& said : recording::drilled_by_word(then.events, then.header.bone)) {
         if (!known.insert(said.tunnel).second) continue;
         content.by_word.push_back(
@@ -140,6 +142,17 @@ void add_other_sessions(const std::vector<std::filesystem::path>& sessions, Cont
   add_earlier(sessions, content);
   note_figures_of_before(content);
   add_others(sessions, content);
+}
+
+void draw_missing_sessions(FlowingPages& pages, const Content& content) {
+  const auto draw = [&](const std::string& what, const auto& sessions) {
+    for (const auto& [session, reason] : sessions)
+      pages.sentence(what + (session.empty() ? "a session of this case."
+                                             : "the session " + session + " (" + reason + ")."),
+                     {.bold = true, .ink = kWarning});
+  };
+  draw("NOT READABLE, and not in this report: ", content.unreadable);
+  draw("DAMAGED, and in this report only as far as it is whole: ", content.damaged);
 }
 
 void draw_other_sessions(FlowingPages& pages, const Content& content) {

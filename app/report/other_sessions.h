@@ -20,6 +20,9 @@ void unless_unreadable(const std::filesystem::path& session, Content& content,
 // session and what was achieved in it. sessions: the oldest first.
 void add_other_sessions(const std::vector<std::filesystem::path>& sessions, Content& content);
 
+// Which sessions are in the report in part, and which not at all.
+void draw_missing_sessions(FlowingPages& pages, const Content& content);
+
 // A table of each: its registration, and what stood against a mistake.
 void draw_other_sessions(FlowingPages& pages, const Content& content);
 

@@ -245,11 +245,7 @@ void Report::navigate_page() {
   } else {
     pages_.begin_page("In theatre");
   }
-  for (const auto& [session, reason] : content_.unreadable)
-    pages_.sentence(session.empty() ? "NOT READABLE, and not in this report: a session of this case."
-                                    : "NOT READABLE, and not in this report: the session " + session + " (" +
-                                          reason + ").",
-                    {.bold = true, .ink = kWarning});
+  draw_missing_sessions(pages_, content_);
   if (!content_.session) {
     pages_.sentence("No session with a registration or a drilled tunnel is recorded in this case.");
     draw_postop_section(pages_, content_);

@@ -33,7 +33,8 @@ struct ReadSession {
 };
 
 ReadSession read_session(const std::filesystem::path& folder) {
-  ReadSession read{std::make_unique<recording::RecordedSession>(folder), {}};
+  ReadSession read{
+      std::make_unique<recording::RecordedSession>(recording::RecordedSession::as_far_as_whole(folder)), {}};
   for (const auto& file : operation::achieved_files(folder))
     read.achieved.push_back(operation::read_achieved_file(file));
   return read;
@@ -44,6 +45,10 @@ void put(ReadSession read, Content& content) {
   content.achieved = std::move(read.achieved);
   content.registration.reset();
   content.registration_problem.clear();
+  if (!content.session->events_are_whole()) {
+    content.registration_problem = "what was done is not known to its end, nor which registration counts";
+    return;
+  }
   try {
     content.registration = registration_that_counts(*content.session);
   } catch (const InvalidInput& error) {
@@ -69,11 +74,30 @@ bool take_session(const std::filesystem::path& folder, Registration least, Conte
     has_tunnel = !operation::achieved_files(folder).empty() || (is_whole && was_drilled_by_word(folder));
     if (!has_tunnel && (content.session || !is_whole)) return;
     ReadSession read = read_session(folder);
-    const auto registration = registration_that_counts(*read.session);
+    // Which registration counts nobody knows then: one that is whole is told of in its place.
+    if (!has_tunnel && !read.session->events_are_whole())
+      throw InvalidInput(read.session->problems().front());
+    const auto registration =
+        read.session->events_are_whole() ? registration_that_counts(*read.session) : std::nullopt;
     const bool is_enough = registration && (registration->has_pose || least == Registration::Tried);
     if (has_tunnel || is_enough) put(std::move(read), content);
   });
   return has_tunnel && content.session != nullptr && content.session->folder() == folder;
+}
+
+// Better than none: the newest of those that cannot be read whole, as far as it is.
+void take_damaged(const std::vector<std::filesystem::path>& sessions, Content& content) {
+  for (auto it = sessions.rbegin(); it != sessions.rend() && !content.session; ++it) {
+    const auto told = std::ranges::find(content.unreadable, it->filename().string(),
+                                        &std::pair<std::string, std::string>::first);
+    if (told == content.unreadable.end()) continue;
+    try {
+      put(read_session(*it), content);
+      content.unreadable.erase(told);
+    } catch (const InvalidInput&) {  // nothing of it: it is named as such
+    } catch (const IoError&) {
+    }
+  }
 }
 
 // By the name of its folder, or by the number that stands before its date in Review; which must be there.
@@ -107,6 +131,8 @@ void add_looked_at(Content& content, const ReportOptions& options) {
   content.session_name = content.session->header().id;
   content.started_utc = content.session->header().started_utc;
   content.safety = safety_of(*content.session, recording::is_being_recorded(folder));
+  for (const std::string& problem : content.session->problems())
+    content.damaged.emplace_back(folder.filename().string(), files::within_folder(content.folder, problem));
   content.last_hash = recording::chain_head(folder);
   constexpr double kRead = 0.1;
   content.check = recording::check_session(folder, [&](std::int64_t done, std::int64_t all) {
@@ -201,9 +227,11 @@ void blank_for_strangers(Content& content) {
   }
   for (Content::ByWord& said : content.by_word) said.session.clear();
   if (content.camera && !content.camera->date_utc.empty()) content.camera->date_utc = kNotTold;
-  for (auto& [session, reason] : content.unreadable) {
-    session.clear();
-    reason.clear();
+  for (auto* const sessions : {&content.unreadable, &content.damaged}) {
+    for (auto& [session, reason] : *sessions) {
+      session.clear();
+      reason.clear();
+    }
   }
   for (recording::SessionMark& mark : content.marks)
     if (!mark.note.empty()) mark.note = kNotTold;
@@ -225,6 +253,10 @@ std::vector<std::string> shortcomings_of(const Content& content) {
     sentences.push_back(session.empty()
                             ? "a session of this case cannot be read and is not in it"
                             : "the session " + session + " cannot be read and is not in it: " + reason);
+  for (const auto& [session, reason] : content.damaged)
+    sentences.push_back((session.empty() ? "a session of this case" : "the session " + session) +
+                        " is damaged and only in it as far as it is whole" +
+                        (reason.empty() ? "" : ": " + reason));
   if (!content.registration_problem.empty())
     sentences.push_back("the registration cannot be read and is not in it: " + content.registration_problem);
   if (content.check.outcome == recording::SessionCheck::Outcome::Broken)
@@ -305,6 +337,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
                   .others = {},
                   .by_word = {},
                   .unreadable = {},
+                  .damaged = {},
                   .marks = {},
                   .marks_problem = {},
                   .last_hash = {},
@@ -327,6 +360,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
       has_tunnel = take_session(*it, Registration::Found, content);
     for (auto it = sessions.rbegin(); it != sessions.rend() && !content.session; ++it)
       (void)take_session(*it, Registration::Tried, content);
+    take_damaged(sessions, content);
   }
   const auto by_shape = plan_review::propose_landmarks(content.knee, plan_review::Proposing::Planned);
   content.review =

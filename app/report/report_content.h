@@ -71,6 +71,9 @@ struct Content {
   // Sessions that may have been the one that matters, and cannot be read: their folders' names, and why; for
   // strangers both empty.
   std::vector<std::pair<std::string, std::string>> unreadable = {};
+  // Damaged ones, which are in it as far as they are whole: their folders' names and what is missing, as
+  // above.
+  std::vector<std::pair<std::string, std::string>> damaged = {};
   recording::SessionMarks marks = {};  // of `session`: what whoever looked at it marked
   std::string marks_problem = {};      // why they cannot be read; empty when they can
   std::string last_hash = {};          // of the chain of `session`; empty: it has none, or a broken one

@@ -110,7 +110,7 @@ ordered_json session_of(const Content& content) {
                        {"is_of_another_surface", content.is_of_another_surface},
                        {"source_kind", header.source_kind ? sources::to_text(*header.source_kind) : ""},
                        {"medium", camera::medium_to_text(header.refractive_index)},
-                       {"was_finished", session.was_finished()},
+                       {"was_finished", nullptr},
                        {"frames", figures.frames},
                        {"world_marker_tracked_percent", figures.world_percent},
                        {"lens_mark_found_percent", figures.mark_percent},
@@ -118,6 +118,7 @@ ordered_json session_of(const Content& content) {
                        {"is_as_recorded", nullptr},  // no hashes tell
                        {"record", recording::check_words(content.check)},
                        {"last_hash", content.last_hash}};
+  if (session.was_finished() || session.problems().empty()) node["was_finished"] = session.was_finished();
   if (content.check.outcome != recording::SessionCheck::Outcome::NoChain)
     node["is_as_recorded"] = content.check.is_unbroken();
   node["camera"] = content.camera ? json_of(*content.camera) : ordered_json();
@@ -251,9 +252,13 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
   json["tunnels"] = tunnels_of(content);
   json["session"] = session_of(content);
   json["other_sessions"] = others_of(content);
-  json["unreadable_sessions"] = ordered_json::array();
-  for (const auto& [session, reason] : content.unreadable)
-    json["unreadable_sessions"].push_back({{"id", if_told(session)}, {"reason", if_told(reason)}});
+  const auto put = [&json](const char* name, const auto& sessions) {
+    json[name] = ordered_json::array();
+    for (const auto& [session, reason] : sessions)
+      json[name].push_back({{"id", if_told(session)}, {"reason", if_told(reason)}});
+  };
+  put("unreadable_sessions", content.unreadable);
+  put("damaged_sessions", content.damaged);
   json["achieved"] = ordered_json::array();
   for (const operation::AchievedTunnel& achieved : content.achieved)
     json["achieved"].push_back(json_of(content, achieved, if_told(content.session_name)));

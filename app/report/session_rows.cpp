@@ -100,7 +100,10 @@ std::vector<std::pair<std::string, int>> alarms_of(const recording::RecordedSess
   return alarms;
 }
 
+constexpr const char* kNotKnownToItsEnd = "NOT KNOWN: the record is damaged";
+
 std::string time_out_in_words(const Safety& safety) {
+  if (safety.is_partial) return kNotKnownToItsEnd;
   switch (safety.time_out) {
     case Safety::TimeOut::NotRecorded:
       return "not recorded";
@@ -129,8 +132,11 @@ std::string beside_time_out(const recording::SessionEvent& command) {
 Safety safety_of(const recording::RecordedSession& session, bool is_being_recorded) {
   bool is_verified = false, is_lost = false, was_verified = false, is_confirmed = false;
   recording::CountingRegistration registration;
-  Safety safety{.cut_short = recording::cut_short_in_words(session.was_finished(), session.events(),
-                                                           is_being_recorded)};
+  Safety safety{
+      .cut_short = recording::cut_short_in_words(session.was_finished(), session.events(), is_being_recorded),
+      .is_partial = !session.events_are_whole()};
+  if (!session.was_finished() && !session.problems().empty())
+    safety.cut_short = "the record is damaged, and how it ended is not known";
   const recording::SessionEvent* command = nullptr;  // the newest
   const std::vector<PlanInForce> plans = plans_in_force(session);
   const operation::PlannedTunnel* plan = nullptr;       // in force
@@ -173,6 +179,7 @@ Safety safety_of(const recording::RecordedSession& session, bool is_being_record
 }
 
 std::string verification_in_words(const Safety& safety) {
+  if (safety.is_partial) return kNotKnownToItsEnd;
   const std::string without = safety.skipped.empty() ? "" : "; guidance began without it";
   switch (safety.verification) {
     case Safety::Verification::ByTouches:
@@ -193,15 +200,19 @@ std::string alarms_in_words(const Safety& safety) {
   std::string words;
   for (const auto& [text, count] : safety.alarms)
     words += (words.empty() ? "" : "; ") + text + (count > 1 ? files::format(" (%d times)", count) : "");
+  if (safety.is_partial) return words.empty() ? kNotKnownToItsEnd : words + "; LATER ONES ARE NOT KNOWN";
   return words.empty() ? "none" : words;
 }
 
 std::vector<std::vector<std::string>> rows_of(const Safety& safety) {
-  return {{"Record", safety.cut_short.empty() ? "from beginning to end" : "CUT SHORT: " + safety.cut_short},
+  const auto told = [&](const std::string& words) { return safety.is_partial ? kNotKnownToItsEnd : words; };
+  return {{"Record", safety.is_partial          ? "DAMAGED: what was done is not known to its end"
+                     : safety.cut_short.empty() ? "from beginning to end"
+                                                : "CUT SHORT: " + safety.cut_short},
           {"Verification", verification_in_words(safety)},
           {"Time-out", time_out_in_words(safety)},
-          {"Check of a nominal guide", safety.guide.empty() ? "none in this session" : safety.guide},
-          {"Faults of the source", safety.source_faults.value_or("not looked for: no live source")},
+          {"Check of a nominal guide", told(safety.guide.empty() ? "none in this session" : safety.guide)},
+          {"Faults of the source", told(safety.source_faults.value_or("not looked for: no live source"))},
           {"Alarms, void registrations", alarms_in_words(safety)}};
 }
 

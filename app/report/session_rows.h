@@ -34,6 +34,7 @@ struct Safety {
   enum class Verification { None, Skipped, OfAnEarlierRegistration, DidNotHold, ByTouches };
   enum class TimeOut { NotRecorded, NotAsked, NotConfirmed, Confirmed };
   std::string cut_short = {};  // why the record is not whole; empty: it is. Names files, and whom they name
+  bool is_partial = false;     // what was done is not known to its end: what is not told may have been
   Verification verification = Verification::None;
   std::string skipped = {};  // how guidance began without a verification; empty: it did not
   TimeOut time_out = TimeOut::NotRecorded;

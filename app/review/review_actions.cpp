@@ -165,9 +165,9 @@ void ReviewView::add_mark_actions(widgets::Actions& actions) {
                [this] { change_marks([](MarkBook& marks) { marks.redo(); }); }});
 }
 
-void ReviewView::take_dropped(const std::filesystem::path& images) {
+void ReviewView::take_dropped(const std::filesystem::path& images, const std::string& series) {
   shows_postop_ = true;
-  postop_.compare_with(images);
+  postop_.compare_with(images, series);
 }
 
 void ReviewView::add_postop_actions(widgets::Actions& actions) {

@@ -67,7 +67,7 @@ class ReviewView : public mode::Mode {
   // A comparison or a report that another case or the end of the program would cut off.
   [[nodiscard]] bool has_running_work() const override { return postop_.is_running() || is_writing_report(); }
   // Images after the operation, dropped on the window: compared with the plan.
-  void take_dropped(const std::filesystem::path& images);
+  void take_dropped(const std::filesystem::path& images, const std::string& series = {});
   // Whatever a session was made of, what is shown of it is a recording; draw_origin() says what of.
   [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
   [[nodiscard]] std::string notice() const override { return notice_; }

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "app/widgets/list_rows.h"
-#include "app/widgets/wrapped_text.h"
 #include "navigation/recording/recording_lock.h"
 #include "navigation/recording/session_facts.h"
 #include "navigation/worker/freed_memory.h"
@@ -102,45 +101,51 @@ std::optional<std::size_t> SessionList::draw(const widgets::Ui& ui, std::optiona
   const bool is_chosen_anew = std::exchange(in_view_, chosen) != chosen;
   ImFont* const font = ui.theme.body;
   const float sign = ui.theme.px(26), gap = ui.theme.px(8);
-  // As high as its rows are, up to where the buttons below need the room.
-  const auto words_height = [&](const std::string& words, float wrap) {
-    if (words.empty()) return font->FontSize;
-    wrap = std::max(wrap, 1.F);
-    return font->CalcTextSizeA(font->FontSize, 1e9F, wrap, widgets::wrapped(font, words, wrap).c_str()).y;
+  const auto line_of = [&](std::size_t i) {
+    const auto found = lines_.find(folders_[i]);
+    return found != lines_.end() ? found->second : SessionLine{};
   };
-  float all = gap;
-  for (const auto& folder : folders_) {
-    const auto found = lines_.find(folder);
-    all += font->FontSize + gap + ImGui::GetStyle().ItemSpacing.y +
-           words_height(found != lines_.end() ? found->second.words : std::string(),
-                        ImGui::GetContentRegionAvail().x - sign);
-  }
-  ImGui::BeginChild("review.list", {0, std::min(ui.theme.px(250), all)});
+  const auto color_of = [](const SessionLine& line) {
+    const bool is_calm =
+        line.severity == widgets::Severity::Good || line.severity == widgets::Severity::Quiet;
+    return is_calm ? widgets::kQuietText : widgets::color_of(line.severity);
+  };
+  // Of each the beginning of its words, so that the rows stand still when another one is chosen; of the
+  // chosen one all of them below. As high as the rows are, up to where the buttons need the room.
+  const float row = 2 * font->FontSize + gap;
+  const float all = gap + static_cast<float>(folders_.size()) * (row + ImGui::GetStyle().ItemSpacing.y);
+  constexpr float kMostOfPanel = 0.46F;
+  const float most = std::max(ui.theme.px(250), kMostOfPanel * ImGui::GetContentRegionAvail().y);
+  ImGui::BeginChild("review.list", {0, std::min(most, all)});
   for (std::size_t i = 0; i < folders_.size(); ++i) {
     const std::string name = folders_[i].filename().string();
-    const auto found = lines_.find(folders_[i]);
-    const SessionLine line = found != lines_.end() ? found->second : SessionLine{};
+    const SessionLine line = line_of(i);
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetContentRegionAvail().x, wrap = std::max(width - sign, 1.F);
-    const float below = words_height(line.words, wrap);
+    const float room = ImGui::GetContentRegionAvail().x - sign;
     ImGui::PushID(static_cast<int>(i));
-    if (ImGui::Selectable("##session", chosen == i, 0, {0, font->FontSize + below + gap})) pressed = i;
+    if (ImGui::Selectable("##session", chosen == i, 0, {0, row})) pressed = i;
     ImGui::PopID();
     if (is_chosen_anew && chosen == i) ImGui::SetScrollHereY(0.5F);
-    ui.log.note("review.session." + name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+    // What of it can be pressed: the rest lies under the buttons below.
+    const ImVec2 list_from = ImGui::GetWindowPos(), list_size = ImGui::GetWindowSize();
+    const ImVec2 from{ImGui::GetItemRectMin().x, std::max(ImGui::GetItemRectMin().y, list_from.y)};
+    const ImVec2 to{ImGui::GetItemRectMax().x,
+                    std::min(ImGui::GetItemRectMax().y, list_from.y + list_size.y)};
+    if (from.y < to.y) ui.log.note("review.session." + name, from, to);
     ui.log.note_state("session_line." + name, line.words);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.AddText(font, font->FontSize, at, widgets::kText, session_title(name).c_str());
     if (line.words.empty()) continue;
     widgets::draw_sign(draw, {at.x + ui.theme.px(9), at.y + font->FontSize * 1.5F}, ui.theme.px(7),
                        line.severity);
-    widgets::draw_text(draw, font, at.x + sign, at.y + font->FontSize,
-                       line.severity == widgets::Severity::Good || line.severity == widgets::Severity::Quiet
-                           ? widgets::kQuietText
-                           : widgets::color_of(line.severity),
-                       line.words, wrap);
+    widgets::draw_text(draw, font, at.x + sign, at.y + font->FontSize, color_of(line),
+                       widgets::fitting(font, line.words, room));
   }
   ImGui::EndChild();
+  if (chosen && *chosen < folders_.size()) {
+    const SessionLine line = line_of(*chosen);
+    if (!line.words.empty()) widgets::text_in(font, color_of(line), line.words);
+  }
   return pressed;
 }
 

@@ -21,6 +21,10 @@ void StartView::start_import(bool images_only) {
   work_.start(wishes);
 }
 
+const library::PlannedCase* StartView::planned_of_selected() const {
+  return work_.state() == State::Choosing ? planned_.of(state_.selected) : nullptr;
+}
+
 // One that Enter may pass by: a wrong side is a wrong operation.
 bool StartView::has_sure_side() const {
   return state_.side.has_value() &&
@@ -80,6 +84,20 @@ void StartView::add_import_actions(widgets::Actions& actions) {
        },
        {},
        [this] { start_import(true); }});
+  actions.add(
+      {"start.compare",
+       "Compare with the plan",
+       "Takes the images as those after the operation of the case that is named above: what was drilled "
+       "is found in them and compared with its plan",
+       GLFW_KEY_A,
+       0,
+       false,
+       [this, chooses] { return chooses() && planned_of_selected() != nullptr; },
+       {},
+       [this] {
+         const ImportSource& source = work_.sources().sources[state_.selected];
+         after_operation_ = {planned_of_selected()->folder, source.source, source.series->uid};
+       }});
   actions.add({"start.save",
                "Make the case",
                "Writes the case and opens it",

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "planning/cases/identity.h"
 #include "planning/files/running_process.h"
 #include "planning/geometry/error.h"
 
@@ -42,6 +43,7 @@ void PacsPane::enter(const SendableCase& sendable, const fs::path& open_case) {
   std::error_code gone;  // the same by whatever way it was opened
   view_.is_another =
       !open_case.empty() && !sendable.folder.empty() && !fs::equivalent(open_case, sendable.folder, gone);
+  offer_patient(open_case);
   view_.page = Page::Search;
   view_.failure.clear();
   try {  // said on the screen, and the file left as it is
@@ -52,6 +54,19 @@ void PacsPane::enter(const SendableCase& sendable, const fs::path& open_case) {
   view_.peer = std::min(view_.peer, peers_.empty() ? 0 : peers_.size() - 1);
   view_.scrolls_to_peer = true;
   if (peers_.size() == 1 && !lights_.contains(peers_.front().name)) echo();
+}
+
+void PacsPane::offer_patient(const fs::path& open_case) {
+  if (view_.patient_id != view_.offered_id || !view_.patient_name.empty()) return;
+  view_.offered_id.clear();
+  for (const fs::path& folder : {view_.sendable.folder, open_case}) {
+    if (folder.empty() || !view_.offered_id.empty()) continue;
+    try {
+      if (const auto patient = cases::load_identity(folder)) view_.offered_id = patient->patient_id;
+    } catch (const std::runtime_error&) {  // the case itself says that it cannot be read
+    }
+  }
+  view_.patient_id = view_.offered_id;
 }
 
 PacsPane::~PacsPane() {
@@ -350,48 +365,6 @@ void PacsPane::add_peer_actions(widgets::Actions& actions, const std::function<b
                {},
                [this] { remove_peer(); },
                {"remove the PACS"}});
-}
-
-void PacsPane::add_send_actions(widgets::Actions& actions, const std::function<bool()>& sends) {
-  actions.add({"start.pacs.results",
-               "Send results",
-               "Shows what of the case would go to the PACS, and whom it names, before anything is sent",
-               GLFW_KEY_R,
-               0,
-               false,
-               [this, actions = &actions] {
-                 const widgets::Action* find = actions->find("start.pacs.find");
-                 return find != nullptr && find->can_run() && !view_.sendable.folder.empty();
-               },
-               {},
-               [this] { view_.page = Page::Send; }});
-  const auto rests = [this, sends] { return sends() && !work_.is_busy(); };
-  actions.add({"start.pacs.deidentified", "De-identified",
-               "Leaves out patient, study, dates and pictures; what was written is written anew", GLFW_KEY_D,
-               0, false, rests, [this] { return view_.is_deidentified; },
-               [this] {
-                 view_.is_deidentified = !view_.is_deidentified;
-                 view_.outgoing.clear();
-               }});
-  actions.add({"start.pacs.write",
-               "Show what goes out",
-               "Writes bones, plan, report and pictures as DICOM on this machine, and lists them",
-               GLFW_KEY_ENTER,
-               0,
-               false,
-               [this, rests] { return rests() && view_.outgoing.empty(); },
-               {},
-               [this] { write_results(); }});
-  actions.add({"start.pacs.send",
-               "Send",
-               "Sends all that is listed, and asks the PACS to commit itself to keep it",
-               GLFW_KEY_ENTER,
-               0,
-               false,
-               [this, rests] { return rests() && !view_.outgoing.empty(); },
-               {},
-               [this] { work_.start({.kind = Kind::Send, .peer = *peer(), .files = view_.outgoing}); },
-               {"send"}});
 }
 
 }  // namespace arthronaut::start

@@ -37,7 +37,8 @@ class PacsPane {
 
   // All start with "start.pacs."; is_shown: whether this page is in front.
   void add_actions(widgets::Actions& actions, const std::function<bool()>& is_shown);
-  // Comes to the front; what runs goes on. open_case: empty where none is.
+  // Comes to the front; what runs goes on. open_case: empty where none is. The patient who is asked for is
+  // the selected case's, else the open one's, unless somebody has typed another.
   void enter(const SendableCase& sendable, const std::filesystem::path& open_case);
   void leave();  // something else does; what was written to be sent goes, unless it is being sent
   void tick(bool is_shown);
@@ -68,6 +69,7 @@ class PacsPane {
     std::size_t peer = 0, row = 0;
     bool scrolls_to_row = false, scrolls_to_peer = false, takes_focus = false;
     std::string patient_id, patient_name, date, modality;
+    std::string offered_id;  // that was put into the field
     PacsPeerForm form;
     std::string edited;  // the name of the peer that is changed; empty: a new one
     std::string failure;
@@ -81,6 +83,7 @@ class PacsPane {
   void add_peer_actions(widgets::Actions& actions, const std::function<bool()>& searches);
   void add_send_actions(widgets::Actions& actions, const std::function<bool()>& sends);
   [[nodiscard]] const PacsPeer* peer() const;
+  void offer_patient(const std::filesystem::path& open_case);
   void choose_peer(std::size_t number);  // what was found is of one PACS
   void echo();
   void find();

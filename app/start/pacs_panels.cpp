@@ -80,6 +80,7 @@ void PacsPane::note_states(const widgets::Ui& ui) const {
   ui.log.note_state("pacs_done", std::to_string(news.progress.done));
   ui.log.note_state("pacs_outgoing", std::to_string(view_.outgoing.size()));
   ui.log.note_state("pacs_commitment", pacs::to_text(news.sent.commitment));
+  ui.log.note_state("pacs_patient", view_.patient_id);
   ui.log.note_state("pacs_typing", ImGui::GetIO().WantTextInput ? "yes" : "no");
 }
 

@@ -1,4 +1,5 @@
-// How the results that go to the PACS look.
+// The results that go to the PACS: how they look, and what is done with them.
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -114,6 +115,48 @@ void PacsPane::draw_outgoing(const widgets::Ui& ui) {
                                                                          : Severity::Caution;
     widgets::status_row(ui, severity, written.title, words);
   }
+}
+
+void PacsPane::add_send_actions(widgets::Actions& actions, const std::function<bool()>& sends) {
+  actions.add({"start.pacs.results",
+               "Send results",
+               "Shows what of the case would go to the PACS, and whom it names, before anything is sent",
+               GLFW_KEY_R,
+               0,
+               false,
+               [this, actions = &actions] {
+                 const widgets::Action* find = actions->find("start.pacs.find");
+                 return find != nullptr && find->can_run() && !view_.sendable.folder.empty();
+               },
+               {},
+               [this] { view_.page = Page::Send; }});
+  const auto rests = [this, sends] { return sends() && !work_.is_busy(); };
+  actions.add({"start.pacs.deidentified", "De-identified",
+               "Leaves out patient, study, dates and pictures; what was written is written anew", GLFW_KEY_D,
+               0, false, rests, [this] { return view_.is_deidentified; },
+               [this] {
+                 view_.is_deidentified = !view_.is_deidentified;
+                 view_.outgoing.clear();
+               }});
+  actions.add({"start.pacs.write",
+               "Show what goes out",
+               "Writes bones, plan, report and pictures as DICOM on this machine, and lists them",
+               GLFW_KEY_ENTER,
+               0,
+               false,
+               [this, rests] { return rests() && view_.outgoing.empty(); },
+               {},
+               [this] { write_results(); }});
+  actions.add({"start.pacs.send",
+               "Send",
+               "Sends all that is listed, and asks the PACS to commit itself to keep it",
+               GLFW_KEY_ENTER,
+               0,
+               false,
+               [this, rests] { return rests() && !view_.outgoing.empty(); },
+               {},
+               [this] { work_.start({.kind = Kind::Send, .peer = *peer(), .files = view_.outgoing}); },
+               {"send"}});
 }
 
 }  // namespace arthronaut::start

@@ -109,6 +109,9 @@ void StartView::draw_answers(const widgets::Ui& ui, const widgets::Rect& bar) {
   if (selects_mesh())
     widgets::draw_buttons(ui, bar,
                           {"start.import", "start.tick", "start.femur", "start.tibia", "start.back"});
+  else if (planned_of_selected() != nullptr)
+    widgets::draw_buttons(ui, bar,
+                          {"start.compare", "start.import", "start.paint", "start.tick", "start.back"});
   else
     widgets::draw_buttons(ui, bar, {"start.import", "start.paint", "start.tick", "start.back"});
 }
@@ -179,6 +182,10 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_answers(ui, buttons);
   widgets::begin_panel(ui, "start.sources", rest);
   draw_refusal(ui);
+  if (const library::PlannedCase* const planned = planned_of_selected()) {
+    widgets::status_row(ui, Severity::Quiet, "Operated?", offer_in_words(*planned));
+    ui.log.note_state("planned_case", planned->folder.filename().string());
+  }
   const float picture = ui.theme.px(116);
   for (std::size_t i = 0; i < found.sources.size(); ++i) {
     const ImportSource& source = found.sources[i];

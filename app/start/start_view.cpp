@@ -22,6 +22,7 @@ StartView::StartView(std::function<void(const fs::path&)> open, std::function<vo
         open(folder);
       }),
       work_(wake),
+      planned_(wake),
       made_(std::move(make_current), wake),
       cases_(open_, wake),
       pacs_([this](const fs::path& folder) { take(folder); }, wake) {}
@@ -65,6 +66,7 @@ void StartView::take(const fs::path& path) {
   state_.side_was_said = false;
   state_.unit.reset();
   thumbnails_.clear();
+  planned_.forget();
   work_.look_into(path);
 }
 
@@ -79,8 +81,10 @@ void StartView::tick() {
   pacs_.tick(state_.page == Page::Pacs);
   const State before = work_.state();
   work_.poll();
+  planned_.poll();
   const State now = work_.state();
   if (before == State::Looking && now == State::Choosing) {
+    planned_.look_up(work_.sources());
     state_.ticked.clear();
     if (const auto best = work_.sources().best()) {
       state_.selected = *best;

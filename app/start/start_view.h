@@ -17,10 +17,17 @@
 #include "app/start/import_work.h"
 #include "app/start/made_bones.h"
 #include "app/start/pacs_pane.h"
+#include "app/start/planned_series.h"
 #include "app/widgets/controls.h"
 #include "app/widgets/grey_texture.h"
 
 namespace arthronaut::start {
+
+// Images after the operation, and the case whose plan they are to be compared with.
+struct AfterOperation {
+  std::filesystem::path case_folder, source;
+  std::string series;  // UID; empty: of one volume
+};
 
 class StartView {
  public:
@@ -45,13 +52,17 @@ class StartView {
   [[nodiscard]] std::optional<std::filesystem::path> take_markups() {
     return std::exchange(markups_, std::nullopt);
   }
+  // Once what was chosen of images after the operation.
+  [[nodiscard]] std::optional<AfterOperation> take_after_operation() {
+    return std::exchange(after_operation_, std::nullopt);
+  }
   void tick();
   void draw(const widgets::Ui& ui, const widgets::Rect& area);
 
   // Something will change without anybody's doing.
   [[nodiscard]] bool is_busy() const {
-    return work_.is_busy() || work_.makes_pictures() || (state_.page == Page::Cases && cases_.is_busy()) ||
-           pacs_.is_busy();
+    return work_.is_busy() || work_.makes_pictures() || planned_.is_busy() ||
+           (state_.page == Page::Cases && cases_.is_busy()) || pacs_.is_busy();
   }
   // An import or a transfer runs that the end of the program would cut off.
   [[nodiscard]] bool has_running_work() const;
@@ -77,6 +88,8 @@ class StartView {
   [[nodiscard]] bool has_sure_side() const;
   [[nodiscard]] std::size_t row_count() const;
   [[nodiscard]] bool imports() const;
+  // Whose operation the selected images may be after; null: nobody's that is known.
+  [[nodiscard]] const library::PlannedCase* planned_of_selected() const;
   [[nodiscard]] importing::FailureReason question() const;
   [[nodiscard]] bool asks(importing::FailureReason reason) const;
   [[nodiscard]] bool asks_for_labels() const;
@@ -112,6 +125,7 @@ class StartView {
 
   std::function<void(const std::filesystem::path&)> open_;
   ImportWork work_;
+  PlannedSeries planned_;
   MadeBones made_;
   CaseList cases_;
   PacsPane pacs_;
@@ -120,6 +134,7 @@ class StartView {
   std::map<std::size_t, std::unique_ptr<widgets::GreyTexture>> thumbnails_;  // by source
   bool wants_to_close_ = false;
   std::optional<std::filesystem::path> markups_;
+  std::optional<AfterOperation> after_operation_;
 };
 
 }  // namespace arthronaut::start

@@ -188,4 +188,21 @@ void WorkstationWindow::take_chosen_markups() {
   plan_->take_markups(*chosen);
 }
 
+// Its case may be another than the open one, and is opened first.
+void WorkstationWindow::compare_chosen() {
+  if (auto chosen = start_.take_after_operation()) {
+    after_operation_ = std::move(chosen);
+    open(after_operation_->case_folder);
+  }
+  if (!after_operation_ || opening_ != nullptr) return;
+  const start::AfterOperation chosen = *std::exchange(after_operation_, std::nullopt);
+  std::error_code gone;
+  if (model() == nullptr || review_ == nullptr ||
+      !std::filesystem::equivalent(chosen.case_folder, case_->folder(), gone))
+    return;  // it could not be opened, which is said
+  for (std::size_t mode = 0; mode < modes_.size(); ++mode)
+    if (modes_[mode].get() == review_) show(mode);
+  review_->take_dropped(chosen.source, chosen.series);
+}
+
 }  // namespace arthronaut::window

@@ -147,6 +147,7 @@ void WorkstationWindow::work() {
     dispatch_keys();
     if (shows_start_ && start_.wants_to_close()) close_start();
     take_chosen_markups();
+    compare_chosen();
   });
   if (!shows_start() && !shows_paint()) guarded([this] { shown().cover(shows_keys_); });
   for (const auto& mode : modes_) guarded([&] { mode->tick(GraphicsWindow::now_s()); });

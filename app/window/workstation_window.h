@@ -60,6 +60,7 @@ class WorkstationWindow {
   // Markups that were moved in 3D Slicer: chosen among the folders, as dropped on Plan.
   void add_markups_action();
   void take_chosen_markups();
+  void compare_chosen();  // images after the operation, in Review
   void close_start();
   void leave_shown();  // whatever is in front
   // The painting of the open case's bones.
@@ -123,6 +124,7 @@ class WorkstationWindow {
   UntakenKey untaken_;
   screen_copy::ScreenCopies copies_;
   start::StartView start_;
+  std::optional<start::AfterOperation> after_operation_;  // until its case is open
   paint::PaintView paint_;
   bool shows_keys_ = false, shows_start_ = false, shows_paint_ = false, reopens_ = false, quits_ = false;
   bool looks_for_cut_off_ = false;  // in the case that was opened last, until somebody chose a mode

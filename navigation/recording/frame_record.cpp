@@ -1,6 +1,10 @@
 #include "navigation/recording/frame_record.h"
 
 #include <algorithm>
+#include <exception>
+#include <iterator>
+
+#include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
 
@@ -268,6 +272,30 @@ std::vector<RecordedFrame> read_frames(SessionDatabase& database, std::int64_t f
     frame.digests = {static_cast<std::uint64_t>(row.integer(1)), static_cast<std::uint64_t>(row.integer(2))};
   });
   return frames;
+}
+
+void append_frames(SessionDatabase& database, std::vector<RecordedFrame>& frames) {
+  std::vector<std::int64_t> indices;
+  std::exception_ptr damage;
+  try {
+    Statement rows = database.prepare("SELECT frame FROM frames ORDER BY frame");
+    while (rows.step()) indices.push_back(rows.integer(0));
+  } catch (const IoError&) {
+    damage = std::current_exception();
+  }
+  // In blocks, which get smaller up to the frame of which something cannot be read.
+  std::size_t many = 1024;
+  for (std::size_t at = 0; at < indices.size();) {
+    const std::size_t end = std::min(at + many, indices.size());
+    try {
+      std::ranges::move(read_frames(database, indices[at], indices[end - 1]), std::back_inserter(frames));
+      at = end;
+    } catch (const std::exception&) {
+      if (many == 1) throw;
+      many /= 2;
+    }
+  }
+  if (damage) std::rethrow_exception(damage);
 }
 
 }  // namespace arthronaut::recording

@@ -30,4 +30,7 @@ class FrameInserter {
     SessionDatabase& database, std::int64_t first = std::numeric_limits<std::int64_t>::min(),
     std::int64_t last = std::numeric_limits<std::int64_t>::max());
 
+// All of them behind those that are in `frames`; when it throws, those before the damage are there.
+void append_frames(SessionDatabase& database, std::vector<RecordedFrame>& frames);
+
 }  // namespace arthronaut::recording

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <utility>
+
 #include "navigation/camera/camera_file.h"
 #include "navigation/recording/frame_record.h"
 #include "navigation/recording/kept_pictures.h"
@@ -12,41 +15,87 @@ struct RecordedSession::State {
   std::filesystem::path folder;
   SessionHeader header;
   pipeline::PipelineOptions options;
-  bool was_finished = false;
+  bool was_finished = false, events_are_whole = false;
   std::vector<RecordedFrame> frames;
   std::vector<SessionEvent> events;
   std::vector<KeptPicture> pictures;  // empty when the video is the source's own
   strokes::Curves curves;
+  std::vector<std::string> problems;
+
+  template <typename ReadPart>
+  void read(const ReadPart& part);
+  template <typename ReadPart>
+  void read_record(const ReadPart& part);
 };
 
-RecordedSession::RecordedSession(const std::filesystem::path& folder) : state_(std::make_unique<State>()) {
-  State& s = *state_;
-  s.folder = folder;
+// `part` runs what reads one of them: it lets pass what is thrown, or keeps it as a problem.
+template <typename ReadPart>
+void RecordedSession::State::read(const ReadPart& part) {
   if (!std::filesystem::is_directory(folder)) throw IoError(folder, "no such session");
-  s.header = read_session_header(folder, s.options);
-  s.options.calibrated =
-      std::make_shared<const camera::CalibrationRecord>(camera::read_camera_file(folder / "camera.json"));
-  s.options.calibration = s.options.calibrated->calibration;
-  s.options.tools = tools::read_tools_file(folder / "tools.json");
+  header = read_session_header(folder, options);
+  part([&] {
+    options.calibrated =
+        std::make_shared<const camera::CalibrationRecord>(camera::read_camera_file(folder / "camera.json"));
+    options.calibration = options.calibrated->calibration;
+  });
+  part([&] { options.tools = tools::read_tools_file(folder / "tools.json"); });
+  part([&] { read_record(part); });
+  part([&] {
+    if (const auto file = folder / "curves.csv"; std::filesystem::exists(file))
+      curves = strokes::read_curves_file(file);
+  });
+}
 
+template <typename ReadPart>
+void RecordedSession::State::read_record(const ReadPart& part) {
   SessionDatabase database = SessionDatabase::open(database_file(folder));
-  s.frames = read_frames(database);
-  Statement events = database.prepare("SELECT timestamp_ns, kind, text, after_frame FROM events ORDER BY id");
-  while (events.step()) {
-    s.events.push_back({events.integer(0), events.text(1), events.text(2), events.integer(3)});
-  }
-  s.pictures = read_kept_pictures(database);
-  s.was_finished = database.prepare("SELECT finished FROM ending").step();
+  part([&] { append_frames(database, frames); });
+  part([&] {
+    Statement row = database.prepare("SELECT timestamp_ns, kind, text, after_frame FROM events ORDER BY id");
+    while (row.step()) events.push_back({row.integer(0), row.text(1), row.text(2), row.integer(3)});
+    events_are_whole = true;
+  });
+  part([&] { pictures = read_kept_pictures(database); });
+  part([&] { was_finished = database.prepare("SELECT finished FROM ending").step(); });
+}
 
-  if (const auto file = folder / "curves.csv"; std::filesystem::exists(file)) {
-    s.curves = strokes::read_curves_file(file);
+RecordedSession::RecordedSession(const std::filesystem::path& folder) : state_(std::make_unique<State>()) {
+  state_->folder = folder;
+  state_->read([](const auto& read) { read(); });
+}
+
+RecordedSession::RecordedSession(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+RecordedSession RecordedSession::as_far_as_whole(const std::filesystem::path& folder) {
+  auto state = std::make_unique<State>();
+  state->folder = folder;
+  // One damaged page may be met by every table.
+  const auto tell = [&problems = state->problems](const std::string& problem) {
+    if (std::ranges::find(problems, problem) == problems.end()) problems.push_back(problem);
+  };
+  try {  // what a newer version wrote is not understood, however whole it is
+    (void)SessionDatabase::open(database_file(folder));
+  } catch (const IoError&) {
+    // Damaged, or not there: told below.
   }
+  state->read([&](const auto& read) {
+    try {
+      read();
+    } catch (const InvalidInput& error) {
+      tell(error.what());
+    } catch (const IoError& error) {
+      tell(error.what());
+    }
+  });
+  return RecordedSession(std::move(state));
 }
 
 RecordedSession::~RecordedSession() = default;
 RecordedSession::RecordedSession(RecordedSession&&) noexcept = default;
 RecordedSession& RecordedSession::operator=(RecordedSession&&) noexcept = default;
 
+const std::vector<std::string>& RecordedSession::problems() const { return state_->problems; }
+bool RecordedSession::events_are_whole() const { return state_->events_are_whole; }
 const SessionHeader& RecordedSession::header() const { return state_->header; }
 bool RecordedSession::was_finished() const { return state_->was_finished; }
 const std::vector<RecordedFrame>& RecordedSession::frames() const { return state_->frames; }

@@ -252,11 +252,18 @@ void append_event(const std::filesystem::path& session_folder, const SessionEven
 class RecordedSession {
  public:
   explicit RecordedSession(const std::filesystem::path& folder);
+  // A damaged one as far as it is whole, for whoever tells of it and computes nothing with it: problems()
+  // says what is missing. Of events and frames it has those before the damage. Throws IoError or InvalidInput
+  // where nothing can be told: no folder, no session.json, a record of a newer version.
+  [[nodiscard]] static RecordedSession as_far_as_whole(const std::filesystem::path& folder);
   ~RecordedSession();
   RecordedSession(RecordedSession&&) noexcept;
   RecordedSession& operator=(RecordedSession&&) noexcept;
+  // One sentence each, with the file's name; empty: all of it was read.
+  [[nodiscard]] const std::vector<std::string>& problems() const;
+  [[nodiscard]] bool events_are_whole() const;  // false: what was done after the last of them is not known
   [[nodiscard]] const SessionHeader& header() const;
-  [[nodiscard]] bool was_finished() const;  // false: a crash cut it off
+  [[nodiscard]] bool was_finished() const;  // false: a crash cut it off, or its end cannot be read
   [[nodiscard]] const std::vector<RecordedFrame>& frames() const;
   [[nodiscard]] const std::vector<SessionEvent>& events() const;  // in the order they were added
   // The plan of a kPlanEvent and the registration of a registration event.
@@ -279,6 +286,7 @@ class RecordedSession {
 
  private:
   struct State;
+  explicit RecordedSession(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 

@@ -37,6 +37,7 @@ void read_record(SessionOverview& overview) {
   as_far_as_whole(overview, [&] {
     Statement row = database.prepare("SELECT timestamp_ns, kind, text, after_frame FROM events ORDER BY id");
     while (row.step()) overview.events.push_back({row.integer(0), row.text(1), row.text(2), row.integer(3)});
+    overview.events_were_read = true;
   });
   as_far_as_whole(overview, [&] { overview.pictures = read_kept_pictures(database); });
   as_far_as_whole(overview, [&] {

@@ -18,6 +18,7 @@ struct SessionOverview {
   pipeline::PipelineOptions options;
   bool was_finished = false;  // false: a crash cut it off, where its end could be read
   bool end_was_read = false;
+  bool events_were_read = false;     // false: what was done after the last of them is not known
   bool is_being_recorded = false;    // when it was read (recording_lock.h)
   std::vector<SessionEvent> events;  // in the order they were added
   // Of a video by append_picture(), rising by frames; empty when the video is the source's own.

@@ -38,4 +38,8 @@ bool is_another_patient(const Identity& a, const Identity& b) {
   return !is_known && differ(a.name_in_words(), b.name_in_words());
 }
 
+bool is_same_patient(const Identity& a, const Identity& b) {
+  return both_say(a.patient_id, b.patient_id) && !is_another_patient(a, b);
+}
+
 }  // namespace arthronaut::cases

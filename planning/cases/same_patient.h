@@ -9,4 +9,8 @@ namespace arthronaut::cases {
 // both say number and date of birth, these decide: names change, and are written in many ways.
 [[nodiscard]] bool is_another_patient(const Identity& a, const Identity& b);
 
+// Whether both say a number, the same one, and nothing that makes them two patients: what is no more than not
+// another one may be anybody.
+[[nodiscard]] bool is_same_patient(const Identity& a, const Identity& b);
+
 }  // namespace arthronaut::cases

@@ -165,7 +165,13 @@ TEST_F(CompareCommand, WhoElseTheImagesAreOfIsSaidAndNotKept) {
   test::write_dicom_series(folder_ / "ct",
                            test::postop_ct({made_.femur.mesh}, {}, lying_, test::half_fine()));
   cases::save_identity(folder_ / "knee.arthro", {"Beispiel^Bert", "1234", "19500101"});
-  const auto result = compare("ct", "achieved.json");
+  // Not sought to the end before it is said.
+  const auto refused = compare("ct", "achieved.json");
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.errors, AllOf(HasSubstr("4711"), HasSubstr("not compared; --another-patient")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "achieved.json"));
+  const auto result = run_program({"compare", folder_ / "knee.arthro", "--postop", folder_ / "ct", "-o",
+                                   folder_ / "achieved.json", "--another-patient"});
   EXPECT_EQ(result.exit_code, 4);
   EXPECT_THAT(result.errors, AllOf(HasSubstr("of another patient than the case"), HasSubstr("4711")));
   const std::string kept = files::read_text(folder_ / "achieved.json");

@@ -6,8 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "planning/cases/case.h"
+#include "planning/cases/identity.h"
 #include "planning/images/series_list.h"
+#include "planning/phantom/phantom_case.h"
 #include "tests/app/command_line/program.h"
+#include "tests/planning/images/dicom_series_form.h"
 #include "tests/planning/images/large_volume.h"
 #include "tests/planning/images/volume_forms.h"
 #include "tests/resources/described.h"
@@ -67,6 +71,23 @@ TEST_F(SeriesCommand, SaysTheListInWords) {
       result.output,
       AllOf(HasSubstr("CT series 3\n    UID 1.2.3.4\n    4 images; 7 x 5 x 4 voxels of"),
             HasSubstr("\"broken.nrrd\""), HasSubstr("cannot be opened: "), HasSubstr("1 other file")));
+}
+
+// Images of a patient whose case has a plan may be those after its operation.
+TEST_F(SeriesCommand, SaysOfWhichCaseTheImagesMayBeAfterTheOperation) {
+  test::write_dicom_series(folder_ / "after", test::ellipsoid_ct());  // Muster^Anna, 4711
+  auto knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Her knee");
+  const std::filesystem::path cases = folder_ / "data/arthronaut/cases";
+  for (const auto& [name, patient_id] : {std::pair{"hers.arthro", "4711"}, {"his.arthro", "1234"}}) {
+    cases::save_case(cases / name, knee);
+    cases::save_identity(cases / name, {"Muster^Anna", patient_id, "19900131"});
+  }
+  const auto result = run_program({"series", folder_ / "after"}, {.data_home = folder_ / "data"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, AllOf(HasSubstr("the case \"Her knee\" is of this patient and has a plan"),
+                                   HasSubstr("arthronaut compare " + (cases / "hers.arthro").string() +
+                                             " --postop " + (folder_ / "after").string() + " --series "),
+                                   ::testing::Not(HasSubstr("his.arthro"))));
 }
 
 // As of an import: the reason on standard error, exit code 3, nothing on standard output.

@@ -58,5 +58,86 @@ TEST_F(Report, ABrokenRegistrationTakesNothingElseAway) {
   expect_contains(text, "In theatre");
 }
 
+// A page of the record, and with it events and frames: what was measured lies in a file of its own.
+void damage(const std::filesystem::path& session_folder) {
+  std::fstream file(session_folder / "session.sqlite", std::ios::in | std::ios::out | std::ios::binary);
+  constexpr int kPage = 4096;
+  for (int page = 2;; ++page) {  // after the first, which holds the tables' names
+    file.seekg(0, std::ios::end);
+    if (page * kPage >= file.tellg()) return;
+    file.seekp(page * kPage);
+    file.write(std::string(kPage, '\x5a').data(), kPage);
+  }
+}
+
+// What is whole of a damaged record is told, and what is missing; nothing is made of what is not there.
+TEST_F(Report, ADamagedRecordIsToldAsFarAsItIsWhole) {
+  const auto session_folder = cases::create_session_folder(knee_folder());
+  record(session_folder, "");
+  const auto planned = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  operation::write_achieved_file(
+      session_folder / "achieved.json",
+      {.planned = planned, .measured = planned, .depth_mm = 30, .pose_count = 42, .truth = {}});
+  damage(session_folder);
+  const auto json_file = pdf().parent_path() / "report.json";
+  const std::vector<std::string> doubts = write(json_file);
+  const auto json = nlohmann::json::parse(files::read_text(json_file));
+  EXPECT_EQ(json.at("achieved").size(), 1U);
+  EXPECT_TRUE(json.at("unreadable_sessions").empty());
+  ASSERT_EQ(json.at("damaged_sessions").size(), 1U);
+  EXPECT_EQ(json.at("damaged_sessions").at(0).at("id"), session_folder.filename().string());
+  EXPECT_TRUE(json.at("session").at("was_finished").is_null());
+  EXPECT_TRUE(json.at("session").at("registration").is_null());
+  for (const char* const row : {"Verification", "Time-out", "Alarms, void registrations"})
+    EXPECT_EQ(json.at("session").at("safety").at(row), "NOT KNOWN: the record is damaged") << row;
+  ASSERT_FALSE(doubts.empty());
+  expect_contains(doubts.front(), "is damaged and only in it as far as it is whole: ");
+  write(pdf());
+  expect_contains(pdf_text(), "DAMAGED, and in this report only as far as it is whole: ");
+}
+
+// One that is not the session that is told of may have said that a tunnel was drilled: that is not silent.
+TEST_F(Report, ADamagedSessionBesideTheOneThatIsToldOfIsNamed) {
+  const auto earlier = cases::create_session_folder(knee_folder());
+  record(earlier, "");
+  damage(earlier);
+  const auto newer = cases::create_session_folder(knee_folder());
+  record(newer, "");
+  const auto planned = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  operation::write_achieved_file(
+      newer / "achieved.json",
+      {.planned = planned, .measured = planned, .depth_mm = 30, .pose_count = 42, .truth = {}});
+  const auto json_file = pdf().parent_path() / "report.json";
+  const std::vector<std::string> doubts = write(json_file);
+  ASSERT_EQ(doubts.size(), 1U);
+  expect_contains(doubts.front(), earlier.filename().string() + " cannot be read and is not in it");
+}
+
+// Where there is no other one it is told of without a tunnel, too.
+TEST_F(Report, ADamagedSessionIsBetterThanNone) {
+  const auto session_folder = cases::create_session_folder(knee_folder());
+  record(session_folder, "");
+  damage(session_folder);
+  const auto json_file = pdf().parent_path() / "report.json";
+  write(json_file);
+  const auto json = nlohmann::json::parse(files::read_text(json_file));
+  EXPECT_TRUE(json.at("unreadable_sessions").empty());
+  EXPECT_EQ(json.at("damaged_sessions").size(), 1U);
+  EXPECT_EQ(json.at("session").at("bone"), "femur");
+}
+
+// A newer version's record may hold anything: it is named, with the reason, and nothing is told of it.
+TEST_F(Report, ASessionOfANewerVersionIsNamed) {
+  const auto session_folder = cases::create_session_folder(knee_folder());
+  record(session_folder, "");
+  auto header = nlohmann::json::parse(files::read_text(session_folder / "session.json"));
+  header["version"] = 99;
+  std::ofstream(session_folder / "session.json") << header;
+  const std::vector<std::string> doubts = write(pdf());
+  ASSERT_FALSE(doubts.empty());
+  expect_contains(doubts.front(), "version: is 99, newer than this program reads");
+  expect_contains(pdf_text(), "NOT READABLE, and not in this report: the session ");
+}
+
 }  // namespace
 }  // namespace arthronaut::report

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "planning/cases/case.h"
+#include "planning/cases/identity.h"
 #include "planning/files/atomic_file.h"
 #include "planning/pacs/query.h"
 #include "planning/pacs/web.h"
@@ -219,6 +220,20 @@ TEST_F(PacsWindow, SaysThatWhatWouldBeSentIsOfAnotherCase) {
   ASSERT_TRUE(app.wait_for_state("pacs_light", "good"));
   app.press("r");
   ASSERT_TRUE(app.wait_for_state("pacs_sends", "another case"));
+}
+
+// Whose images after the operation are looked for is known.
+TEST_F(PacsWindow, AsksForThePatientOfTheCase) {
+  write_peers("ORTHANC@127.0.0.1:1");
+  save_knee();
+  cases::save_identity(folder_ / "Knee.arthro", {"Muster^Anna", "4711", "19900131"});
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {(folder_ / "Knee.arthro").string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F5");
+  ASSERT_TRUE(app.wait_for_state("case_selected", "Knee of a test"));
+  app.press("p");
+  EXPECT_TRUE(app.wait_for_state("pacs_patient", "4711"));
 }
 
 }  // namespace

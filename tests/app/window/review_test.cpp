@@ -333,6 +333,29 @@ TEST_F(ReviewWindow, WritesTheReport) {
   EXPECT_EQ(app.wait_for_exit(30), 0);
 }
 
+// Six sessions are in sight together, and each is chosen where it stands.
+TEST_F(ReviewWindow, ShowsSixSessionsAndTakesTheOneThatIsPressed) {
+  std::vector<std::string> names{session_.filename().string()};
+  for (int i = 0; i < 5; ++i) {
+    const auto copy = cases::create_session_folder(case_folder_);
+    std::filesystem::copy(
+        session_, copy,
+        std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
+    names.push_back(copy.filename().string());
+  }
+  const VirtualDisplay display(1920, 1080);
+  RunningWorkstation app(display, folder_.path(), {case_folder_.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F3");
+  ASSERT_TRUE(app.wait_for_state("session", names.back()));
+  for (const std::string& name : names)
+    ASSERT_TRUE(app.wait_for_widget("review.session." + name)) << name << " is out of sight";
+  for (const std::string& name : names) {
+    app.click("review.session." + name);
+    EXPECT_TRUE(app.wait_for_state("session", name)) << name;
+  }
+}
+
 // What each session was stands in the list: how long, how far, and that nobody registered.
 TEST_F(ReviewWindow, SaysWhatEachSessionWas) {
   const VirtualDisplay display(1280, 720);

@@ -8,9 +8,11 @@
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_lock.h"
+#include "planning/cases/identity.h"
 #include "planning/images/volume_writer.h"
 #include "planning/phantom/phantom_case.h"
 #include "tests/app/window/display.h"
+#include "tests/planning/images/dicom_series_form.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::test {
@@ -221,6 +223,24 @@ TEST_F(StartWindow, TheVolumeThatIsGoneToIsTaken) {
   app.press("space");  // it is taken, and stays so
   app.press(app.state("selected") == "0" ? "Down" : "Up");
   EXPECT_EQ(taken_beside(second), first);
+}
+
+// Images of a patient whose case has a plan: one key opens that case, and compares them with its plan.
+TEST_F(StartWindow, ImagesOfAPatientWithAPlanAreComparedWithIt) {
+  const std::filesystem::path hers = folder_ / "arthronaut/cases/hers.arthro";
+  cases::save_case(hers, knee());
+  cases::save_identity(hers, {"Muster^Anna", "4711", "19900131"});
+  write_dicom_series(folder_ / "after", ellipsoid_ct());
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {(folder_ / "after").string()});
+  ASSERT_TRUE(app.wait_for_state("import", "choosing", 120));
+  ASSERT_TRUE(app.wait_for_state("planned_case", "hers.arthro"));
+  ASSERT_TRUE(app.wait_for_widget("start.compare"));
+  app.press("a");
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  ASSERT_TRUE(app.wait_for_state("mode", "review"));
+  EXPECT_TRUE(app.wait_for_state("review_page", "achieved"));
+  EXPECT_NE(app.state("postop"), "none");
 }
 
 // A femur in metres whose name says nothing: F says what it is, M its unit, and the bones are made.

@@ -31,4 +31,13 @@ TEST(SamePatient, NamesAreTheSameHoweverAScannerWritesThem) {
     EXPECT_TRUE(is_another_patient(joerg, Identity{name, "", "19500101"})) << name;
 }
 
+// That somebody has no number, or another birthday, is no reason to take him for a patient of that number.
+TEST(SamePatient, IsOnlyWhoseNumberBothSay) {
+  const Identity anna{"Muster^Anna", "4711", "19900131"};
+  EXPECT_TRUE(is_same_patient(anna, {"MUSTER^ANNA", "4711 ", ""}));
+  EXPECT_FALSE(is_same_patient(anna, {"Muster^Anna", "", "19900131"}));
+  EXPECT_FALSE(is_same_patient(anna, {"Muster^Anna", "4711", "19500101"}));
+  EXPECT_FALSE(is_same_patient({}, {}));
+}
+
 }  // namespace arthronaut::cases
