@@ -42,13 +42,17 @@ void Context::say(const std::string& line) const {
   if (!quiet) std::cout << line << '\n' << std::flush;
 }
 
-void Context::say_unreliable(const std::string& what, const std::vector<std::string>& reasons) {
-  std::cerr << "arthronaut: " << what << " is not reliable\n";
-  log::warning(what + " is not reliable");
+void Context::say_amiss(const std::string& what, const std::vector<std::string>& reasons) const {
+  std::cerr << "arthronaut: " << what << '\n';
+  log::warning(what);
   for (const auto& reason : reasons) {
     std::cerr << "  - " << reason << '\n';
     log::warning("- " + reason);
   }
+}
+
+void Context::say_unreliable(const std::string& what, const std::vector<std::string>& reasons) {
+  say_amiss(what + " is not reliable", reasons);
   exit_code = kUnreliable;
 }
 

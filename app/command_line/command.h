@@ -41,6 +41,8 @@ struct Context {
   // A line for the user on standard output unless --quiet, and for the log. Results asked for with "-o -" are
   // not sent through here.
   void say(const std::string& line) const;
+  // What is amiss with what was done as asked, on standard error and in the log; the exit code stays.
+  void say_amiss(const std::string& what, const std::vector<std::string>& reasons) const;
   // The reasons of an unreliable result, on standard error and in the log, and exit code 4.
   void say_unreliable(const std::string& what, const std::vector<std::string>& reasons);
 };

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "app/command_line/after_operation.h"
 #include "app/command_line/command.h"
@@ -57,9 +58,11 @@ void import(Context& context, const ImportArguments& arguments) {
   if (!lock.notice().empty()) context.say(lock.notice() + ".");
   importing::refuse_folder(folder);
   importing::refuse_missing_side(folder, arguments.source, options_of(arguments));
+  importing::BoneImportOptions options = options_of(arguments);
+  options.needs_side = !fs::exists(folder / "case.json");
   const Interruption interruption;  // over the writing as well, which takes no time
   importing::ImportProcess process({.source = arguments.source,
-                                    .options = options_of(arguments),
+                                    .options = std::move(options),
                                     .memory_limit_gib = arguments.memory_limit_gib});
   watch(process, interruption);
   if (interruption.caught() != 0) {

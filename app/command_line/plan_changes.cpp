@@ -91,10 +91,11 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee
   if (by_shape.surface) input.proposal = &by_shape.proposal;
   const norms::Bundle bundle = norms::bundle_from_text(arguments.type);
   input.beside = default_plan::beside({kind, bundle}, knee.plan.tunnels);
-  const auto planned =
+  auto planned =
       default_plan::plan_bone(input, knee.side, {.bundle = bundle, .diameter_mm = diameter_mm_of(arguments)});
   if (!planned.is_usable())
     throw InvalidInput(arguments.case_folder, "", "has no default plan: " + planned.message);
+  if (arguments.within_spread) planned = default_plan::moved_to_passing(std::move(planned));
   verdict = {.is_reliable = planned.doubts.empty(),
              .reasons = planned.doubts,
              .source = planned.source,

@@ -19,7 +19,7 @@ struct PlanArguments {
   Eigen::Vector3d entry_mm = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
   double diameter_mm = 9.0;
   std::string type = "single", export_folder, markups;
-  bool at_footprint = false, by_default = false, as_json = false, removes = false;
+  bool at_footprint = false, by_default = false, within_spread = false, as_json = false, removes = false;
   // Whether the user said so.
   bool names_direction = false, names_type = false, names_diameter = false;
   VersionArguments versions;

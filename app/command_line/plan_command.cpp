@@ -158,7 +158,12 @@ void run_plan(PlanArguments& arguments, Context& context) {
     export_to(arguments, context, changed.knee,
               plan_review::verdict_of_plan(shown, plan_review::checks_of_plan(review), doubts).wrong,
               side_doubt);
-  if (!verdict.is_reliable) context.say_unreliable("The default plan", verdict.reasons);
+  if (!verdict.is_reliable) return context.say_unreliable("The default plan", verdict.reasons);
+  std::vector<std::string> wrong;
+  for (const tunnels::TunnelKey& key : asked_for(arguments, shown.plan))
+    for (const std::string& one : tunnels::wrong_in_words(review.checks(key)))
+      wrong.push_back("the " + tunnels::name_of(key) + "'s tunnel: " + one);
+  if (!wrong.empty()) context.say_amiss("The plan is wrong as it is, and kept as asked", wrong);
 }
 
 }  // namespace
@@ -195,6 +200,11 @@ void add_plan_command(CLI::App& app, Context& context) {
           ->excludes(entry)
           ->excludes(direction)
           ->excludes(footprint);
+  sub->add_flag(
+         "--within-spread", arguments->within_spread,
+         "Where a check fails at the norm's place: enter at the nearest place within the norm's spread "
+         "that passes every check, and say how far off that is")
+      ->needs(by_default);
   auto* type =
       sub->add_option("--type", arguments->type,
                       "Which tunnel of the bone: single, or am and pl of two bundles; one of two takes "

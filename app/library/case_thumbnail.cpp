@@ -3,6 +3,7 @@
 #include "app/scene/plan_picture.h"
 #include "app/scene/scene_content.h"
 #include "planning/files/private_folder.h"
+#include "planning/plan_review/proposed_landmarks.h"
 
 namespace arthronaut::workstation_library {
 
@@ -20,6 +21,8 @@ ThumbnailCase load_for_thumbnail(const fs::path& case_folder) {
   loaded.verdict = judge_plan(loaded.knee, cases::load_bone_doubts(case_folder));
   cases::Case& knee = loaded.knee;
   for (auto& [kind, bone] : knee.bones) bone.mesh = *scene::simplified(bone.mesh, kTriangles);
+  // Seen from the front and upright, whichever way the axes of its file lie.
+  (void)plan_review::propose_landmarks(knee, plan_review::Proposing::WithoutGrid);
   return loaded;
 }
 

@@ -52,7 +52,19 @@ void PlanView::take_defaults(std::vector<MadeTunnel> made, const std::string& wh
            tunnels::wrong_in_words(one.checks).empty();
   });
   state_.hint = {default_in_words(made, took_the_place), is_as_it_should_be, model_->revision()};
+  state_.made = std::move(made);
   show_page(PanelPage::Checks);
+}
+
+std::vector<MadeTunnel> PlanView::moved_defaults() const {
+  std::vector<MadeTunnel> moved;
+  for (const MadeTunnel& one : state_.made) {
+    const auto now = model_->tunnel(one.key);
+    if (one.made.passing_entry_mm && now && now->entry_mm == one.made.tunnel.entry_mm &&
+        now->direction == one.made.tunnel.direction && now->diameter_mm == one.made.tunnel.diameter_mm)
+      moved.push_back({.key = one.key, .made = default_plan::moved_to_passing(one.made)});
+  }
+  return moved;
 }
 
 bool PlanView::can_make_defaults() const {
@@ -75,6 +87,20 @@ void PlanView::add_default_actions(widgets::Actions& actions) {
                    take_defaults(std::move(made), "Make the default plan");
                  });
                }});
+  actions.add(
+      {"plan.within_spread",
+       "Enter where it passes",
+       "Tunnels of the default plan that fail a check: entered at the nearest place within the norm's "
+       "spread from which they pass every check",
+       GLFW_KEY_N,
+       GLFW_MOD_SHIFT,
+       false,
+       [this] { return can_make_defaults() && !moved_defaults().empty(); },
+       {},
+       [this] {
+         history_.settle_now();
+         take_defaults(moved_defaults(), "Enter within the norm's spread");
+       }});
 }
 
 }  // namespace arthronaut::plan

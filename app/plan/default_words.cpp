@@ -21,6 +21,7 @@ std::string default_in_words(const std::vector<MadeTunnel>& made, bool took_the_
     for (const tunnels::PlanCheck& check : one.made.failed)
       if (check.verdict == tunnels::PlanCheck::Verdict::Look)
         words += " No aim from there passes it: " + check.name + ": " + check.text + ".";
+    if (one.made.passing_entry_mm) words += " Shift+N enters there instead.";
     words += "\n";
   }
   if (std::ranges::any_of(

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 
 #include "app/plan/edge_words.h"
 #include "app/plan/roof_line.h"
@@ -86,7 +87,8 @@ void LateralView::draw(const widgets::Ui& ui, const widgets::Rect& area, const S
                 area.max());
   if (bone == BoneKind::Femur) draw_femoral_grid(ui, area);
   std::string text = caption_of(*model_, bone) + draw_tunnels(ui, area, bone);
-  if (bone == BoneKind::Tibia) draw_tibial_line(ui, area);  // its numbers over the tunnels
+  std::vector<ImVec4> marks;
+  if (bone == BoneKind::Tibia) marks = draw_tibial_line(ui, area);  // its numbers over the tunnels
   if (model_->surroundings(bone).quadrant) text += "\n" + roof_line_in_words(*model_);
   if (const auto doubt = plan_review::landmark_doubt(model_->landmark_check(bone)))
     text += "\nLook: " + *doubt;
@@ -96,8 +98,9 @@ void LateralView::draw(const widgets::Ui& ui, const widgets::Rect& area, const S
   const float beside = ui.theme.px(28), size_pt = ui.theme.strong->FontSize;
   below.cut_top(ui.theme.strong->CalcTextSizeA(size_pt, 1e9F, area.width - beside, text.c_str()).y +
                 ui.theme.px(18));
-  draw_edge_words(ui, below, edge_words(plane_.right, -plane_.down, model_->axes(bone)),
-                  entries_on_screen(area, bone));
+  std::vector<ImVec4> taken = entries_on_screen(area, bone);
+  std::ranges::copy(marks, std::back_inserter(taken));
+  draw_edge_words(ui, below, edge_words(plane_.right, -plane_.down, model_->axes(bone)), taken);
   widgets::caption(ui, area, widgets::kText, text);
   draw.PopClipRect();
   ui.log.note("plan.lateral_view", area.min(), area.max());
@@ -157,9 +160,10 @@ void LateralView::draw_femoral_grid(const widgets::Ui& ui, const widgets::Rect& 
                {deep.x < shallow.x ? shallow.x + gap : shallow.x - gap - wide, shallow.y}, grid, kLine);
 }
 
-void LateralView::draw_tibial_line(const widgets::Ui& ui, const widgets::Rect& area) const {
+std::vector<ImVec4> LateralView::draw_tibial_line(const widgets::Ui& ui, const widgets::Rect& area) const {
+  std::vector<ImVec4> marks;
   const auto& plateau = model_->surroundings(BoneKind::Tibia).plateau;
-  if (!plateau) return;
+  if (!plateau) return marks;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImU32 grid = widgets::color_of(scene::kGridColor), norm = widgets::color_of(scene::kNormColor);
   const auto along = [&](double percent) { return at(area, plateau->point_at({percent, 50})); };
@@ -177,6 +181,7 @@ void LateralView::draw_tibial_line(const widgets::Ui& ui, const widgets::Rect& a
     draw.AddRectFilled({corner.x - pad, corner.y}, {corner.x + wide + pad, corner.y + font},
                        IM_COL32(12, 16, 20, 170), pad);
     draw.AddText(ui.theme.body, font, corner, grid, words.c_str());
+    marks.emplace_back(corner.x - pad, on.y - tick, corner.x + wide + pad, corner.y + font);
   }
   // The ellipse edge-on: as far as the norm reaches along the line.
   for (const scene::NormEllipse& of : norms_of(*model_, BoneKind::Tibia, *plateau)) {
@@ -186,6 +191,7 @@ void LateralView::draw_tibial_line(const widgets::Ui& ui, const widgets::Rect& a
     const auto [least, most] = std::ranges::minmax(of.outline_mm, {}, percent_of);
     draw.AddLine(along(percent_of(least)), along(percent_of(most)), norm, ui.theme.px(6));
   }
+  return marks;
 }
 
 void LateralView::draw_landmarks(const widgets::Ui& ui, const widgets::Rect& area, const Shown& shown) const {

@@ -27,7 +27,8 @@ class LateralView {
  private:
   [[nodiscard]] ImVec2 at(const widgets::Rect& area, const Eigen::Vector3d& point_mm) const;
   void draw_femoral_grid(const widgets::Ui& ui, const widgets::Rect& area) const;
-  void draw_tibial_line(const widgets::Ui& ui, const widgets::Rect& area) const;
+  // Returns where its numbers stand, as corners: no other word is put there.
+  std::vector<ImVec4> draw_tibial_line(const widgets::Ui& ui, const widgets::Rect& area) const;
   void draw_landmarks(const widgets::Ui& ui, const widgets::Rect& area, const Shown& shown) const;
   // The circles of the tunnels' entries, as corners.
   [[nodiscard]] std::vector<ImVec4> entries_on_screen(const widgets::Rect& area, bones::BoneKind bone) const;

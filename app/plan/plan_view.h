@@ -136,6 +136,8 @@ class PlanView : public mode::Mode {
   void follow_defaults();
   // Those that there are become the plan, as one step; of all of them it is said how they are.
   void take_defaults(std::vector<MadeTunnel> made, const std::string& what);
+  // Those of the last default plan that are still as they were made, entered where they pass.
+  [[nodiscard]] std::vector<MadeTunnel> moved_defaults() const;
 
   // Where else the tunnel could begin, and from where it can be drilled: survey_view.cpp.
   void add_survey_actions(widgets::Actions& actions);
@@ -226,6 +228,7 @@ class PlanView : public mode::Mode {
     // As the tour compares the plan with it, and the landmarks that it follows from.
     std::map<bones::BoneKind, tunnels::Tunnel> defaults = {};
     std::map<bones::BoneKind, landmarks::Landmarks> defaults_of = {};  // of the whole case
+    std::vector<MadeTunnel> made = {};  // the last default plan, as it was taken
   };
 
   struct TunnelMesh {

@@ -46,9 +46,22 @@ std::string capital(std::string words) {
   return words;
 }
 
-void draw_picture(ImDrawList& draw, const widgets::VideoTexture* picture, const widgets::Rect& place) {
+const char* why_no_picture(const CaseRecord& record, const CasePictures& pictures) {
+  return record.is_there && record.problem.empty() && pictures.is_coming(record.folder) ? "Being drawn\u2026"
+                                                                                        : "No picture";
+}
+
+// why_none: what stands in its place, as far as there is room.
+void draw_picture(const widgets::Ui& ui, const widgets::VideoTexture* picture, const widgets::Rect& place,
+                  const char* why_none) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(place.min(), place.max(), IM_COL32(14, 17, 21, 255));
-  if (picture == nullptr || picture->texture() == 0) return;
+  if (picture == nullptr || picture->texture() == 0) {
+    ImFont* const font = ui.theme.body;
+    const bool is_narrow = font->CalcTextSizeA(font->FontSize, 1e9F, 0, why_none).x > place.width;
+    widgets::text_centered(ui, place, font, widgets::kQuietText, is_narrow ? "\u2026" : why_none);
+    return;
+  }
   const widgets::Rect into =
       widgets::fitted(place, static_cast<float>(picture->width()) / static_cast<float>(picture->height()));
   draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture->texture())), into.min(),
@@ -251,8 +264,9 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float picture = ui.theme.px(105), x = at.x + picture + ui.theme.px(27);
   const widgets::Rect place{at.x + ui.theme.px(6), at.y + ui.theme.px(6), picture, ui.theme.px(84)};
-  draw_picture(draw, record.is_there && record.problem.empty() ? pictures_.of(record.folder) : nullptr,
-               place);
+  const bool has_picture = record.is_there && record.problem.empty();
+  draw_picture(ui, has_picture ? pictures_.of(record.folder) : nullptr, place,
+               why_no_picture(record, pictures_));
   const float right = ui.theme.px(170), wide = at.x + width - x - right;
   // A long name is cut, never the side: a wrong side is a wrong operation.
   ImFont* const font = ui.theme.strong;
@@ -299,8 +313,9 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x;
   const widgets::Rect place{at.x, at.y, width, ui.theme.px(200)};
-  draw_picture(*ImGui::GetWindowDrawList(),
-               record->is_there && record->problem.empty() ? pictures_.of(record->folder) : nullptr, place);
+  const bool has_picture = record->is_there && record->problem.empty();
+  draw_picture(ui, has_picture ? pictures_.of(record->folder) : nullptr, place,
+               why_no_picture(*record, pictures_));
   ImGui::Dummy({width, place.height});
   const TunnelVerdict* const verdict = pictures_.verdict_of(record->folder);
   const Severity severity = severity_of(*record, verdict);

@@ -258,11 +258,16 @@ std::optional<Vector3d> nearest_that_passes(const Site& site, const Tunnel& at_n
   return std::nullopt;
 }
 
-// "0.9 mm lateral, 0.4 mm anterior"
-std::string way_in_words(const Vector3d& way_mm, const landmarks::AnatomicalAxes& axes) {
-  const double lateral = way_mm.dot(axes.lateral), anterior = way_mm.dot(axes.anterior);
-  return files::format("%.1f mm %s, %.1f mm %s", std::abs(lateral), lateral > 0 ? "lateral" : "medial",
-                       std::abs(anterior), anterior > 0 ? "anterior" : "posterior");
+// On the plateau "0.9 mm lateral, 0.4 mm anterior"; on the wall of the notch "0.9 mm proximal, ...".
+std::string way_in_words(const Vector3d& way_mm, bones::BoneKind bone,
+                         const landmarks::AnatomicalAxes& axes) {
+  const double lateral = way_mm.dot(axes.lateral), proximal = way_mm.dot(axes.proximal),
+               anterior = way_mm.dot(axes.anterior);
+  const std::string first =
+      bone == bones::BoneKind::Tibia
+          ? files::format("%.1f mm %s", std::abs(lateral), lateral > 0 ? "lateral" : "medial")
+          : files::format("%.1f mm %s", std::abs(proximal), proximal > 0 ? "proximal" : "distal");
+  return first + files::format(", %.1f mm %s", std::abs(anterior), anterior > 0 ? "anterior" : "posterior");
 }
 
 // Which way the surgeon would move, and why: at a tibia's mouth the thin place is mostly a flank of the
@@ -276,13 +281,13 @@ std::string thin_place_in_words(const Tunnel& tunnel, const std::vector<tunnels:
   const bool is_on_ridge = *wall->value < -tunnel.diameter_mm / 4;   // the edge is nearer than half a radius
   return (is_on_ridge ? "; there it stands on a ridge narrower than the tunnel, and the bone falls away "
                       : "; there the bone beside it is thinnest ") +
-         way_in_words(way_mm, axes) + " of the entry";
+         way_in_words(way_mm, tunnel.bone, axes) + " of the entry";
 }
 
 // The entry itself stays: which places pass changes with what of the shaft another scan shows, by whose axis
 // the tunnel is aimed, and a default that follows them leaps by 1 to 2 mm (CT 051).
 void look_around(const Site& site, const Tunnel& at_norm, DefaultTunnel& result) {
-  if (at_norm.bone != bones::BoneKind::Tibia || result.failed.empty()) return;
+  if (result.failed.empty()) return;
   result.place += thin_place_in_words(at_norm, result.failed, site.joint.axes);
   result.passing_entry_mm = nearest_that_passes(site, at_norm);
   if (!result.passing_entry_mm) {
@@ -293,7 +298,7 @@ void look_around(const Site& site, const Tunnel& at_norm, DefaultTunnel& result)
   result.place += files::format(
       "; with this aim a tunnel %.1f mm from that entry (%s), still within the norm's spread, passes every "
       "check%s",
-      way_mm.norm(), way_in_words(way_mm, site.joint.axes).c_str(),
+      way_mm.norm(), way_in_words(way_mm, at_norm.bone, site.joint.axes).c_str(),
       site.fails_by_diameter(at_norm) ? " but that of its diameter, which was asked for" : "");
 }
 

@@ -78,14 +78,20 @@ struct DefaultTunnel {
   // Not that of its diameter, which was asked for: the plan's own checks say that. With them "Exit", not
   // checked, where every one leaves unseen.
   std::vector<tunnels::PlanCheck> failed;
-  // A tibia's single tunnel of which some fail: the entry nearest to the norm's place and within its spread
-  // from which one of the same aim passes them all. `place` says where it lies. The surgeon may move there.
+  // Of a single tunnel of which some fail: the entry nearest to the norm's place and within its spread from
+  // which one of the same aim passes them all. `place` says where it lies. The surgeon may move there
+  // (moved_to_passing).
   std::optional<Eigen::Vector3d> passing_entry_mm;
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Planned; }
 };
 
 // One bone. Throws InvalidInput for options out of range alone.
 [[nodiscard]] DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options& options = {});
+
+// Entered where every check passes instead of at the norm's place; `place` says how far off that it is and
+// what failed there. As it was where nothing within the norm's spread passes, or nothing failed. Which place
+// passes may differ by 1 to 2 mm between two scans of a bone, so nobody is moved there unasked.
+[[nodiscard]] DefaultTunnel moved_to_passing(DefaultTunnel made);
 
 // What to keep clear of: the tunnel of the other bundle in that bone. Null for the whole ligament's, and
 // where there is none.

@@ -48,10 +48,32 @@ struct Surface::Tree {
                                               TrianglePart part = TrianglePart::Face) const {
     return normals->at(static_cast<std::int32_t>(triangle), part);
   }
+  // Whether a line passes a triangle so far beside it that no rounding matters: it then has two of its edges
+  // on different sides. Most triangles near a ray are passed, and the exact predicates cost twenty times as
+  // much.
+  [[nodiscard]] bool passes(std::int32_t triangle, const Eigen::Vector3d& origin,
+                            const Eigen::Vector3d& unit) const {
+    constexpr double kRounding = 1e-11;  // of an area between places as far off as these
+    const auto& corners = merged.triangles[static_cast<std::size_t>(triangle)];
+    std::array<Eigen::Vector3d, 3> from_origin;
+    double furthest = origin.cwiseAbs().maxCoeff();
+    for (std::size_t k = 0; k < 3; ++k) {
+      from_origin[k] = merged.vertices_mm[static_cast<std::size_t>(corners[k])] - origin;
+      furthest = std::max(furthest, from_origin[k].cwiseAbs().maxCoeff());
+    }
+    double least = 0, greatest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double side = unit.dot(from_origin[k].cross(from_origin[(k + 1) % 3]));
+      least = std::min(least, side), greatest = std::max(greatest, side);
+    }
+    const double rounding = kRounding * furthest * furthest;
+    return least < -rounding && greatest > rounding;
+  }
   // Where the ray crosses a triangle, by exact predicates. One that runs within the triangle's plane meets it
   // in a segment: it neither enters nor leaves there.
   [[nodiscard]] std::optional<RayHit> hit(std::int32_t triangle, const Kernel::Ray_3& ray,
                                           const Eigen::Vector3d& origin, const Eigen::Vector3d& unit) const {
+    if (passes(triangle, origin, unit)) return std::nullopt;
     const auto t = static_cast<std::size_t>(triangle);
     const auto at = [&](std::size_t k) {
       return to_cgal(merged.vertices_mm[static_cast<std::size_t>(merged.triangles[t][k])]);
@@ -160,19 +182,19 @@ void Surface::triangles_near(const Eigen::Vector3d& from_mm, const Eigen::Vector
   tree_->boxes->near_segment(from_mm, to_mm, radius_mm, found);
 }
 
-std::optional<RayHit> Surface::first_hit(const Eigen::Vector3d& origin_mm,
-                                         const Eigen::Vector3d& direction) const {
+std::optional<RayHit> Surface::first_hit(const Eigen::Vector3d& origin_mm, const Eigen::Vector3d& direction,
+                                         double within_mm) const {
   constexpr double kFirstReach_mm = 16;
   const Eigen::Vector3d unit = direction.normalized();
   const Kernel::Ray_3 ray = ray_of(origin_mm, unit);
-  const double furthest_mm = tree_->furthest_mm(origin_mm);
+  const double furthest_mm = std::min(within_mm, tree_->furthest_mm(origin_mm));
   // What lies behind the first hit is not asked: the ray is followed in longer and longer stretches until one
   // holds a hit.
   // A drill's exit is looked for in every frame: kept for the next one.
   thread_local std::vector<std::int32_t> near;
   std::optional<RayHit> first;
-  for (double reach_mm = kFirstReach_mm, before_mm = 0; before_mm < furthest_mm;
-       before_mm = reach_mm, reach_mm *= 2) {
+  for (double reach_mm = std::min(kFirstReach_mm, furthest_mm), before_mm = 0; before_mm < furthest_mm;
+       before_mm = reach_mm, reach_mm = std::min(2 * reach_mm, furthest_mm)) {
     near.clear();
     tree_->boxes->near_segment(origin_mm + before_mm * unit, origin_mm + reach_mm * unit, kRounding_mm, near);
     for (const std::int32_t t : near) {
@@ -181,6 +203,7 @@ std::optional<RayHit> Surface::first_hit(const Eigen::Vector3d& origin_mm,
     }
     if (first && first->distance_mm < reach_mm - kRounding_mm) return first;
   }
+  if (first && first->distance_mm > within_mm) return std::nullopt;
   return first;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -35,9 +36,10 @@ class Surface {
   [[nodiscard]] double signed_distance_mm(const Eigen::Vector3d& query_mm) const;
   // direction need not be unit. Hits in order of distance, the origin's own triangle included when it
   // touches. A ray through an edge or a vertex crosses the surface once there, not once a triangle. The first
-  // costs less than all: what lies behind it is not looked at.
-  [[nodiscard]] std::optional<RayHit> first_hit(const Eigen::Vector3d& origin_mm,
-                                                const Eigen::Vector3d& direction) const;
+  // costs less than all: what lies behind it is not looked at, nor what lies further off than within_mm.
+  [[nodiscard]] std::optional<RayHit> first_hit(
+      const Eigen::Vector3d& origin_mm, const Eigen::Vector3d& direction,
+      double within_mm = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] std::vector<RayHit> all_hits(const Eigen::Vector3d& origin_mm,
                                              const Eigen::Vector3d& direction) const;
 

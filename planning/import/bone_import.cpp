@@ -213,7 +213,9 @@ void import_labels(const Volume& volume, const std::map<BoneKind, int>& labels,
   if (result.bones.empty()) throw InvalidInput("--label does not name the bone of --bone");
 }
 
-void import_ct(const Volume& volume, const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
+// Returns why the fibula does not tell the side; empty where it does.
+std::string import_ct(const Volume& volume, const BoneImportOptions& options, BoneImport& result,
+                      const Tell& tell) {
   segmentation::CtBonesOptions ct;
   ct.threshold = options.threshold;
   ct.only = options.kind;
@@ -236,6 +238,7 @@ void import_ct(const Volume& volume, const BoneImportOptions& options, BoneImpor
     result.lines.push_back("the fibula says that it is a " + std::string(bones::to_text(*result.side)) +
                            " knee");
   }
+  return found.why_no_fibula;
 }
 
 void import_volume(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result,
@@ -260,6 +263,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   result.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
   const bool has_labels = is_label_map(volume);
   bool is_ct = false;
+  std::string of_fibula;
   try {
     if (options.images_only) {
       if (has_labels) throw InvalidInput("is a label map: there is no image to paint in");
@@ -283,8 +287,10 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
     } else {
       refuse_without_threshold(volume, source, options);
       is_ct = true;
-      import_ct(volume, options, result, tell);
+      of_fibula = import_ct(volume, options, result, tell);
     }
+    if (options.needs_side && !options.images_only && !result.side && !shapes_may_tell(result))
+      throw InvalidInput(why_no_side(result, of_fibula));
   } catch (const segmentation::ShowsBothKnees& error) {
     throw refusal(source, error.what(), {.reason = FailureReason::ShowsBothKnees});
   } catch (const InvalidInput& error) {
@@ -302,6 +308,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
                                .volume = encoded(volume)};
   tell({ImportStage::LookingAtBones});
   check_shapes(result, result.side_by_fibula.has_value());
+  if (!result.side) result.why_no_side = why_no_side(result, of_fibula);
   check_holes(result);
   if (is_ct && !options.kind && result.bones.size() == 1)
     result.bones.front().doubts.push_back(

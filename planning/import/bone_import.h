@@ -39,6 +39,9 @@ struct BoneImportOptions {
   // Label maps: the CT that they were painted in, in the same grid. The surfaces then lie at its edges,
   // between the voxels. Of any other modality it is not used.
   std::filesystem::path edges_in = {};
+  // It is of no use without a side: refused as soon as nothing can tell one any more, before the work that is
+  // left.
+  bool needs_side = false;
   // Volumes: what reading may take, as images::VolumeFileOptions has it.
   std::size_t most_bytes = std::size_t{2} << 30;
 };
@@ -86,7 +89,9 @@ struct BoneImport {
   // What each of these says, whatever told the side: another side is a doubt of the bones.
   std::optional<bones::Side> side_by_fibula;
   std::optional<bones::Side> side_in_images;  // as they are marked, or of both knees show it
-  std::vector<std::string> lines;             // about the source
+  // Without a side: what was asked for it, and why each does not tell it; what would. For a person.
+  std::string why_no_side;
+  std::vector<std::string> lines;  // about the source
   // Whose bones they are, where the source says so (DICOM does). For identity.json alone: nothing else of the
   // import names a person, nor a file or folder, whose name often is the patient's.
   cases::Identity identity;

@@ -49,6 +49,7 @@ cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, con
     return existing;
   }
   refuse_what_is_no_case(folder);
+  if (!import.side && !import.why_no_side.empty()) throw InvalidInput(source, "", import.why_no_side);
   if (!import.side) refuse_unknown_side(source);
   cases::Case created;
   // Not by the source's or the folder's name: it often is the patient's. The time tells two of a day apart.

@@ -112,6 +112,7 @@ void describe(Archive& archive, BoneImportOptions& options) {
   describe(archive, options.series);
   describe(archive, options.images_only);
   describe(archive, options.edges_in);
+  describe(archive, options.needs_side);
   describe(archive, options.most_bytes);
 }
 
@@ -191,6 +192,7 @@ void describe(Archive& archive, BoneImport& import) {
   describe(archive, import.side_source);
   describe(archive, import.side_by_fibula);
   describe(archive, import.side_in_images);
+  describe(archive, import.why_no_side);
   describe(archive, import.lines);
   describe(archive, import.identity.patient_name);
   describe(archive, import.identity.patient_id);

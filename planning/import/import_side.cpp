@@ -30,6 +30,26 @@ std::optional<bones::Side> side_by_shapes(const BoneImport& import) {
   return all;
 }
 
+bool shapes_may_tell(const BoneImport& import) {
+  return std::ranges::count_if(import.bones, [](const ImportedBone& bone) {
+           return bone.doubts.empty() && bone.filled_holes.empty();
+         }) >= 2;
+}
+
+std::string why_no_side(const BoneImport& import, const std::string& of_fibula) {
+  std::string words = "nothing tells which knee it is: ";
+  words += import.side_in_images ? "its name and the mark in its images say different sides"
+                                 : "its name does not say it, nor does a mark in images";
+  if (!of_fibula.empty()) words += "; " + of_fibula;
+  if (import.bones.size() < 2)
+    words += "; the shape of one bone alone does not tell it surely";
+  else if (judged_count(import) == 0 && !shapes_may_tell(import))
+    words += "; the shapes of the bones are in doubt themselves";
+  else
+    words += "; the shapes of femur and tibia do not tell it both alike";
+  return words + ". Look at the images or at the request for them, and add --side left or --side right";
+}
+
 std::string told_by(SideSource source) {
   switch (source) {
     case SideSource::None:

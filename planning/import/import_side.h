@@ -14,6 +14,13 @@ namespace arthronaut::importing {
 // a fibula tells the side none is).
 [[nodiscard]] std::optional<bones::Side> side_by_shapes(const BoneImport& import);
 
+// Whether side_by_shapes() may tell one once both bones' shapes are looked at: that of one bone alone is not
+// believed, nor that of a bone which is in doubt.
+[[nodiscard]] bool shapes_may_tell(const BoneImport& import);
+// BoneImport::why_no_side of an import without a side. of_fibula: why the fibula does not tell it; empty
+// where none was looked for.
+[[nodiscard]] std::string why_no_side(const BoneImport& import, const std::string& of_fibula);
+
 // "by the name of a segment"; empty where a person said it, or nothing did.
 [[nodiscard]] std::string told_by(SideSource source);
 // As the images are marked, where nobody said it. A name that says the other side is as good a witness:

@@ -379,13 +379,18 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
       if (wanted[i].first == BoneKind::Tibia) of_tibia = std::move(appendages[i]);
     const FibulaSide told = side_by_fibula(found.slender, of_tibia, chosen.tibia->profile);
     result.side_by_fibula = told.side;
-    for (CtBone& bone : result.bones) {
-      if (bone.kind != BoneKind::Tibia || told.side || of_tibia.stays) continue;
-      bone.notes.push_back(
-          told.is_contradicted
-              ? "what may be the fibula lies on both sides of it: it tells no side"
-              : "no fibula is seen apart from it: it lies outside of the images, or is a part of this bone");
-    }
+    if (!told.side)
+      result.why_no_fibula =
+          of_tibia.stays ? "the fibula could not be parted from the tibia"
+          : told.is_contradicted
+              ? "what may be the fibula lies on both sides of the tibia"
+              : "no fibula is seen apart from the tibia: it lies outside of the images, or "
+                "is a part of that bone";
+    for (CtBone& bone : result.bones)
+      if (bone.kind == BoneKind::Tibia && !told.side && !of_tibia.stays)
+        bone.notes.push_back(result.why_no_fibula);
+  } else {
+    result.why_no_fibula = "no tibia is seen, beside which a fibula would lie";
   }
   tell(options, 1);
   return result;

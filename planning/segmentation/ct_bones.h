@@ -41,6 +41,7 @@ struct CtBones {
   std::vector<std::string> notes;  // on the volume
   // Which side the fibula lies on: that is lateral. Unknown without one.
   std::optional<bones::Side> side_by_fibula;
+  std::string why_no_fibula;    // where that is unknown: "no fibula is seen apart from the tibia: ..."
   bool is_one_of_both = false;  // both knees are seen, and the one on the side that was asked for was taken
 };
 

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "planning/geometry/error.h"
+#include "planning/geometry/rigid_transform.h"
 #include "planning/graft/graft_course.h"
 #include "planning/tunnels/place_checks.h"
 
@@ -87,6 +89,46 @@ class Refined {
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles_;
 };
 
+// Of a mesh the largest piece whose triangles share corners, with its own corners alone.
+geometry::TriangleMesh largest_piece(const geometry::TriangleMesh& mesh) {
+  std::vector<std::int32_t> towards(mesh.vertices_mm.size());  // the corner that stands for its piece
+  std::iota(towards.begin(), towards.end(), 0);
+  const auto piece_of = [&](std::int32_t corner) {
+    while (towards[static_cast<std::size_t>(corner)] != corner) {
+      std::int32_t& next = towards[static_cast<std::size_t>(corner)];
+      next = towards[static_cast<std::size_t>(next)];
+      corner = next;
+    }
+    return corner;
+  };
+  for (const auto& [a, b, c] : mesh.triangles) {
+    towards[static_cast<std::size_t>(piece_of(a))] = piece_of(b);
+    towards[static_cast<std::size_t>(piece_of(b))] = piece_of(c);
+  }
+  struct Piece {
+    geometry::TriangleMesh mesh;
+    std::map<std::int32_t, std::int32_t> corner_of;
+  };
+  std::map<std::int32_t, Piece> pieces;
+  for (const auto& triangle : mesh.triangles) {
+    Piece& piece = pieces[piece_of(triangle.front())];
+    auto& corners = piece.mesh.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [known, is_new] =
+          piece.corner_of.try_emplace(triangle[k], static_cast<std::int32_t>(piece.mesh.vertices_mm.size()));
+      if (is_new) piece.mesh.vertices_mm.push_back(mesh.vertices_mm[static_cast<std::size_t>(triangle[k])]);
+      corners[k] = known->second;
+    }
+  }
+  geometry::TriangleMesh largest;
+  double largest_mm2 = -1;
+  for (auto& [corner, piece] : pieces) {
+    const double area_mm2 = geometry::surface_area_mm2(piece.mesh);
+    if (area_mm2 > largest_mm2) largest_mm2 = area_mm2, largest = std::move(piece.mesh);
+  }
+  return largest;
+}
+
 // A corner on the line between two bands that lies nearer to the middle than the place known.
 void take_line_place(IsometryBand& band, const Polygon& polygon, const Vector3d& middle_mm) {
   for (const Vector4d& corner : polygon) {
@@ -112,7 +154,7 @@ LengthChange length_change(const Vector3d& femoral_opening_mm, const Vector3d& t
 
 bool is_lateral_wall(const geometry::Surface& femur, const Vector3d& at_mm, const Vector3d& normal,
                      const landmarks::AnatomicalAxes& axes, const BoneExtents& extents) {
-  if (normal.dot(axes.lateral) >= 0) return false;  // without a ray
+  if (normal.dot(axes.lateral) >= -std::sin(geometry::rad_from_deg(kNotchWall_deg))) return false;  // no ray
   TunnelMouth place;
   place.at_mm = at_mm;
   place.normal = normal;
@@ -137,6 +179,7 @@ geometry::TriangleMesh lateral_wall(const geometry::Surface& femur, const landma
                                               in_wall[static_cast<std::size_t>(c)]};
     if (std::ranges::min(corners) >= 0) wall.triangles.push_back(corners);
   }
+  wall = largest_piece(wall);
   const Refined refined(wall);
   return wall;
 }

@@ -31,9 +31,10 @@ struct LengthChange {
                                    const Eigen::Vector3d& normal, const landmarks::AnatomicalAxes& axes,
                                    const BoneExtents& extents);
 
-// The triangles of the surface's mesh() whose corners all are, split until no edge is longer than 0.5 mm.
-// Empty where there are none, and once
-// is_cancelled says so. Rays from every corner that faces medially: run it beside the screen.
+// The triangles of the surface's mesh() whose corners all are, split until no edge is longer than 0.5 mm; of
+// several pieces the largest: dents of a condyle's cartilage face, the groove's flank and osteophytes have
+// bone on both sides here and there, too. Empty where there are none, and once is_cancelled says so. Rays
+// from every corner that faces medially: run it beside the screen.
 [[nodiscard]] geometry::TriangleMesh lateral_wall(const geometry::Surface& femur,
                                                   const landmarks::AnatomicalAxes& axes,
                                                   const BoneExtents& extents,

@@ -19,10 +19,27 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 double sine(double deg) { return std::sin(geometry::rad_from_deg(deg)); }
 double cosine(double deg) { return std::cos(geometry::rad_from_deg(deg)); }
 
-bool has_bone(const geometry::Surface& bone, const Vector3d& from, const Vector3d& direction,
-              double within_mm) {
-  const auto hit = bone.first_hit(from, direction);
-  return hit && hit->distance_mm < within_mm && hit->normal.dot(direction) < 0;
+// How far off bone begins that way; nullopt where none does within so much.
+std::optional<double> to_bone_mm(const geometry::Surface& bone, const Vector3d& from,
+                                 const Vector3d& direction, double within_mm) {
+  const auto hit = bone.first_hit(from, direction, within_mm);
+  if (!hit || hit->distance_mm >= within_mm || hit->normal.dot(direction) >= 0) return std::nullopt;
+  return hit->distance_mm;
+}
+
+// Of a place over the surface that faces either way: bone on both sides of it, and none behind the middle of
+// the gap between them, as there is behind the groove.
+bool is_in_notch(const geometry::Surface& femur, const Vector3d& above, bool faces_medially,
+                 const landmarks::AnatomicalAxes& axes, const BoneExtents& extents) {
+  const double within_mm = 0.5 * extents.width_mm();
+  // The side that it faces first: on the outer face of a condyle nothing is there.
+  const Vector3d faced = faces_medially ? Vector3d(-axes.lateral) : axes.lateral;
+  const auto across_mm = to_bone_mm(femur, above, faced, within_mm);
+  if (!across_mm) return false;
+  const auto beneath_mm = to_bone_mm(femur, above, -faced, within_mm);
+  if (!beneath_mm) return false;
+  const Vector3d middle = above + 0.5 * (*across_mm - *beneath_mm) * faced;
+  return !to_bone_mm(femur, middle, -axes.anterior, extents.anterior_mm - extents.posterior_mm);
 }
 
 using Polygon = std::vector<Vector3d>;
@@ -83,14 +100,12 @@ BoneExtents bone_extents(const geometry::TriangleMesh& mesh, bones::BoneKind bon
 
 FemoralEntry femoral_entry(const geometry::Surface& femur, const TunnelMouth& entry,
                            const landmarks::AnatomicalAxes& axes, const BoneExtents& extents) {
-  const Vector3d above = entry.at_mm + kAbove_mm * entry.normal;
-  const double within_mm = 0.5 * extents.width_mm();
-  if (std::abs(entry.normal.dot(axes.anterior)) > cosine(35) ||
-      !has_bone(femur, above, axes.lateral, within_mm) || !has_bone(femur, above, -axes.lateral, within_mm))
-    return FemoralEntry::OutsideNotch;
   const double faces_laterally = entry.normal.dot(axes.lateral);
-  if (faces_laterally < -sine(25)) return FemoralEntry::LateralWall;
-  return faces_laterally > sine(25) ? FemoralEntry::MedialWall : FemoralEntry::Roof;
+  if (std::abs(entry.normal.dot(axes.anterior)) > cosine(35) ||
+      !is_in_notch(femur, entry.at_mm + kAbove_mm * entry.normal, faces_laterally < 0, axes, extents))
+    return FemoralEntry::OutsideNotch;
+  if (faces_laterally < -sine(kNotchWall_deg)) return FemoralEntry::LateralWall;
+  return faces_laterally > sine(kNotchWall_deg) ? FemoralEntry::MedialWall : FemoralEntry::Roof;
 }
 
 FemoralExit femoral_exit(const geometry::Surface& femur, const TunnelGeometry& tunnel,

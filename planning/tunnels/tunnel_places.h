@@ -21,15 +21,19 @@ struct BoneExtents {
 [[nodiscard]] BoneExtents bone_extents(const geometry::TriangleMesh& mesh, bones::BoneKind bone,
                                        const landmarks::AnatomicalAxes& axes);
 
+// How far a face of the femur's notch has to look away from straight up or down to be a wall.
+constexpr double kNotchWall_deg = 25;
+
 enum class FemoralEntry {
   LateralWall,   // of the notch: where the ligament was
   MedialWall,    // of the notch: the posterior cruciate's
   Roof,          // of the notch
-  OutsideNotch,  // no bone on both sides of it
+  OutsideNotch,  // no bone on both sides of it, or it lies in the groove
 };
 // In the notch: from 0.5 mm above the surface there is bone both medially and laterally within half the
-// bone's width, and the surface does not face straight forwards or backwards (within 35 deg), as the groove
-// in front of the notch and the surface behind it do. Which wall: the one that the surface faces away from,
+// bone's width and none behind the middle between these, as there is behind the groove in front of the notch;
+// and the surface does not face straight forwards or backwards (within 35 deg), as that behind the notch
+// does. Which wall: the one that the surface faces away from,
 // by more than 25 deg; else the roof.
 [[nodiscard]] FemoralEntry femoral_entry(const geometry::Surface& femur, const TunnelMouth& entry,
                                          const landmarks::AnatomicalAxes& axes, const BoneExtents& extents);

@@ -340,6 +340,12 @@ TEST_F(PlanCommand, AWrongPlanIsToldHoweverItWasMade) {
       run({"plan", "--bone", "tibia", "--entry=" + entry_text(), "--direction", "0.8,-0.4,-0.3"});
   EXPECT_EQ(placed.exit_code, 0) << placed.errors;
   EXPECT_THAT(placed.output, HasSubstr("  x "));
+  EXPECT_THAT(placed.errors,
+              HasSubstr("The plan is wrong as it is, and kept as asked\n  - the tibia's tunnel: "));
+  const auto as_json = run({"plan", "--bone", "tibia", "--json"});
+  EXPECT_EQ(as_json.exit_code, 0);
+  EXPECT_THAT(as_json.errors, HasSubstr("  - the tibia's tunnel: ")) << "a script that reads the output, too";
+  EXPECT_EQ(run({"plan", "--bone", "femur"}).errors, "") << "nothing is wrong there";
   const auto exported = run({"plan", "--export", folder_ / "out"});
   EXPECT_EQ(exported.exit_code, 0) << exported.errors;
   EXPECT_THAT(exported.output, HasSubstr("Wrong, and exported all the same: tibia: "));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "app/case/plan_model.h"
+#include "app/library/case_thumbnail.h"
 #include "planning/geometry/rigid_transform.h"
 #include "planning/phantom/phantom_case.h"
 #include "tests/temporary_folder.h"
@@ -104,6 +105,20 @@ TEST(PlanVerdict, IsNotFineWhileAnythingIsToBeLookedAt) {
   record.planned = record.bones;
   const plan_review::TunnelVerdict fine;
   EXPECT_EQ(plan_in_words(record, &fine), "femur and tibia planned");
+}
+
+// A case without landmarks is seen from the front in the list as well, whichever way the axes of its file
+// lie.
+TEST(CaseThumbnail, KnowsTheFrontOfBonesThatLieTurned) {
+  const test::TemporaryFolder folder;
+  cases::save_case(folder.path(), turned_without_landmarks());
+  const cases::Case drawn = load_for_thumbnail(folder.path()).knee;
+  const auto axes = landmarks::anatomical_axes(bones::BoneKind::Femur, drawn.side,
+                                               drawn.landmarks.at(bones::BoneKind::Femur),
+                                               drawn.bones.at(bones::BoneKind::Femur).mesh);
+  const Eigen::Vector3d front =
+      Eigen::AngleAxisd(geometry::rad_from_deg(-50), Eigen::Vector3d::UnitZ()) * -Eigen::Vector3d::UnitY();
+  EXPECT_GT(axes.anterior.dot(front), 0.98);
 }
 
 }  // namespace

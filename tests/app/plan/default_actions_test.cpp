@@ -66,6 +66,35 @@ TEST_F(DefaultActions, ThePlanIsAsItWasUntilItIsMade) {
   EXPECT_EQ(model_.tunnel(BoneKind::Femur)->entry_mm, before) << "one step";
 }
 
+// A grid that reaches too far back puts the norm's place at the back wall. Nobody is moved unasked; asked,
+// the entry moves as far as is needed, in one step, and what was moved by hand since is not touched.
+TEST_F(DefaultActions, EntersWhereItPassesWhenAsked) {
+  cases::Case knee = model_.knee();
+  landmarks::Landmarks& marks = knee.landmarks.at(BoneKind::Femur);
+  const auto proposed =
+      landmarks::propose(knee.bones.at(BoneKind::Femur).mesh, BoneKind::Femur, {.side = knee.side}).landmarks;
+  for (const char* extent : {"lateral_condyle_deep", "lateral_condyle_shallow", "lateral_condyle_low"})
+    marks[extent] = proposed.at(extent);
+  marks.erase("native_footprint");
+  marks["lateral_condyle_deep"] += 16 * Eigen::Vector3d::UnitY();
+  open_case::PlanModel model(knee);
+  cases::save_case(folder_.path(), knee);
+  view_->case_opened({&model, folder_.path(), ""});
+  EXPECT_FALSE(action("plan.within_spread").can_run()) << "no default was made";
+  action("plan.default").run();
+  settle();
+  const auto made = model.default_tunnel(BoneKind::Femur);
+  ASSERT_TRUE(made.passing_entry_mm) << made.place;
+  EXPECT_EQ(model.tunnel(BoneKind::Femur)->entry_mm, made.tunnel.entry_mm);
+  ASSERT_TRUE(action("plan.within_spread").can_run());
+  action("plan.within_spread").run();
+  EXPECT_EQ(model.tunnel(BoneKind::Femur)->entry_mm, *made.passing_entry_mm);
+  EXPECT_FALSE(action("plan.within_spread").can_run());
+  action("plan.undo").run();
+  EXPECT_EQ(model.tunnel(BoneKind::Femur)->entry_mm, made.tunnel.entry_mm) << "one step";
+  view_.reset();
+}
+
 // What is of the other knee is no proposal: which knee it is is asked first.
 TEST_F(DefaultActions, WhileTheSideIsInDoubtItIsAskedFirst) {
   const Eigen::Vector3d before = model_.tunnel(BoneKind::Femur)->entry_mm;

@@ -32,6 +32,13 @@ TEST(DefaultWords, SayWhereEachTunnelIsAndWhatIsWrongThere) {
       "Default femur PL: 1.1 mm off it.");
 }
 
+TEST(DefaultWords, NameTheKeyThatEntersWhereItPasses) {
+  std::vector<MadeTunnel> one{made(BoneKind::Tibia, "at the norm's place; 1.3 mm from it one passes")};
+  EXPECT_THAT(default_in_words(one, false), Not(HasSubstr("Shift+N")));
+  one[0].made.passing_entry_mm = Eigen::Vector3d(1, 2, 3);
+  EXPECT_THAT(default_in_words(one, false), HasSubstr("one passes. Shift+N enters there instead."));
+}
+
 TEST(DefaultWords, SayWhatTheyRestOnAndHowToHaveThePlanBack) {
   std::vector<MadeTunnel> one{made(BoneKind::Tibia, "at the norm's place")};
   EXPECT_THAT(default_in_words(one, false), Not(HasSubstr("Ctrl+Z")));

@@ -26,7 +26,9 @@ TEST(WhoseKnee, NeitherBirthDateNorSideIsCutShort) {
 
 // The number, or the time, by which two cases of a day are told apart is not what is cut.
 TEST(WhoseKnee, WhatTellsTwoOfADayApartIsNotCut) {
-  EXPECT_EQ(line_of_case("Knee 2026-11-24 14:05:31").rest, " 14:05:31");
+  EXPECT_EQ(line_of_case("Knee 2026-11-24 14:05:31").rest, "11-24 14:05:31");
+  EXPECT_EQ(line_of_case("Knee 2026-11-24 14:05:31").may_be_cut, "Knee 2026-");
+  EXPECT_EQ(line_of_case("Knee 2026-11-24 14.05:31").rest, " 14.05:31");
   EXPECT_EQ(line_of_case("Knee").may_be_cut, "Knee");
   EXPECT_EQ(line_of_case("A Donaudampfschifffahrt").may_be_cut, "A Donaudampfschifffahrt");
   const auto lines =

@@ -152,6 +152,15 @@ TEST(DefaultPlan, SaysWhereWithinTheNormsSpreadATibiaPassesEveryCheck) {
     tunnels::Tunnel moved = made.tunnel;
     moved.entry_mm = *made.passing_entry_mm;
     EXPECT_GE(tunnels::measure(moved, surface).wall_mm, 1);  // what the tibia's check asks for
+    const auto taken = moved_to_passing(made);
+    EXPECT_EQ(taken.tunnel.entry_mm, *made.passing_entry_mm);
+    EXPECT_EQ(taken.tunnel.direction, made.tunnel.direction);
+    EXPECT_NEAR(taken.off_norm_mm, away_mm, 1e-9);
+    EXPECT_TRUE(taken.failed.empty());
+    EXPECT_THAT(taken.place,
+                StartsWith(files::format("%.1f mm off the norm's place, within its spread, where "
+                                         "it passes; at the norm's place Wall: ",
+                                         away_mm)));
     const auto narrow = plan_bone(input, Side::Right, {.diameter_mm = 7.8});
     ASSERT_TRUE(narrow.passing_entry_mm) << narrow.place;
     EXPECT_THAT(narrow.place, EndsWith("passes every check but that of its diameter, which was asked for"));
@@ -179,9 +188,16 @@ TEST(DefaultPlan, NamesTheCheckThatNoAimPasses) {
         tunnels::measure(made.tunnel, knee.femur).wall_mm < tunnels::PlanNorms{}.thin_wall_mm;
     EXPECT_EQ(is_thin, further_mm > 10);
     ASSERT_EQ(made.failed.size(), is_thin ? 1U : 0U);
-    if (is_thin) {
-      EXPECT_EQ(made.failed[0].name, "Wall");
+    EXPECT_EQ(moved_to_passing(made).tunnel.entry_mm, made.passing_entry_mm.value_or(made.tunnel.entry_mm));
+    if (!is_thin) {
+      EXPECT_FALSE(made.passing_entry_mm);
+      continue;
     }
+    EXPECT_EQ(made.failed[0].name, "Wall");
+    ASSERT_TRUE(made.passing_entry_mm) << made.place;
+    EXPECT_THAT(made.place, HasSubstr(" anterior), still within the norm's spread, passes every check"));
+    EXPECT_GE(tunnels::measure(moved_to_passing(made).tunnel, knee.femur).wall_mm,
+              tunnels::PlanNorms{}.thin_wall_mm);
   }
 }
 

@@ -177,6 +177,11 @@ TEST(Surface, FirstHitIsTheFirstOfAllHits) {
     ASSERT_EQ(first.has_value(), !all.empty());
     if (!first) return;
     ++met;
+    const double far = first->distance_mm;
+    EXPECT_FALSE(surface.first_hit(origin, direction, 0.999 * far - 1e-9)) << "it lies further off";
+    const auto near_enough = surface.first_hit(origin, direction, 1.001 * far + 1e-9);
+    ASSERT_TRUE(near_enough);
+    EXPECT_EQ(near_enough->triangle, first->triangle);
     EXPECT_EQ(first->triangle, all.front().triangle);
     EXPECT_EQ(first->point_mm, all.front().point_mm);
     EXPECT_EQ(first->distance_mm, all.front().distance_mm);

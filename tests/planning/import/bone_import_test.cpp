@@ -323,6 +323,21 @@ TEST(BoneImport, ABoneThatIsAloneInItsImagesIsHeldAgainstItsSide) {
   EXPECT_THAT(doubts_of_first(import),
               ElementsAre("the volume shows no tibia",
                           HasSubstr("by the shape of the bone it is a right knee, but the side is left")));
+  // Whoever needs a side is asked for it before that shape is looked at: alone it is not believed.
+  bool is_looked_at = false;
+  BoneImportOptions needing;
+  needing.needs_side = true;
+  const std::string refused = message_of<InvalidInput>([&] {
+    (void)import_bones(folder / "knee.nrrd", needing, [&](const ImportProgress& progress) {
+      is_looked_at = is_looked_at || progress.stage == ImportStage::LookingAtBones;
+    });
+  });
+  EXPECT_THAT(refused, HasSubstr("no tibia is seen, beside which a fibula would lie; the shape of one bone "
+                                 "alone does not tell it surely"));
+  EXPECT_FALSE(is_looked_at);
+  const BoneImport unasked = import_bones(folder / "knee.nrrd");
+  EXPECT_EQ(unasked.side, std::nullopt);
+  EXPECT_NE(refused.find(unasked.why_no_side), std::string::npos) << unasked.why_no_side;
 }
 
 // Of an MR that says no modality and has no more grey values than a label map could have.

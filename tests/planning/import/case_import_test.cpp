@@ -9,6 +9,7 @@
 #include "planning/cases/study.h"
 #include "planning/geometry/error.h"
 #include "planning/images/volume_writer.h"
+#include "planning/import/import_side.h"
 #include "planning/plan_review/tunnel_verdict.h"
 #include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
@@ -85,6 +86,33 @@ TEST(CaseImport, TakesAnEmptyFolder) {
   EXPECT_EQ(cases::load_case(folder / "empty").bones.size(), 1U);
   add_to_case(folder / "new/Mustermann.arthro", imported(BoneKind::Femur), "", "bone.stl");
   EXPECT_EQ(cases::load_case(folder / "new/Mustermann.arthro").bones.size(), 1U);
+}
+
+// Of a CT whose crop leaves the fibula out nothing is wrong with its name: what was asked is said, and why it
+// does not tell, and what does.
+TEST(CaseImport, ASideThatNothingTellsIsAskedForWithTheReasons) {
+  const TemporaryFolder folder;
+  BoneImport import = imported(BoneKind::Femur, std::nullopt);
+  import.bones.push_back(imported(BoneKind::Tibia, std::nullopt).bones.front());
+  for (ImportedBone& bone : import.bones) bone.shape_was_judged = true;
+  import.bones[0].side_by_shape = Side::Left;
+  EXPECT_TRUE(shapes_may_tell(import));
+  import.why_no_side = why_no_side(import, "no fibula is seen");
+  EXPECT_EQ(
+      message_of<InvalidInput>([&] { add_to_case(folder / "a", import, "", "scan"); }),
+      "scan: nothing tells which knee it is: its name does not say it, nor does a mark in images; no "
+      "fibula is seen; the shapes of femur and tibia do not tell it both alike. Look at the images or at "
+      "the request for them, and add --side left or --side right");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a"));
+  for (ImportedBone& bone : import.bones) bone.shape_was_judged = false;
+  import.bones[0].doubts = {"it is no femur"};
+  EXPECT_FALSE(shapes_may_tell(import));
+  EXPECT_THAT(why_no_side(import, ""), HasSubstr("images; the shapes of the bones are in doubt themselves."));
+  import.bones.pop_back();
+  import.side_in_images = Side::Left;
+  EXPECT_THAT(why_no_side(import, ""),
+              HasSubstr("is: its name and the mark in its images say different "
+                        "sides; the shape of one bone alone does not tell it surely."));
 }
 
 // Half a minute of making bones is not spent on a folder that cannot take them.

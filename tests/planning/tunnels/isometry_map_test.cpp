@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
@@ -79,6 +80,23 @@ TEST(IsometryMap, CutsTheWallAtItsSteps) {
   EXPECT_NEAR(area_of_bands(coarse), 12, 1e-6);
 }
 
+// Of triangles that share corners.
+int pieces_of(const geometry::TriangleMesh& mesh) {
+  std::vector<std::size_t> piece(mesh.vertices_mm.size());
+  for (std::size_t i = 0; i < piece.size(); ++i) piece[i] = i;
+  for (bool has_changed = true; has_changed;) {
+    has_changed = false;
+    for (const auto& triangle : mesh.triangles) {
+      const auto of = [&](std::size_t k) -> std::size_t& {
+        return piece[static_cast<std::size_t>(triangle[k])];
+      };
+      const std::size_t least = std::min({of(0), of(1), of(2)});
+      for (std::size_t k = 0; k < 3; ++k) has_changed |= of(k) != least, of(k) = least;
+    }
+  }
+  return static_cast<int>(std::set<std::size_t>(piece.begin(), piece.end()).size());
+}
+
 class IsometryOfKnee : public ::testing::Test {
  protected:
   cases::Case knee_ = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3}), "test");
@@ -100,6 +118,23 @@ TEST_F(IsometryOfKnee, TakesTheLateralWallAlone) {
     EXPECT_LT(femur_->closest_point(at).normal.dot(of_femur_.axes->lateral), 0);
   }
   EXPECT_TRUE(lateral_wall(*femur_, *of_femur_.axes, of_femur_.extents, [] { return true; }).empty());
+  EXPECT_EQ(pieces_of(wall), 1);
+}
+
+// The lateral flank of the groove in front of the notch faces medially and has the medial flank across, but
+// it is no wall of the notch: straight behind the gap between the two there is bone.
+TEST_F(IsometryOfKnee, LeavesOutTheGroove) {
+  const landmarks::AnatomicalAxes& axes = *of_femur_.axes;
+  const geometry::TriangleMesh wall = lateral_wall(*femur_, axes, of_femur_.extents);
+  const BoneExtents& extents = of_femur_.extents;
+  for (const Vector3d& at : wall.vertices_mm) {
+    const auto across = femur_->first_hit(at - 1.0 * axes.lateral, -axes.lateral);
+    ASSERT_TRUE(across);
+    const Vector3d middle = 0.5 * (at + across->point_mm);
+    const auto behind = femur_->first_hit(middle, -axes.anterior);
+    EXPECT_FALSE(behind && behind->distance_mm < extents.anterior_mm - extents.posterior_mm - 2)
+        << at.transpose();
+  }
 }
 
 // The map says of a place what the check says of a plan whose femoral tunnel begins there: the same number,
