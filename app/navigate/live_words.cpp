@@ -201,6 +201,8 @@ std::string why_no_touch(const operation::OperationState& state) {
     case operation::TouchRefusal::TipUnknown:
       return state.touch_is_of_guide ? "guide's tip not seen" : "probe's tip not seen";
     case operation::TouchRefusal::TipMoves:
+      // Who has put the probe aside and aims the guide asks for no touch any more.
+      if (!state.touch_is_of_guide && !state.frame.tip_is_valid && state.frame.guidance.is_valid()) return "";
       return state.touch_is_of_guide ? "the guide moves" : "the probe moves";
     case operation::TouchRefusal::MarkerIsSeen:
       return "";  // no touch was asked for

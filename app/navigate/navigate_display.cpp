@@ -225,6 +225,11 @@ bool explain(NavigateDisplay& display, const theatre::LiveState& live) {
     case GuidanceState::PicturesSlow:
       tell(display, {headline_of(theatre::SourceTrouble::Slow), live.trouble_words});
       break;
+    case GuidanceState::MediumUnsure:
+      display.headline = "Checking the medium";
+      display.detail = "Whether the markers look as in " + camera::medium_to_text(state.medium.stated_index) +
+                       ": hold bone marker and guide in view";
+      break;
     case GuidanceState::LensStale:
       display.headline = "Lens angle unknown";
       display.detail = trouble_of(result.lens).advice;

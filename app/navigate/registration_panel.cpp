@@ -174,8 +174,17 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
     touch.name += ':';
     put_row(touch);
   }
-  const std::string& advice = words.missing.empty() ? state.text : words.missing;
+  std::string advice = words.missing.empty() ? state.text : words.missing;
   bool is_said = is_bad || !can_be_done || put(widgets::Severity::Quiet, widgets::kText, advice);
+  // Rather the first things that are missing, read from afar, than all of them in small letters: what is
+  // left out is told when these are there.
+  for (std::string first = advice; !is_said && !words.missing.empty();) {
+    const std::size_t last_item = first.rfind("; ");
+    if (last_item == std::string::npos) break;
+    first.resize(last_item);
+    is_said = put(widgets::Severity::Quiet, widgets::kText, first);
+    if (is_said) advice = first;
+  }
   // What to do is never left out: rather in smaller letters.
   if (!is_said && rest.height >= ui.theme.strong->FontSize) {
     widgets::draw_afar(ui, rest, widgets::kText, widgets::sentence(advice));

@@ -83,10 +83,9 @@ RegistrationWords with_what_is_unverified(RegistrationWords words, const operati
   const Unverified missing = operation::unverified_of(state);
   if (missing == Unverified::ControlPoint) {
     const bool is_set = state.registration->touches.has_control_point();
-    words.state = {
-        Severity::Caution, is_set ? "Control point to be touched" : "No control point",
-        is_set ? "The touches lie on the bone. Whether the marker sits where it sat, nobody has checked."
-               : "The touches lie on the bone. Nothing tells whether the marker moves."};
+    words.state = {Severity::Caution, is_set ? "Control point to be touched" : "No control point",
+                   is_set ? "Whether the marker sits where it sat, nobody has checked."
+                          : "Without one nothing tells whether the marker moves."};
   } else if (missing == Unverified::GuideCheck) {
     words.state = {Severity::Caution, "Guide not checked", "The touches lie on the bone."};
   }

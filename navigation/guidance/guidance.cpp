@@ -194,6 +194,8 @@ std::string_view to_text(GuidanceState state) {
       return "picture too late";
     case GuidanceState::PicturesSlow:
       return "pictures come too slowly";
+    case GuidanceState::MediumUnsure:
+      return "medium not confirmed by the picture";
   }
   return "unknown";
 }

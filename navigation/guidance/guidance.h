@@ -35,8 +35,9 @@ enum class GuidanceState {
   ErrorUnknown,     // a marker stands where nobody can say what the camera's error does to its pose
   PictureLate,      // a live picture that was too old to guide by before its numbers were known
   PicturesSlow,     // each live picture is too old to guide by before the next one is shown
+  MediumUnsure,     // the pictures have not confirmed the stated medium yet, or speak against it
 };
-inline constexpr GuidanceState kLastGuidanceState = GuidanceState::PicturesSlow;  // records keep the number
+inline constexpr GuidanceState kLastGuidanceState = GuidanceState::MediumUnsure;  // records keep the number
 [[nodiscard]] std::string_view to_text(GuidanceState state);
 
 // A drill with a marker of its own, in this frame.

@@ -5,6 +5,7 @@ namespace arthronaut::operation {
 void MediumWatch::on_source(const pipeline::PipelineOptions& options) {
   check_.emplace(markers::declared_markers(options.tools), options.refractive_index,
                  options.calibration.refractive_index);
+  is_confirmed_by_record_ = false;
   ++source_number_;
   on_source_end();
 }
@@ -25,6 +26,11 @@ void MediumWatch::look(const pipeline::FrameResult& frame, const pipeline::Pipel
 void MediumWatch::take(const MediumLook& look) {
   awaited_.reset();
   check_->look_again(look.view, look.in_other_medium);
+}
+
+bool MediumWatch::holds() const {
+  const pipeline::MediumVerdict now = verdict();
+  return now.is_held && (now.votes_against > 0 || !is_confirmed_by_record_);
 }
 
 pipeline::MediumVerdict MediumWatch::verdict() const {

@@ -41,9 +41,14 @@ class MediumWatch {
   // Of a source that runs or ran last; unknown before the first.
   [[nodiscard]] pipeline::MediumVerdict verdict() const;
   [[nodiscard]] bool contradicts() const { return verdict().fit == pipeline::MediumFit::Contradicts; }
+  // Guidance waits for the pictures' word on the medium (MediumVerdict::is_held).
+  [[nodiscard]] bool holds() const;
+  // A frame of a record guided whose picture is not there to be seen again: the medium was confirmed by then.
+  void confirmed_by_record() { is_confirmed_by_record_ = true; }
 
  private:
   std::optional<pipeline::MediumCheck> check_;
+  bool is_confirmed_by_record_ = false;
   std::uint64_t source_number_ = 0;
   std::optional<MediumLookRequest> request_;
   std::optional<std::int64_t> awaited_;  // the frame whose picture is being seen again

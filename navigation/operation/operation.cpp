@@ -122,6 +122,7 @@ void Operation::heed_pictures() { parts_->take_seen(); }
 void Operation::process_recorded(const pipeline::FrameResult& result) {
   parts_->frame = result;
   parts_->timing = timing_of(result.guidance.state);
+  if (result.guidance.is_valid()) parts_->medium.confirmed_by_record();
   parts_->take_frame();
 }
 

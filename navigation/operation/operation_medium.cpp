@@ -7,6 +7,15 @@ void Operation::Parts::check_medium() {
   const pipeline::MediumFit before = medium.verdict().fit;
   medium.look(frame, source->pipeline);
   follow_medium(before);
+  hold_for_medium();
+}
+
+// What is wrong by centimetres in the wrong medium waits for the pictures' word, which in the right one is
+// there with the first of them that could guide.
+void Operation::Parts::hold_for_medium() {
+  const bool guides = frame.guidance.is_valid() || frame.guidance.drill;
+  if (guides && medium.holds() && !source->pipeline.tools.tracker && time_out() != TimeOut::Due)
+    hide_guidance(guidance::GuidanceState::MediumUnsure);
 }
 
 void Operation::Parts::take_look(const MediumLookPtr& look) {

@@ -104,6 +104,7 @@ struct Operation::Parts {
   void check_medium();
   void take_look(const MediumLookPtr& look);
   void follow_medium(pipeline::MediumFit before);
+  void hold_for_medium();
   void take_frame();
   void watch_bone(const camera::Frame& picture) {
     bone_watch.look(picture, frame, source->pipeline.tools, ledger.in_force(), setup.hears_of_drifts);

@@ -54,8 +54,9 @@ int StrokeBook::take_back() {
 
 int StrokeBook::take_back_since(double time_s) {
   const auto first_of_source = points_.begin() + static_cast<std::ptrdiff_t>(first_of_source_);
-  const auto later = std::find_if(first_of_source, points_.end(),
-                                  [&](const strokes::CurvePoint& point) { return point.time_s > time_s; });
+  const auto later = std::find_if(first_of_source, points_.end(), [&](const strokes::CurvePoint& point) {
+    return point.time_s.value_or(time_s) > time_s;
+  });
   if (later == points_.end()) return 0;
   const int from_curve = later->curve;
   int count = 0;

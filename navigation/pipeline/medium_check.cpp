@@ -63,6 +63,23 @@ MediumCheck::MediumCheck(std::span<const markers::DeclaredMarker> declared, doub
     if (!(index >= 0.9 && index <= 2)) throw InvalidInput("a refractive index must lie in [0.9, 2]");
   verdict_.stated_index = refractive_index;
   verdict_.other_index = others_than(refractive_index).front();
+  hold();
+}
+
+void MediumCheck::hold() {
+  verdict_.is_held = true;
+  quiet_looks_ = 0;
+  well_since_ns_ = -1;
+}
+
+// In the wrong medium hardly any marker stands well for long; one that does looks alike in every medium.
+void MediumCheck::follow_hold(bool stand_well) {
+  if (!stand_well)
+    well_since_ns_ = -1;
+  else if (well_since_ns_ < 0)
+    well_since_ns_ = now_ns_;
+  const double needed_s = is_in_doubt_ ? options_.well_s : options_.unconfirmed_s;
+  if (stand_well && now_ns_ - well_since_ns_ >= ns_from_s(needed_s)) verdict_.is_held = false;
 }
 
 void MediumCheck::look(const PictureObservation& view) {
@@ -71,15 +88,17 @@ void MediumCheck::look(const PictureObservation& view) {
   if (!has_begun_) confirmed_ns_ = view.timestamp_ns;
   has_begun_ = true;
   now_ns_ = view.timestamp_ns;
-  bool is_any_strained = false;
+  bool is_any_strained = false, is_any_tracked = false;
   for (std::size_t i = 0; i < declared_.size(); ++i) {
     const markers::MarkerObservation& marker = view.markers[i];
     is_any_strained |= is_strained(marker, options_.clean_px);
+    is_any_tracked |= marker.is_tracked();
     if (!marker.is_tracked() || now_ns_ < next_vote_ns_[i]) continue;
     next_vote_ns_[i] = now_ns_ + ns_from_s(options_.vote_every_s);
     vote(view.camera, marker, declared_[i].size_mm, true);
   }
   decide();
+  follow_hold(is_any_tracked && !is_any_strained);
   const double pause_s = score_ < 0 || is_in_doubt_ ? options_.follow_up_s : options_.look_every_s;
   const bool is_unconfirmed = now_ns_ - confirmed_ns_ >= ns_from_s(options_.unconfirmed_s);
   const bool is_rested = !has_looked_ || now_ns_ - looked_ns_ >= ns_from_s(pause_s);
@@ -91,6 +110,7 @@ void MediumCheck::look_again(const PictureObservation& view,
   wants_second_look_ = false;
   has_looked_ = true;
   looked_ns_ = view.timestamp_ns;
+  const long against_before = verdict_.votes_against;
   for (std::size_t i = 0; i < declared_.size() && i < in_other_medium.size(); ++i) {
     // What stands well in the stated medium has its own vote; in the other one it leans towards that.
     const markers::MarkerObservation& stated = view.markers[i];
@@ -98,6 +118,8 @@ void MediumCheck::look_again(const PictureObservation& view,
     if (!in_other_medium[i].is_tracked() || in_other_medium[i].rms_px > options_.clean_px) continue;
     vote(view.camera, in_other_medium[i], declared_[i].size_mm, false);
   }
+  if (verdict_.votes_against == against_before && ++quiet_looks_ >= (is_in_doubt_ ? options_.quiet_looks : 1))
+    verdict_.is_held = false;
   decide();
 }
 
@@ -120,6 +142,7 @@ void MediumCheck::vote(const camera::CameraModel& stated, const markers::MarkerO
     score_ += options_.weight_for;
     confirmed_ns_ = voted_for_ns_ = now_ns_;
     if (score_ >= score_before_doubt_) is_in_doubt_ = false;
+    if (!is_in_doubt_) verdict_.is_held = false;
   } else if (speaks_for(other_px, stated_px)) {
     ++verdict_.votes_against;
     verdict_.other_index = other_index;
@@ -129,6 +152,7 @@ void MediumCheck::vote(const camera::CameraModel& stated, const markers::MarkerO
       verdict_.last_sure_ns = has_fitted_ ? voted_for_ns_ : -1;
     }
     score_ -= options_.weight_against;
+    hold();
     // What fits no square at all says no more than one that is 10 px off.
     stated_square_ += std::pow(std::min(stated_px, 10.0), 2);
     other_square_ += other_px * other_px;
@@ -166,6 +190,7 @@ void MediumCheck::reset() {
   fresh.stated_index = verdict_.stated_index;
   fresh.other_index = verdict_.other_index;
   verdict_ = fresh;
+  hold();
 }
 
 SecondLook::SecondLook(std::span<const markers::DeclaredMarker> declared, double other_index,

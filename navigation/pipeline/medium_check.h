@@ -44,6 +44,10 @@ struct MediumVerdict {
   // before what speaks against it came together. What was measured later is of the wrong medium or may be.
   // -1: it never fitted, and all that was measured may be.
   std::int64_t last_sure_ns = -1;
+  // Nothing is to be guided by yet: no marker has spoken for the stated medium, or one spoke against it and
+  // was not outweighed. It ends, too, where nothing can be said: by second looks in which nothing speaks
+  // against it, or when the markers have stood well for a while.
+  bool is_held = false;
 };
 
 // Why no number is shown: names both media. Empty unless Contradicts.
@@ -63,6 +67,10 @@ struct MediumCheckOptions {
   // Second looks: when no marker has spoken for the stated medium for so long, and not oftener than ...
   double unconfirmed_s = 0.1, look_every_s = 0.5;
   double follow_up_s = 0.1;  // ... while votes speak against it, from the first one after those for it on
+  // Held no longer, without a vote: after so many second looks, or after markers have stood well for so long;
+  // before the first vote after one look or unconfirmed_s.
+  int quiet_looks = 3;
+  double well_s = 0.5;
 };
 
 class MediumCheck {
@@ -89,6 +97,8 @@ class MediumCheck {
   void vote(const camera::CameraModel& stated, const markers::MarkerObservation& seen, double size_mm,
             bool may_be_for);
   void decide();
+  void hold();
+  void follow_hold(bool stand_well);
 
   MediumCheckOptions options_;
   double calibration_index_;
@@ -101,6 +111,8 @@ class MediumCheck {
   bool is_in_doubt_ = false, has_fitted_ = false;
   int score_before_doubt_ = 0;
   std::int64_t voted_for_ns_ = -1;
+  int quiet_looks_ = 0;                          // since it is held
+  std::int64_t well_since_ns_ = -1;              // the markers in view stand well; -1: they do not
   double stated_square_ = 0, other_square_ = 0;  // sums over the votes against
   MediumVerdict verdict_;
 };

@@ -3,22 +3,23 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "navigation/strokes/packed_optional.h"
 #include "navigation/strokes/poses_file.h"
 #include "navigation/tools/tool_set.h"
 
 namespace arthronaut::strokes {
 
+// 64 bytes, of which an operation may hold hundreds of thousands.
 struct CurvePoint {
   int curve = 0;
-  std::optional<double> time_s;
+  PackedOptional<double> time_s;
   Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();  // world-marker frame
   // Unit, from the tip towards the handle, world-marker frame: the way the probe came. Empty: not known.
-  std::optional<Eigen::Vector3d> shaft_direction = std::nullopt;
+  PackedOptional<Eigen::Vector3d> shaft_direction = std::nullopt;
 };
 using Curves = std::vector<CurvePoint>;
 

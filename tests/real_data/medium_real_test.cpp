@@ -1,6 +1,8 @@
 // The medium as the pictures show it, on clips that were traced in saline: stated rightly and wrongly.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
 #include "navigation/pipeline/medium_check.h"
@@ -17,6 +19,9 @@ constexpr int kFrames = 60;  // a second
 struct Outcome {
   MediumVerdict verdict;
   int frames = 0, decided_at = -1;  // the first frame with the last verdict
+  // Frames in which two markers stand, and guidance waits for the medium; and does not, though it is not yet
+  // told to be the wrong one.
+  int held = 0, not_held = 0;
 };
 
 Outcome check(const fs::path& clip, double stated_index) {
@@ -37,14 +42,18 @@ Outcome check(const fs::path& clip, double stated_index) {
     if (medium.wants_second_look()) medium.look_again(view, second.look(*frame, view.camera));
     if (medium.verdict().fit != outcome.verdict.fit) outcome.decided_at = outcome.frames;
     outcome.verdict = medium.verdict();
+    const auto standing = std::ranges::count_if(view.markers, [](const auto& m) { return m.is_tracked(); });
+    if (standing > 1 && outcome.verdict.fit != MediumFit::Contradicts)
+      ++(outcome.verdict.is_held ? outcome.held : outcome.not_held);
     ++outcome.frames;
   }
-  std::printf("%s as %s: %s at frame %d of %d, %ld votes for, %ld against\n", clip.filename().c_str(),
-              camera::medium_to_text(stated_index).c_str(),
+  std::printf("%s as %s: %s at frame %d of %d, %ld votes for, %ld against, guidance held in %d, not in %d\n",
+              clip.filename().c_str(), camera::medium_to_text(stated_index).c_str(),
               outcome.verdict.fit == MediumFit::Fits          ? "fits"
               : outcome.verdict.fit == MediumFit::Contradicts ? "contradicts"
                                                               : "unknown",
-              outcome.decided_at, outcome.frames, outcome.verdict.votes_for, outcome.verdict.votes_against);
+              outcome.decided_at, outcome.frames, outcome.verdict.votes_for, outcome.verdict.votes_against,
+              outcome.held, outcome.not_held);
   return outcome;
 }
 
@@ -57,9 +66,11 @@ TEST(MediumOnClips, Hazard27AirIsContradictedAndSalineIsNot) {
     EXPECT_EQ(right.verdict.fit, MediumFit::Fits) << name;
     EXPECT_EQ(right.verdict.votes_against, 0) << name;
     EXPECT_LE(right.decided_at, 15) << name;
+    EXPECT_EQ(right.held, 0) << name;
     const Outcome wrong = check(clip, camera::kAirIndex);
     EXPECT_EQ(wrong.verdict.fit, MediumFit::Contradicts) << name;
     EXPECT_LE(wrong.decided_at, 30) << name;
+    EXPECT_EQ(wrong.not_held, 0) << name;
     EXPECT_EQ(wrong.verdict.other_index, camera::kSalineIndex);
   }
 }

@@ -50,8 +50,7 @@ std::vector<std::string> objections_to(const strokes::Curves& curves, double bon
                       "touch more of the notch",
                       patch_mm));
   } else if (std::sqrt(std::max(0.0, squares[1])) < options.min_breadth_mm) {
-    objections.push_back(
-        "the strokes lie on one straight line, about which the bone may turn: draw across it");
+    objections.push_back("all strokes lie on one straight line: draw across it");
   }
   return objections;
 }

@@ -40,7 +40,7 @@ TEST(NavigateDisplay, EveryInvalidStateHidesTheNumbersAndSaysWhy) {
        {GuidanceState::NoPlan, GuidanceState::NoRegistration, GuidanceState::RegistrationUnreliable,
         GuidanceState::WorldMarkerLost, GuidanceState::GuideLost, GuidanceState::LensStale,
         GuidanceState::Stale, GuidanceState::NoGuide, GuidanceState::PictureTorn, GuidanceState::ErrorUnknown,
-        GuidanceState::PictureLate, GuidanceState::PicturesSlow}) {
+        GuidanceState::PictureLate, GuidanceState::PicturesSlow, GuidanceState::MediumUnsure}) {
     const NavigateDisplay display =
         display_after([&](Shown& shown) { shown.operation.frame.guidance.state = state; });
     EXPECT_FALSE(display.guidance_is_valid) << to_text(state);

@@ -8,7 +8,8 @@ namespace arthronaut::navigate {
 namespace {
 
 // What the panel tells tests of itself, in a window of 1280 x 720.
-std::string drawn(const Shown& shown, const widgets::Rect& area) {
+std::string drawn(const Shown& shown, const widgets::Rect& area,
+                  const std::string& missing = "touch the bone with the probe") {
   ImGui::CreateContext();
   const float scale = widgets::scale_for(1280, 720);
   const widgets::Theme theme =
@@ -24,7 +25,7 @@ std::string drawn(const Shown& shown, const widgets::Rect& area) {
   const NavigateDisplay display = display_of(&live, kNow_s);
   RegistrationWords words;
   words.state = {widgets::Severity::Good, "Confirmed", ""};
-  words.missing = "touch the bone with the probe";
+  words.missing = missing;
   testing::internal::CaptureStdout();
   draw_registration(ui, area, {.live = &live, .display = display, .words = words});
   log.end_frame();
@@ -56,6 +57,21 @@ TEST(RegistrationPanel, Hazard3WhyNoPictureComesIsNeverLeftOut) {
   const std::string told = drawn(shown, {0, 0, 330, 400});
   EXPECT_NE(told.find("Confirmed"), std::string::npos) << told;
   EXPECT_NE(told.find("touch the bone"), std::string::npos) << told;
+}
+
+// Of several things that are missing the first ones stand in large letters where there is no room for all.
+TEST(RegistrationPanel, WhatIsMissingIsReadFromAfarAsFarAsItFits) {
+  const std::string first = "Missing: 90 mm more of stroke", rest = "; draw across the line that was drawn";
+  const Shown shown;
+  bool was_first_alone = false;
+  for (float height = 90; height < 400; height += 10) {
+    SCOPED_TRACE(height);
+    const std::string told = drawn(shown, {0, 0, 330, height}, first + rest);
+    EXPECT_NE(told.find("STATE advice " + first), std::string::npos) << told;
+    was_first_alone |= told.find(rest) == std::string::npos;
+  }
+  EXPECT_TRUE(was_first_alone);
+  EXPECT_NE(drawn(shown, {0, 0, 330, 400}, first + rest).find(rest), std::string::npos);
 }
 
 }  // namespace

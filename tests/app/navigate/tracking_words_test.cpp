@@ -371,6 +371,10 @@ TEST(RefusalNotice, SaysWhatWasNotDoneAndWhy) {
   state.has_source = true;
   state.touch_refusal = operation::TouchRefusal::TipMoves;
   EXPECT_EQ(notice(kNow_s + 1), "no touch: the probe moves");
+  state.frame.guidance.state = guidance::GuidanceState::Valid;
+  EXPECT_EQ(notice(kNow_s + 1), "") << "the probe was put aside, and the guide is aimed";
+  state.frame.tip_is_valid = true;
+  EXPECT_EQ(notice(kNow_s + 1), "no touch: the probe moves");
   state.touch_is_of_guide = true;  // what was asked for was no touch
   EXPECT_EQ(notice(kNow_s + 1), "guide not checked: the guide moves");
   state.touch_is_of_guide = false;

@@ -110,5 +110,23 @@ TEST_F(MediumWatchTest, KnowsNothingBeforeTheFirstSource) {
   EXPECT_FALSE(none.contradicts());
 }
 
+// It waits for the look at markers that say nothing; a record that guided needs no picture to say so.
+TEST_F(MediumWatchTest, Hazard27HoldsUntilSomethingSpeaks) {
+  show(2);
+  EXPECT_TRUE(medium_.holds());
+  const auto request = medium_.take_request();
+  ASSERT_TRUE(request);
+  MediumLook failed = look_of(*request);
+  failed.in_other_medium.clear();
+  medium_.take(failed);
+  EXPECT_FALSE(medium_.holds()) << "nobody waits for what cannot be seen";
+  medium_.on_source(options_);
+  EXPECT_TRUE(medium_.holds());
+  medium_.confirmed_by_record();
+  EXPECT_FALSE(medium_.holds());
+  medium_.on_source(options_);
+  EXPECT_TRUE(medium_.holds());
+}
+
 }  // namespace
 }  // namespace arthronaut::operation

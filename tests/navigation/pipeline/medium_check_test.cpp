@@ -210,6 +210,87 @@ TEST(MediumCheck, Hazard27AMediumThatChangesIsNoticed) {
   EXPECT_EQ(run_until(MediumFit::Fits), MediumFit::Fits);
 }
 
+// Both markers stand, so that without the medium in question they would guide.
+bool would_guide(const PictureObservation& view) {
+  return view.markers[0].is_tracked() && view.markers[1].is_tracked();
+}
+
+void look_twice(MediumCheck& check, const PictureObservation& view) {
+  check.look(view);
+  if (!check.wants_second_look()) return;
+  std::vector<markers::MarkerObservation> again = view.markers;
+  for (markers::MarkerObservation& marker : again) {
+    marker.state = markers::MarkerState::Tracked;
+    marker.rms_px = 0.05;
+  }
+  check.look_again(view, again);
+}
+
+// In the right medium guidance waits for nothing: the first picture with markers says so.
+TEST(MediumCheck, Hazard27TheRightMediumIsHeldForNoPicture) {
+  int held = 0;
+  for (const double index : {kSalineIndex, kAirIndex})
+    for (unsigned seed = 0; seed < 50; ++seed) {
+      Knee knee(index, index, seed);
+      MediumCheck check = check_of(index);
+      for (int frame = 0; frame < 300; ++frame) {
+        check.look(knee.view(frame));
+        held += check.verdict().is_held ? 1 : 0;
+      }
+    }
+  EXPECT_EQ(held, 0) << "of 30000 pictures";
+}
+
+// In the wrong one no picture guides, neither from the first one on nor after the medium changed; not only
+// once it is known to be wrong.
+TEST(MediumCheck, Hazard27TheWrongMediumGuidesInNoPicture) {
+  int guided = 0, guided_until_told = 0;
+  for (const bool is_air : {true, false})
+    for (const bool changes : {true, false})
+      for (unsigned seed = 0; seed < 25; ++seed) {
+        const double stated = is_air ? kAirIndex : kSalineIndex, other = is_air ? kSalineIndex : kAirIndex;
+        Knee knee(changes ? stated : other, stated, seed);
+        MediumCheck check = check_of(stated);
+        for (int frame = 0; frame < 240; ++frame) {
+          if (frame == 60 && changes) knee.turn_to(other);
+          const PictureObservation view = knee.view(frame);
+          look_twice(check, view);
+          const bool is_wrong = !changes || frame >= 60;
+          if (!is_wrong || !would_guide(view) || check.verdict().fit == MediumFit::Contradicts) continue;
+          ++guided_until_told;
+          guided += check.verdict().is_held ? 0 : 1;
+        }
+      }
+  std::printf("pictures that stand in the wrong medium: %d before it is told, %d of them not held\n",
+              guided_until_told, guided);
+  EXPECT_GT(guided_until_told, 0);
+  EXPECT_EQ(guided, 0);
+}
+
+// One vote against it, by a reflection say, holds nothing for long where no marker votes any more.
+TEST(MediumCheck, Hazard27IsNotHeldForEverWhereNothingVotes) {
+  for (const bool stands_well : {true, false}) {
+    Knee knee(kAirIndex, kAirIndex, 3), other(kSalineIndex, kAirIndex, 3);
+    MediumCheck check = check_of(kAirIndex);
+    look_twice(check, knee.view(0));
+    ASSERT_FALSE(check.verdict().is_held);
+    int frame = 1;
+    for (; frame < 60 && !check.verdict().is_held; ++frame) look_twice(check, other.view(frame));
+    ASSERT_TRUE(check.verdict().is_held);
+    const int held_at = frame;
+    for (; frame < held_at + 60 && check.verdict().is_held; ++frame) {
+      PictureObservation view = knee.view(frame);
+      view.markers = {knee.seen_at(0, markers::facing_pose(0, 0, 60, 2, 2, 10)),
+                      markers::MarkerObservation()};
+      if (!stands_well) view.markers[0].state = markers::MarkerState::Covered;
+      check.look(view);
+      if (check.wants_second_look()) check.look_again(view, {});
+    }
+    EXPECT_FALSE(check.verdict().is_held);
+    EXPECT_GT(frame - held_at, 5);
+  }
+}
+
 // A marker that faces the lens from afar is a square in every medium: nothing is known, nothing is claimed.
 TEST(MediumCheck, HasNoOpinionOnWhatLooksAlike) {
   Knee knee(kSalineIndex, kAirIndex, 3);
@@ -218,6 +299,7 @@ TEST(MediumCheck, HasNoOpinionOnWhatLooksAlike) {
     PictureObservation view = knee.view(frame);
     view.markers = {knee.seen_at(0, markers::facing_pose(0, 0, 60, 2, 2, 10)), markers::MarkerObservation()};
     check.look(view);
+    EXPECT_EQ(check.verdict().is_held, frame < 7) << "a tenth of a second, once";
   }
   EXPECT_EQ(check.verdict().fit, MediumFit::Unknown);
   EXPECT_EQ(check.verdict().votes_against, 0);

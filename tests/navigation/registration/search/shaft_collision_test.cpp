@@ -18,7 +18,8 @@ strokes::Curves with_shafts(const PhantomBone& bone, const experiments::Trial& t
   strokes::Curves curves = trial.curves;
   for (strokes::CurvePoint& point : curves) {
     const Eigen::Vector3d tip_in_bone_mm = trial.marker_from_bone.inverse() * point.position_mm;
-    point.shaft_direction = sign * trial.marker_from_bone.rotate((portal_mm - tip_in_bone_mm).normalized());
+    const Eigen::Vector3d to_portal = (portal_mm - tip_in_bone_mm).normalized();
+    point.shaft_direction = Eigen::Vector3d(sign * trial.marker_from_bone.rotate(to_portal));
   }
   return curves;
 }
