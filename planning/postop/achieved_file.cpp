@@ -1,11 +1,13 @@
 #include "planning/postop/achieved_file.h"
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "planning/bones/bone_json.h"
 #include "planning/files/achieved_shape.h"
 #include "planning/files/json_document.h"
+#include "planning/geometry/error.h"
 #include "planning/tunnels/tunnel_json.h"
 
 namespace arthronaut::postop {
@@ -161,12 +163,33 @@ void put_place(ordered_json& node, const AchievedPlace& place) {
   node["planned_wall_mm"] = number(place.planned_wall_mm.has_value(), place.planned_wall_mm.value_or(0));
 }
 
+namespace {
+
+constexpr int kVersion = 1;
+
+// What a newer program found may be what this one cannot find.
+void refuse_to_replace_a_newer(const std::filesystem::path& file) {
+  if (file == "-" || !std::filesystem::is_regular_file(file)) return;
+  std::int64_t version = 0;
+  try {
+    version = files::read_json(file, "arthronaut.achieved", std::numeric_limits<int>::max()).version();
+  } catch (const InvalidInput&) {  // broken: it tells nobody anything
+  }
+  if (version > kVersion)
+    throw InvalidInput(file, "version",
+                       "is " + std::to_string(version) + ", newer than this program writes (" +
+                           std::to_string(kVersion) + "); it stays as it is");
+}
+
+}  // namespace
+
 void write_achieved_file(const std::filesystem::path& file,
                          const std::map<tunnels::TunnelKey, Comparison>& comparisons,
                          const std::map<tunnels::TunnelKey, AchievedPlace>& places) {
+  refuse_to_replace_a_newer(file);
   ordered_json document;
   document["format"] = "arthronaut.achieved";
-  document["version"] = 1;
+  document["version"] = kVersion;
   document["tunnels"] = ordered_json::array();
   document["bones"] = ordered_json::array();
   for (const auto& [key, comparison] : comparisons) {

@@ -23,7 +23,8 @@
 
 namespace arthronaut::postop {
 
-// Atomic; "-" is standard output. Throws IoError; nothing is written then.
+// Atomic; "-" is standard output. Throws IoError, or InvalidInput where `file` is a comparison by a newer
+// version of the program; nothing is written then.
 void write_achieved_file(const std::filesystem::path& file,
                          const std::map<tunnels::TunnelKey, Comparison>& comparisons,
                          const std::map<tunnels::TunnelKey, AchievedPlace>& places = {});

@@ -80,6 +80,19 @@ TEST_F(ForeignImages, TakeNothingAwayFromWhatTheCaseKeeps) {
   EXPECT_TRUE(kept_bone());
 }
 
+// What a newer program compared was written over without a word.
+TEST(PostopRun, AComparisonByANewerProgramIsNotReplaced) {
+  const test::TemporaryFolder folder;
+  open_case::PostopAnswer answer;
+  answer.comparisons[bones::BoneKind::Femur].bone.is_found = true;
+  const std::string newer = R"({"format": "arthronaut.achieved", "version": 2, "knees": []})";
+  files::write_atomically(achieved_file(folder.path()), newer);
+  EXPECT_THROW((void)keep(answer, folder.path()), InvalidInput);
+  EXPECT_EQ(files::read_text(achieved_file(folder.path())), newer);
+  files::write_atomically(achieved_file(folder.path()), "{");
+  EXPECT_TRUE(keep(answer, folder.path())) << "broken ones are";
+}
+
 // A second CT, a poorer one: the good comparison of before was gone without a word.
 TEST(PostopRun, ATunnelThatIsReliedOnStaysKept) {
   const test::TemporaryFolder folder;
