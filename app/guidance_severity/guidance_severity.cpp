@@ -11,7 +11,8 @@ using widgets::Severity;
 
 std::string part(const guidance::GuidanceNumbers& guidance, landmarks::AnatomicalDirection direction) {
   const double value = guidance.offset_in_mm(direction);
-  return widgets::fixed(std::abs(value), 1) + " " + std::string(landmarks::to_text(direction, value >= 0));
+  const std::string mm = widgets::fixed(std::abs(value), 1);
+  return mm + (mm == "0.0" ? " " : " too ") + std::string(landmarks::to_text(direction, value >= 0));
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ struct DrillText {
 // Where several drills are declared, which one it is, as marker_name() says it; else empty.
 [[nodiscard]] std::string drill_name(const tools::ToolSet& tools, const guidance::DrillDepth& drill);
 
-// The two parts of the offset across the plan in anatomical words: "1.2 anterior", "0.4 distal". Their
-// squares add up to the length's.
+// The two parts of the offset across the plan in anatomical words: "1.2 too anterior", "0.4 too distal", so
+// that nobody takes for where to go what is where the guide lies. Their squares add up to the length's.
 struct OffsetParts {
   std::string side, up;
 };

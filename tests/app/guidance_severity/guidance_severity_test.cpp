@@ -104,13 +104,15 @@ TEST(GuidanceSeverity, Hazard31TheOffsetsPartsAreNamedByTheBonesAxes) {
   guidance::GuidanceNumbers g;
   g.offset_anterior_mm = -1.2;
   g.offset_proximal_mm = 0.4;
-  EXPECT_EQ(offset_parts(g).side, "1.2 posterior");
-  EXPECT_EQ(offset_parts(g).up, "0.4 proximal");
+  EXPECT_EQ(offset_parts(g).side, "1.2 too posterior");
+  EXPECT_EQ(offset_parts(g).up, "0.4 too proximal");
   g.across_plan.up_is = landmarks::AnatomicalDirection::Anterior;
   g.across_plan.side_is = landmarks::AnatomicalDirection::Lateral;
   g.offset_lateral_mm = -2;
-  EXPECT_EQ(offset_parts(g).side, "2.0 medial");
-  EXPECT_EQ(offset_parts(g).up, "1.2 posterior");
+  EXPECT_EQ(offset_parts(g).side, "2.0 too medial");
+  EXPECT_EQ(offset_parts(g).up, "1.2 too posterior");
+  g.offset_anterior_mm = 0.04;
+  EXPECT_EQ(offset_parts(g).up, "0.0 anterior") << "of nothing there is not too much";
 }
 
 // Markers are called by what they are fixed to; one that is declared nowhere, by its number.
