@@ -238,7 +238,13 @@ bool BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
   const float line = ui.theme.px(3);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const PaneMark* under_mouse = nullptr;
-  std::vector<ImVec4> words;  // that were drawn
+  std::vector<ImVec4> words;  // that were drawn, and the points of which there are many
+  for (const PaneMark& mark : marks)
+    if (const auto at = scene::project(pane_.camera(), mark.point_mm, size); at && mark.id.empty()) {
+      const float x = area.x + static_cast<float>(at->x()), y = area.y + static_cast<float>(at->y());
+      const float r = ui.theme.px(radius_px(mark));
+      words.emplace_back(x - r, y - r, x + r, y + r);
+    }
   for (const PaneMark& mark : marks) {
     const auto projected = scene::project(pane_.camera(), mark.point_mm, size);
     if (!projected) continue;
@@ -281,12 +287,17 @@ bool BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
     if (!mark.word.empty() && (!is_behind || mark.can_be_dragged)) {
       const std::string word = mark.word + (is_behind ? " (behind)" : "");
       const ImFont* font = is_behind ? ui.theme.body : ui.theme.strong;
-      const ImVec2 place =
-          free_place({at.x, at.y - (mark.shape == PaneMark::Shape::Pin ? 2.1F * r : 0)},
-                     font->CalcTextSizeA(font->FontSize, std::numeric_limits<float>::max(), 0, word.c_str()),
-                     r * 1.4F, area, words);
-      draw.AddText(font, font->FontSize, {place.x + 1, place.y + 1}, widgets::kBackground, word.c_str());
-      draw.AddText(font, font->FontSize, place, is_behind ? kHidden : widgets::kText, word.c_str());
+      const ImVec2 from{at.x, at.y - (mark.shape == PaneMark::Shape::Pin ? 2.1F * r : 0)};
+      ImVec2 wide = font->CalcTextSizeA(font->FontSize, std::numeric_limits<float>::max(), 0, word.c_str());
+      // Among many the number farther off would be read as that of another, and two that touch as one.
+      if (is_one_of_many) wide.x += font->FontSize / 2;
+      const std::optional<ImVec2> place = is_one_of_many
+                                              ? free_place_on({0}, from, wide, r * 1.4F, area, words)
+                                              : free_place(from, wide, r * 1.4F, area, words);
+      if (place) {
+        draw.AddText(font, font->FontSize, {place->x + 1, place->y + 1}, widgets::kBackground, word.c_str());
+        draw.AddText(font, font->FontSize, *place, is_behind ? kHidden : widgets::kText, word.c_str());
+      }
     }
     const bool is_near = std::abs(mouse.x - at.x) < r * 1.4F && std::abs(mouse.y - at.y) < r * 1.4F;
     const bool is_within = !is_near && !is_behind && !mark.area_mm.empty() &&

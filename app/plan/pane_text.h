@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <optional>
 #include <vector>
 
 #include "app/widgets/controls.h"
@@ -22,25 +24,37 @@ namespace arthronaut::plan {
 
 // Where a word runs over none of those that were drawn before (`taken`, as corners; it joins them) and not
 // over the edge: to the right of its sign at `point`, whose half width is `gap`, else to the left, on the
-// lines above and below in turn. Where nothing is free: to the right.
-[[nodiscard]] inline ImVec2 free_place(const ImVec2& point, const ImVec2& text, float gap,
-                                       const widgets::Rect& picture, std::vector<ImVec4>& taken) {
+// first of the lines where there is room; 0 is the sign's own, 1 the one below. Nowhere: nullopt.
+[[nodiscard]] inline std::optional<ImVec2> free_place_on(std::initializer_list<float> lines,
+                                                         const ImVec2& point, const ImVec2& text, float gap,
+                                                         const widgets::Rect& picture,
+                                                         std::vector<ImVec4>& taken) {
   const auto is_free = [&](const ImVec4& place) {
     return place.x >= picture.x && place.z <= picture.x + picture.width && place.y >= picture.y &&
            place.w <= picture.y + picture.height && std::ranges::none_of(taken, [&](const ImVec4& other) {
              return place.x < other.z && other.x < place.z && place.y < other.w && other.y < place.w;
            });
   };
-  const auto put = [&](const ImVec2& corner) {
-    taken.emplace_back(corner.x, corner.y, corner.x + text.x, corner.y + text.y);
-    return corner;
-  };
-  for (const float line : {0.F, 1.F, -1.F, 2.F, -2.F, 3.F, -3.F})
+  for (const float line : lines)
     for (const float left : {point.x + gap, point.x - gap - text.x}) {
       const ImVec2 corner(left, point.y + (line - 0.5F) * text.y);
-      if (is_free({corner.x, corner.y, corner.x + text.x, corner.y + text.y})) return put(corner);
+      const ImVec4 place(corner.x, corner.y, corner.x + text.x, corner.y + text.y);
+      if (!is_free(place)) continue;
+      taken.push_back(place);
+      return corner;
     }
-  return put(beside({point.x, point.y - text.y / 2}, text, gap, picture));
+  return std::nullopt;
+}
+
+// The same of a word that must be said: on the lines above and below in turn, and where nothing is free to
+// the right.
+[[nodiscard]] inline ImVec2 free_place(const ImVec2& point, const ImVec2& text, float gap,
+                                       const widgets::Rect& picture, std::vector<ImVec4>& taken) {
+  if (const auto free = free_place_on({0, 1, -1, 2, -2, 3, -3}, point, text, gap, picture, taken))
+    return *free;
+  const ImVec2 corner = beside({point.x, point.y - text.y / 2}, text, gap, picture);
+  taken.emplace_back(corner.x, corner.y, corner.x + text.x, corner.y + text.y);
+  return corner;
 }
 
 // The same for a measurement of two points or three: beside the middle of a distance's line, outside of an

@@ -86,6 +86,20 @@ TEST(PaneText, OfSignsThatAreCloseKeepApart) {
           << i << " over " << k;
 }
 
+// One of many numbers stands right beside its point, or is left out: a line off it would be another's.
+TEST(PaneText, ANumberAmongManyIsNeverFarFromItsPoint) {
+  std::vector<ImVec4> taken;
+  const ImVec2 point(kPicture.x + 200, kPicture.y + 100);
+  const auto place = [&] { return free_place_on({0}, point, kText, 12, kPicture, taken); };
+  const auto right = place(), left = place();
+  ASSERT_TRUE(right && left);
+  EXPECT_EQ(right->x, point.x + 12);
+  EXPECT_EQ(left->x, point.x - 12 - kText.x);
+  EXPECT_EQ(right->y, left->y);
+  EXPECT_FALSE(place());
+  EXPECT_EQ(taken.size(), 2U) << "what is left out takes no place";
+}
+
 // A picture that is smaller than the word shows its beginning.
 TEST(PaneText, BeginsInAPictureThatIsTooSmall) {
   expect_at(beside({110, 60}, kText, 9, {100, 50, 30, 10}), 100, 50);
