@@ -238,7 +238,10 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   test::write_file(session / "session.sqlite", "spoilt");
   const auto without = run_program({"report", knee, "-o", folder_ / "report.json"});
   EXPECT_EQ(without.exit_code, 4);
-  EXPECT_THAT(without.errors, HasSubstr("the session " + session.filename().string() + " cannot be read"));
+  EXPECT_THAT(without.errors, AllOf(HasSubstr("the session " + session.filename().string() +
+                                              " is damaged and only in it as far as it is whole"),
+                                    HasSubstr("session.sqlite: file is not a database"),
+                                    HasSubstr("the registration cannot be read and is not in it")));
 }
 
 // A video that breaks off leaves no session in the case, and not its camera either.
