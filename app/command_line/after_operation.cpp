@@ -1,5 +1,7 @@
 #include "app/command_line/after_operation.h"
 
+#include <algorithm>
+
 #include "app/library/workstation_library.h"
 
 namespace arthronaut::command_line {
@@ -17,20 +19,21 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-library::TakenImages taken_images(const images::ImageSeries& series) {
-  return {{series.patient_name, series.patient_id, ""}, series.study_date, series.uid};
+std::vector<std::vector<library::PlannedCase>> planned_cases_of(std::span<const images::ImageSeries> series) {
+  std::vector<library::TakenImages> images(series.size());
+  std::ranges::transform(series, images.begin(), library::taken_images);
+  return workstation_library::planned_cases_of(images);
 }
 
-void say_planned_cases(const Context& context, const library::TakenImages& images,
-                       const std::string& source) {
-  const auto cases = workstation_library::planned_cases_of({&images, 1});
-  for (const library::PlannedCase& planned : cases.front()) {
+void say_planned_cases(const Context& context, std::span<const library::PlannedCase> cases,
+                       const std::string& series_uid, const std::string& source) {
+  for (const library::PlannedCase& planned : cases) {
     const std::string folder = planned.folder.string();
     context.say(
         "  > the case \"" + planned.name +
         "\" is of this patient and has a plan; taken after the operation, they are compared with it by");
     context.say("    arthronaut compare " + quoted(folder) + " --postop " + quoted(source) +
-                (images.series_uid.empty() ? "" : " --series " + images.series_uid) + " -o " +
+                (series_uid.empty() ? "" : " --series " + series_uid) + " -o " +
                 quoted(folder + "/achieved.json"));
   }
 }

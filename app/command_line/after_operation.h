@@ -1,7 +1,7 @@
 // Images of a patient of whom this workstation has a case with a plan: they may be those after the operation.
 #pragma once
 
-#include <filesystem>
+#include <span>
 #include <string>
 
 #include "app/command_line/command.h"
@@ -10,10 +10,12 @@
 
 namespace arthronaut::command_line {
 
-// What a series says of itself.
-[[nodiscard]] library::TakenImages taken_images(const images::ImageSeries& series);
-// Which case they belong to and the command that compares them with its plan; nothing where there is none.
-// source: what `compare` is given.
-void say_planned_cases(const Context& context, const library::TakenImages& images, const std::string& source);
+// Of each of these series the cases of its patient that have a plan, by one look at the library.
+[[nodiscard]] std::vector<std::vector<library::PlannedCase>> planned_cases_of(
+    std::span<const images::ImageSeries> series);
+// Which cases they are and the command that compares the images with each one's plan; nothing where there are
+// none. series_uid: may be empty; source: what `compare` is given.
+void say_planned_cases(const Context& context, std::span<const library::PlannedCase> cases,
+                       const std::string& series_uid, const std::string& source);
 
 }  // namespace arthronaut::command_line

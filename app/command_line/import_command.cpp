@@ -93,7 +93,8 @@ void import(Context& context, const ImportArguments& arguments) {
                               : importing::told_by(import.side_source);
   context.say("Wrote " + folder.string() + ": a " + std::string(bones::to_text(target.side)) + " knee" +
               (by.empty() ? "" : " (" + by + ")") + ".");
-  say_planned_cases(context, {import.identity, import.origin.study_date, import.origin.series_uid},
+  const library::TakenImages taken{import.identity, import.origin.study_date, import.origin.series_uid};
+  say_planned_cases(context, workstation_library::planned_cases_of({&taken, 1}).front(), taken.series_uid,
                     arguments.source);
   if (!doubts.empty()) context.say_unreliable(folder.string(), doubts);
 }

@@ -238,8 +238,10 @@ void get(const Context& context, const GetArguments& arguments) {
     while (looking.wait_for(kLongestWait_s) == importing::SeriesProcess::State::Running) {
     }
     if (!looking.list()) return;  // what is wrong with the images the import says
-    for (const images::ImageSeries& series : looking.list()->series)
-      say_planned_cases(context, taken_images(series), arguments.request.folder.string());
+    const std::vector<images::ImageSeries>& found = looking.list()->series;
+    const auto planned = planned_cases_of(found);
+    for (std::size_t i = 0; i < found.size(); ++i)
+      say_planned_cases(context, planned[i], found[i].uid, arguments.request.folder.string());
   };
   const int fetched = summary.image_count - summary.kept_count;
   context.say(summary.message + (summary.way.empty()

@@ -56,7 +56,9 @@ void print_json(const images::SeriesList& list) {
 }
 
 void print(const Context& context, const images::SeriesList& list, const std::string& source) {
-  for (const auto& series : list.series) {
+  const auto planned = planned_cases_of(list.series);
+  for (std::size_t i = 0; i < list.series.size(); ++i) {
+    const images::ImageSeries& series = list.series[i];
     std::string line = series.modality.empty() ? series.format : series.modality;
     if (!series.number.empty()) line += " series " + series.number;
     if (!series.description.empty()) line += " \"" + series.description + "\"";
@@ -76,7 +78,7 @@ void print(const Context& context, const images::SeriesList& list, const std::st
       if (!part.empty()) context.say("    " + part);
     if (!series.is_readable()) context.say("  ! cannot be opened: " + series.refusal);
     for (const auto& warning : series.warnings) context.say("  ! " + warning);
-    if (series.is_readable()) say_planned_cases(context, taken_images(series), source);
+    say_planned_cases(context, planned[i], series.uid, source);
   }
   for (const auto& skipped : list.skipped)
     context.say("left out: " + skipped.file.string() + ": " + skipped.reason);

@@ -9,10 +9,7 @@ void PlannedSeries::look_up(const ImportSources& sources) {
   std::vector<library::TakenImages> images;
   for (const ImportSource& source : sources.sources) {
     library::TakenImages& taken = images.emplace_back();
-    if (!source.series || !source.can_be_imported()) continue;
-    taken = {{source.series->patient_name, source.series->patient_id, ""},
-             source.series->study_date,
-             source.series->uid};
+    if (source.series && source.can_be_imported()) taken = library::taken_images(*source.series);
   }
   looking_.start([images = std::move(images)] { return workstation_library::planned_cases_of(images); },
                  wake_);

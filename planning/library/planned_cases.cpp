@@ -36,6 +36,11 @@ bool is_of(const CaseRecord& record, const TakenImages& images) {
 
 }  // namespace
 
+TakenImages taken_images(const images::ImageSeries& series) {
+  if (!series.is_readable()) return {};
+  return {{series.patient_name, series.patient_id, ""}, series.study_date, series.uid};
+}
+
 std::vector<PlannedCase> planned_cases_of(std::span<const CaseRecord> records, const TakenImages& images) {
   std::vector<const CaseRecord*> found;
   if (images.patient.patient_id.empty()) return {};

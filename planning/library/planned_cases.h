@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "planning/cases/identity.h"
+#include "planning/images/series_list.h"
 #include "planning/library/case_record.h"
 
 namespace arthronaut::library {
@@ -18,6 +19,8 @@ struct TakenImages {
   std::string study_date;  // "20260131"
   std::string series_uid;
 };
+// What a series says of itself; nothing of one that cannot be opened.
+[[nodiscard]] TakenImages taken_images(const images::ImageSeries& series);
 
 struct PlannedCase {
   std::filesystem::path folder;
