@@ -1,7 +1,7 @@
-#include <array>
 #include <cmath>
 #include <cstdio>
 
+#include "navigation/strokes/csv_place.h"
 #include "navigation/strokes/curves.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/csv_table.h"
@@ -9,6 +9,8 @@
 namespace arthronaut::strokes {
 
 namespace {
+
+constexpr double kFarthestTip_mm = 1000;  // no hand draws further off its world marker
 
 // Empty where all three cells are.
 std::optional<Eigen::Vector3d> read_shaft(const files::CsvTable& table, std::size_t row) {
@@ -21,19 +23,6 @@ std::optional<Eigen::Vector3d> read_shaft(const files::CsvTable& table, std::siz
   return shaft.normalized();
 }
 
-// No hand draws further off its world marker.
-Eigen::Vector3d read_position(const files::CsvTable& table, std::size_t row) {
-  constexpr double kFarthest_mm = 1000;
-  Eigen::Vector3d position_mm;
-  constexpr std::array kColumns{"x_mm", "y_mm", "z_mm"};
-  for (int i = 0; i < 3; ++i) {
-    position_mm[i] = table.number(row, kColumns[i]);
-    if (std::abs(position_mm[i]) > kFarthest_mm)
-      table.fail(row, kColumns[i], "lies more than a metre from the world marker");
-  }
-  return position_mm;
-}
-
 }  // namespace
 
 Curves read_curves_file(const std::filesystem::path& file) {
@@ -44,7 +33,8 @@ Curves read_curves_file(const std::filesystem::path& file) {
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     curves[row].curve = table.int32(row, "curve");
     curves[row].time_s = table.optional_number(row, "time_s");
-    curves[row].position_mm = read_position(table, row);
+    curves[row].position_mm = place_in(table, row, {"x_mm", "y_mm", "z_mm"}, kFarthestTip_mm,
+                                       "lies more than a metre from the world marker");
     if (has_shaft) curves[row].shaft_direction = read_shaft(table, row);
   }
   return curves;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <set>
 
+#include "navigation/strokes/csv_place.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/csv_table.h"
 
@@ -12,20 +13,25 @@ namespace arthronaut::strokes {
 namespace {
 
 constexpr double kMaxNormError = 1e-3;
+// No camera, and no tracker, sees a marker of the operation from further off.
+constexpr double kFarthestPose_mm = 10000;
 
 PoseRow read_row(const files::CsvTable& table, std::size_t row) {
   PoseRow pose;
   pose.frame = table.integer(row, "frame");
+  if (pose.frame < 0) table.fail(row, "frame", "must not be negative");
   pose.time_s = table.number(row, "time_s");
   pose.marker_id = table.int32(row, "marker_id");
+  if (pose.marker_id < 0) table.fail(row, "marker_id", "must not be negative");
   const Eigen::Quaterniond rotation(table.number(row, "qw"), table.number(row, "qx"), table.number(row, "qy"),
                                     table.number(row, "qz"));
   if (std::abs(rotation.norm() - 1.0) > kMaxNormError)
     table.fail(row, "qw", "the quaternion's norm is not 1");
   pose.camera_from_marker.rotation = rotation.normalized();
-  pose.camera_from_marker.translation_mm = {table.number(row, "tx_mm"), table.number(row, "ty_mm"),
-                                            table.number(row, "tz_mm")};
+  pose.camera_from_marker.translation_mm =
+      place_in(table, row, {"tx_mm", "ty_mm", "tz_mm"}, kFarthestPose_mm, "lies more than ten metres off");
   pose.rms_px = table.number(row, "rms_px");
+  if (pose.rms_px < 0) table.fail(row, "rms_px", "must not be negative");
   pose.mark_angle_deg = table.optional_number(row, "mark_angle_deg");
   if (pose.mark_angle_deg && (*pose.mark_angle_deg < 0 || *pose.mark_angle_deg >= 360))
     table.fail(row, "mark_angle_deg", "is not within [0, 360)");

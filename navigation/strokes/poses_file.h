@@ -23,8 +23,9 @@ struct PoseRow {
 };
 
 // Throws IoError or InvalidInput (file, line, column, reason): missing column, a number that is not finite, a
-// quaternion whose norm is off 1 by more than 1e-3, time that runs backwards, a marker twice in a frame. The
-// column size_mm may be missing: other programs do not write it.
+// quaternion whose norm is off 1 by more than 1e-3, a marker more than ten metres off, a frame, marker or
+// residual below zero, time that runs backwards, a marker twice in a frame. The column size_mm may be
+// missing: other programs do not write it.
 [[nodiscard]] std::vector<PoseRow> read_poses_file(const std::filesystem::path& file);
 void write_poses_file(const std::filesystem::path& file, const std::vector<PoseRow>& rows);
 [[nodiscard]] std::string poses_to_text(const std::vector<PoseRow>& rows);

@@ -71,6 +71,15 @@ TEST(PosesFile, RefusesWhatBreaksTheContract) {
   for (const char* angle : {"360", "-0.5"})
     EXPECT_THAT(error_of("angle.csv", std::string(kHeader) + "0,0,0,1,0,0,0,1,2,3,0.1," + angle + "\n"),
                 testing::HasSubstr("line 2, column mark_angle_deg: is not within [0, 360)"));
+  const std::string position = "line 2, column tz_mm: lies more than ten metres off";
+  for (const char* off : {"10001", "-1e300"})
+    EXPECT_THAT(error_of("far.csv", std::string(kHeader) + "0,0,2,1,0,0,0,1,2," + off + ",0.1,\n"),
+                testing::HasSubstr(position));
+  for (const auto& [below, column] : {std::pair{"-1,0,2,1,0,0,0,1,2,3,0.1,\n", "frame"},
+                                      std::pair{"0,0,-2,1,0,0,0,1,2,3,0.1,\n", "marker_id"},
+                                      std::pair{"0,0,2,1,0,0,0,1,2,3,-0.1,\n", "rms_px"}})
+    EXPECT_THAT(error_of("below.csv", std::string(kHeader) + below),
+                testing::HasSubstr("line 2, column " + std::string(column) + ": must not be negative"));
   // 2^32 + 4 is no marker 4.
   EXPECT_THAT(
       error_of("id.csv", std::string(kHeader) + "0,0,4294967300,1,0,0,0,1,2,3,0.1,\n"),
