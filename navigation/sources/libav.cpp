@@ -53,7 +53,7 @@ std::string libav_message(int error) {
   // The library's own words for these are of its insides.
   switch (error) {
     case AVERROR_INVALIDDATA:
-      return "no video that can be read";
+      return "its data are of no known format";
     case AVERROR_HTTP_NOT_FOUND:
       return "the server has no stream of that name";
     case AVERROR_HTTP_UNAUTHORIZED:
