@@ -1,99 +1,23 @@
 #include "planning/dicom_out/dicom_export.h"
 
-#include <dcmtk/config/osconfig.h>
-#include <dcmtk/dcmdata/dctk.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <map>
-#include <set>
 
 #include "planning/bones/mesh_file.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/plan_file.h"
-#include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
-#include "planning/images/volume_file.h"
-#include "planning/phantom/phantom_case.h"
 #include "planning/plan_export/drilled_bone.h"
 #include "tests/message_of.h"
-#include "tests/planning/images/dicom_series_form.h"
-#include "tests/temporary_folder.h"
+#include "tests/planning/dicom_out/exported_case.h"
 
 namespace arthronaut::dicom_out {
 namespace {
 
 namespace fs = std::filesystem;
 using bones::BoneKind;
-using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-std::string text(DcmItem& item, const DcmTagKey& key) {
-  OFString value;
-  return item.findAndGetOFStringArray(key, value).good() ? std::string(value.c_str()) : "(absent)";
-}
-
-struct Dicom {
-  explicit Dicom(const fs::path& file) {
-    if (format.loadFile(file.c_str()).bad()) throw std::runtime_error("cannot be loaded: " + file.string());
-  }
-  [[nodiscard]] std::string operator[](const DcmTagKey& key) { return text(*format.getDataset(), key); }
-  [[nodiscard]] std::string in(const DcmTagKey& sequence, long number, const DcmTagKey& key) {
-    DcmItem* item = nullptr;
-    return format.getDataset()->findAndGetSequenceItem(sequence, item, number).good() ? text(*item, key)
-                                                                                      : "(no item)";
-  }
-  [[nodiscard]] std::string document() {
-    const Uint8* bytes = nullptr;
-    Uint32 length = 0;
-    if (format.getDataset()->findAndGetUint8Array(DCM_EncapsulatedDocument, bytes).bad()) return "(absent)";
-    (void)format.getDataset()->findAndGetUint32(DCM_EncapsulatedDocumentLength, length);
-    return {reinterpret_cast<const char*>(bytes), length};
-  }
-
-  DcmFileFormat format;
-};
-
-std::map<std::string, std::string> contents_of(const fs::path& folder) {
-  std::map<std::string, std::string> contents;
-  for (const auto& entry : fs::directory_iterator(folder))
-    contents[entry.path().filename().string()] = files::read_text(entry.path());
-  return contents;
-}
-
-class DicomExport : public testing::Test {
- protected:
-  DicomExport() {
-    contents_.knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4.0}), "Phantom");
-    contents_.knee.created_utc = "2026-01-31T12:34:56Z";
-    contents_.moment_utc = "2026-02-01T07:08:09Z";
-    contents_.report_pdf = "%PDF-1.4 odd";
-    contents_.report_pdf += '\n';  // an odd length, which DICOM fills up
-    contents_.pictures = {
-        {"Picture 1", 3, 2, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18}}};
-  }
-  // As import leaves it after a series that says all there is to be said.
-  void be_of_images() {
-    test::write_dicom_series(folder_ / "ct", test::ellipsoid_ct());
-    images::VolumeFileOptions options;
-    images::DicomOrigin origin;
-    options.on_origin = [&](const images::DicomOrigin& found) { origin = found; };
-    const images::Volume volume = images::read_volume(folder_ / "ct", options);
-    contents_.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
-    contents_.studies = {{BoneKind::Femur, origin}, {BoneKind::Tibia, origin}};
-  }
-  ExportSummary write(const std::string& name = "out") { return export_dicom(contents_, folder_ / name); }
-  [[nodiscard]] Dicom read(const std::string& name) const { return Dicom(folder_ / ("out/" + name)); }
-  [[nodiscard]] static std::vector<std::string> all_names() {
-    return {"femur.dcm", "tibia.dcm",  "femur_drilled.dcm", "tibia_drilled.dcm",
-            "plan.dcm",  "report.dcm", "image_001.dcm"};
-  }
-
-  ExportContents contents_;
-  const test::TemporaryFolder folder_;
-};
 
 TEST_F(DicomExport, WritesEveryObjectAndNothingElse) {
   const ExportSummary summary = write();
@@ -105,72 +29,6 @@ TEST_F(DicomExport, WritesEveryObjectAndNothingElse) {
   EXPECT_THAT(folder_.names(), ElementsAre("out"));
   EXPECT_EQ(fs::status(folder_ / "out").permissions() & fs::perms::mask, fs::perms{0700});
   EXPECT_EQ(fs::status(folder_ / "out/femur.dcm").permissions() & fs::perms::mask, fs::perms{0600});
-}
-
-// What all of them say: patient, study, series and equipment, letter by letter as the images have it.
-TEST_F(DicomExport, LiesBesideTheStudyOfTheImages) {
-  be_of_images();
-  write();
-  Dicom slice(folder_ / "ct/slice1000.dcm");
-  for (const std::string& name : all_names()) {
-    Dicom object = read(name);
-    for (const DcmTagKey& key : {DCM_PatientName, DCM_PatientID, DCM_IssuerOfPatientID, DCM_PatientBirthDate,
-                                 DCM_PatientSex, DCM_StudyInstanceUID, DCM_StudyID, DCM_StudyDate,
-                                 DCM_StudyTime, DCM_AccessionNumber, DCM_ReferringPhysicianName}) {
-      EXPECT_EQ(object[key], slice[key]) << name;
-      EXPECT_FALSE(object[key].empty());
-    }
-    EXPECT_NE(object[DCM_SeriesInstanceUID], slice[DCM_SeriesInstanceUID]);
-    EXPECT_EQ(object[DCM_Manufacturer], "Arthronaut");
-    EXPECT_EQ(object[DCM_SpecificCharacterSet], "ISO_IR 192");
-    EXPECT_EQ(object[DCM_ContentDate], "20260201");
-    EXPECT_EQ(object[DCM_ContentTime], "070809");
-    EXPECT_EQ(object[DCM_PatientIdentityRemoved], "(absent)");
-    EXPECT_EQ(object[DCM_TimezoneOffsetFromUTC], "(absent)");  // of the study's times nobody knows it
-    EXPECT_EQ(object.format.getDataset()->getOriginalXfer(), EXS_LittleEndianExplicit);
-    EXPECT_EQ(text(*object.format.getMetaInfo(), DCM_MediaStorageSOPInstanceUID), object[DCM_SOPInstanceUID]);
-  }
-  for (const char* name : {"femur.dcm", "tibia.dcm", "femur_drilled.dcm", "tibia_drilled.dcm"}) {
-    Dicom model = read(name);
-    EXPECT_EQ(model[DCM_FrameOfReferenceUID], slice[DCM_FrameOfReferenceUID]);
-    EXPECT_EQ(model[DCM_SeriesInstanceUID], read("femur.dcm")[DCM_SeriesInstanceUID]);
-    // All 44 images, and the series that they are of.
-    EXPECT_EQ(model.in(DCM_ReferencedSeriesSequence, 0, DCM_SeriesInstanceUID), slice[DCM_SeriesInstanceUID]);
-    EXPECT_EQ(model.in(DCM_SourceInstanceSequence, 0, DCM_ReferencedSOPClassUID), UID_CTImageStorage);
-    EXPECT_THAT(model.in(DCM_SourceInstanceSequence, 43, DCM_ReferencedSOPInstanceUID),
-                HasSubstr("1.2.826.0.1.3680043.8.498.2."));
-    EXPECT_EQ(model.in(DCM_SourceInstanceSequence, 44, DCM_ReferencedSOPInstanceUID), "(no item)");
-  }
-}
-
-// What says no offset from UTC is by the clock on the wall: beside images this machine's, else it is said.
-TEST_F(DicomExport, TimesBesideImagesAreThoseOfTheWorkstation) {
-  const char* const zone = std::getenv("TZ");
-  const std::string before = zone != nullptr ? zone : "";
-  const auto set_zone = [](const char* name) {
-    if (name != nullptr)
-      ::setenv("TZ", name, 1);
-    else
-      ::unsetenv("TZ");
-    ::tzset();
-  };
-  set_zone("America/New_York");
-  contents_.moment_utc = "2026-02-01T03:08:09Z";
-  write();
-  for (const std::string& name : all_names()) {
-    Dicom object = read(name);
-    EXPECT_EQ(object[DCM_ContentDate] + object[DCM_ContentTime], "20260201030809") << name;
-    EXPECT_EQ(object[DCM_TimezoneOffsetFromUTC], "+0000") << name;
-  }
-  fs::remove_all(folder_ / "out");
-  be_of_images();
-  write();
-  for (const std::string& name : all_names()) {
-    Dicom object = read(name);
-    EXPECT_EQ(object[DCM_ContentDate] + object[DCM_ContentTime], "20260131220809") << name;
-    EXPECT_EQ(object[DCM_TimezoneOffsetFromUTC], "(absent)") << name;
-  }
-  set_zone(zone != nullptr ? before.c_str() : nullptr);
 }
 
 TEST_F(DicomExport, ModelsAreTheBonesInMillimetres) {
@@ -305,104 +163,6 @@ TEST_F(DicomExport, ThePictureIsThereByteByByte) {
   const Uint8* bytes = nullptr;
   ASSERT_TRUE(picture.format.getDataset()->findAndGetUint8Array(DCM_PixelData, bytes).good());
   EXPECT_EQ(std::vector<std::uint8_t>(bytes, bytes + 18), contents_.pictures[0].rgb);
-}
-
-// Without images there is a study of the case's own, and nobody is made up.
-TEST_F(DicomExport, ACaseOfNoStudyGetsOneOfItsOwn) {
-  const ExportSummary summary = write();
-  EXPECT_THAT(summary.notes, testing::Contains(HasSubstr("a new one was made")));
-  const std::string study = read("femur.dcm")[DCM_StudyInstanceUID];
-  EXPECT_THAT(study, HasSubstr("2.25."));
-  for (const std::string& name : all_names()) {
-    Dicom object = read(name);
-    EXPECT_EQ(object[DCM_StudyInstanceUID], study);
-    EXPECT_EQ(object[DCM_StudyDate], "20260131");
-    EXPECT_EQ(object[DCM_StudyTime], "123456");
-    for (const DcmTagKey& key : {DCM_PatientName, DCM_PatientID, DCM_PatientBirthDate, DCM_PatientSex,
-                                 DCM_StudyID, DCM_AccessionNumber, DCM_ReferringPhysicianName})
-      EXPECT_EQ(object[key], "") << name;
-  }
-  EXPECT_EQ(read("femur.dcm")[DCM_FrameOfReferenceUID], read("tibia.dcm")[DCM_FrameOfReferenceUID]);
-  // Another plan of the same knee comes into the same study, as other objects.
-  contents_.knee.plan.tunnels.at(BoneKind::Femur).diameter_mm += 1;
-  write("later");
-  Dicom later(folder_ / "later/femur_drilled.dcm");
-  EXPECT_EQ(later[DCM_StudyInstanceUID], study);
-  EXPECT_NE(later[DCM_SOPInstanceUID], read("femur_drilled.dcm")[DCM_SOPInstanceUID]);
-  EXPECT_NE(later[DCM_SeriesInstanceUID], read("femur_drilled.dcm")[DCM_SeriesInstanceUID]);
-}
-
-// Nobody says that a mesh lies where the images do.
-TEST_F(DicomExport, AMeshBesideImagesHasAFrameOfItsOwn) {
-  be_of_images();
-  contents_.studies.erase(BoneKind::Tibia);
-  write();
-  Dicom femur = read("femur.dcm"), tibia = read("tibia.dcm");
-  EXPECT_EQ(tibia[DCM_StudyInstanceUID], femur[DCM_StudyInstanceUID]);
-  EXPECT_NE(tibia[DCM_FrameOfReferenceUID], femur[DCM_FrameOfReferenceUID]);
-  EXPECT_NE(tibia[DCM_SeriesInstanceUID], femur[DCM_SeriesInstanceUID]);
-  EXPECT_EQ(tibia[DCM_SourceInstanceSequence], "(absent)");
-}
-
-// Under which the images are filed: a part of it would be another patient's, or nobody's.
-TEST_F(DicomExport, Hazard20WhatIdentifiesIsWrittenAsItCame) {
-  be_of_images();
-  const std::string number(65, '7'), issuer(65, 'x');
-  contents_.identity->patient_id = number;
-  for (auto& [kind, study] : contents_.studies) {
-    study.study_uid = "1.02.3";
-    study.patient_id_issuer = issuer;
-    study.accession_number = "12345678901234567";
-  }
-  const auto notes = write().notes;
-  for (const char* name : {"PatientID", "IssuerOfPatientID", "StudyInstanceUID"})
-    EXPECT_THAT(notes, testing::Contains(testing::StartsWith(std::string(name) + " is not as DICOM allows")));
-  for (const std::string& name : all_names()) {
-    Dicom object = read(name);
-    EXPECT_EQ(object[DCM_PatientID], number);
-    EXPECT_EQ(object[DCM_IssuerOfPatientID], issuer);
-    EXPECT_EQ(object[DCM_StudyInstanceUID], "1.02.3");
-    EXPECT_EQ(object[DCM_AccessionNumber], "");
-  }
-}
-
-TEST_F(DicomExport, TheSameCaseGivesTheSameBytes) {
-  be_of_images();
-  write("a");
-  write("b");
-  EXPECT_EQ(contents_of(folder_ / "a"), contents_of(folder_ / "b"));
-}
-
-TEST_F(DicomExport, InstancesAreToldApart) {
-  write();
-  std::set<std::string> instances;
-  for (const std::string& name : all_names()) instances.insert(read(name)[DCM_SOPInstanceUID]);
-  EXPECT_EQ(instances.size(), 7U);
-}
-
-// Byte by byte: neither the patient nor anything that leads back to the study.
-TEST_F(DicomExport, Hazard19DeidentifiedHoldsNoIdentity) {
-  be_of_images();
-  const images::DicomOrigin& origin = contents_.studies.at(BoneKind::Femur);
-  contents_.is_deidentified = true;
-  const ExportSummary summary = write();
-  EXPECT_THAT(summary.notes, testing::Contains(HasSubstr("Pictures are left out")));
-  const auto written = contents_of(folder_ / "out");
-  EXPECT_EQ(written.size(), 6U);
-  for (const auto& [name, bytes] : written) {
-    for (const std::string& word :
-         {std::string("Muster"), std::string("4711"), std::string("19900131"), std::string("20260131"),
-          std::string("20260201"), std::string("Clinic"), origin.study_uid, origin.study_id,
-          origin.accession_number, origin.referring_physician, origin.study_date, origin.series_uid,
-          origin.frame_of_reference_uid})
-      EXPECT_EQ(bytes.find(word), std::string::npos) << name << ": " << word;
-    Dicom object = read(name);
-    EXPECT_EQ(object[DCM_PatientIdentityRemoved], "YES");
-    EXPECT_FALSE(object[DCM_DeidentificationMethod].empty());
-    EXPECT_EQ(object[DCM_PatientName], "Anonymous^");
-  }
-  EXPECT_EQ(read("femur.dcm")[DCM_FrameOfReferenceUID], read("tibia.dcm")[DCM_FrameOfReferenceUID]);
-  EXPECT_EQ(read("report.dcm")[DCM_BurnedInAnnotation], "NO");
 }
 
 TEST_F(DicomExport, ATunnelOfAnotherSurfaceIsNotDrilled) {
