@@ -38,11 +38,11 @@ void say_guidance(const Context& context, const theatre::NavigationSummary& summ
     if (!why_not.empty()) context.say("  frames without it: " + why_not);
     return;
   }
-  context.say(
-      format("guidance in %ld of %ld frames; the last: guide to entry %.2f mm, axis to entry %.2f mm, "
-             "angle %.2f deg",
-             summary.guidance_counts.of(guidance::GuidanceState::Valid), summary.statistics.frame_count,
-             g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg));
+  // How far the axis is off is said once, as the screen has it: square to the guide it would be another
+  // number.
+  context.say(format("guidance in %ld of %ld frames; the last: guide to entry %.2f mm, angle %.2f deg",
+                     summary.guidance_counts.of(guidance::GuidanceState::Valid),
+                     summary.statistics.frame_count, g.tip_to_entry_mm, g.angle_deg));
   if (!why_not.empty()) context.say("  frames without it: " + why_not);
   const auto part = [&](landmarks::AnatomicalDirection direction) {
     const double value_mm = g.offset_in_mm(direction);
