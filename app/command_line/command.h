@@ -56,24 +56,24 @@ CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& nam
 CLI::Option* add_vector_option(CLI::App& subcommand, const std::string& name, Eigen::Vector3d& value,
                                const std::string& description);
 
-// One a file: app/command_line/NAME_command.cpp.
+// One a file, app/command_line/NAME_command.cpp, in the order of --help.
+void add_import_command(CLI::App& app, Context& context);
+void add_cases_command(CLI::App& app, Context& context);
+void add_series_command(CLI::App& app, Context& context);
+void add_sources_command(CLI::App& app, Context& context);
+void add_landmarks_command(CLI::App& app, Context& context);
+void add_segment_command(CLI::App& app, Context& context);
+void add_plan_command(CLI::App& app, Context& context);
 void add_calibrate_command(CLI::App& app, Context& context);
 void add_check_fluid_command(CLI::App& app, Context& context);
+void add_accuracy_command(CLI::App& app, Context& context);
 void add_track_command(CLI::App& app, Context& context);
 void add_pivot_command(CLI::App& app, Context& context);
 void add_digitise_command(CLI::App& app, Context& context);
 void add_register_command(CLI::App& app, Context& context);
-void add_import_command(CLI::App& app, Context& context);
-void add_cases_command(CLI::App& app, Context& context);
-void add_series_command(CLI::App& app, Context& context);
-void add_landmarks_command(CLI::App& app, Context& context);
-void add_segment_command(CLI::App& app, Context& context);
-void add_plan_command(CLI::App& app, Context& context);
-void add_phantom_command(CLI::App& app, Context& context);
 void add_navigate_command(CLI::App& app, Context& context);
 void add_replay_command(CLI::App& app, Context& context);
 void add_verify_command(CLI::App& app, Context& context);
-void add_accuracy_command(CLI::App& app, Context& context);
 void add_resume_command(CLI::App& app, Context& context);
 void add_rig_command(CLI::App& app, Context& context);
 void add_compare_command(CLI::App& app, Context& context);
@@ -81,7 +81,9 @@ void add_report_command(CLI::App& app, Context& context);
 void add_dicom_command(CLI::App& app, Context& context);
 void add_pacs_command(CLI::App& app, Context& context);
 void add_markers_command(CLI::App& app, Context& context);
+void add_phantom_command(CLI::App& app, Context& context);
 void add_demo_command(CLI::App& app, Context& context);
+void add_train_command(CLI::App& app, Context& context);
 void add_experiment_command(CLI::App& app, Context& context);
 
 // What the user asked of the window.

@@ -7,8 +7,6 @@
 
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
-#include "app/command_line/sources_command.h"
-#include "app/command_line/train_command.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/geometry/error.h"
 #include "planning/log/log.h"
@@ -133,7 +131,7 @@ int run_command_line(int argc, char** argv,
                  "Case folder to open in the workstation, or images to import there");
   app.add_flag("--built-in", request.built_in, "Open the workstation on the built-in knee");
   app.add_option("--frames", request.frames, "Close the workstation after so many frames")
-      ->check(between(0, 1e9));
+      ->check(whole_between(0, 1000000000));
   app.add_flag("--list-widgets", request.list_widgets,
                "Print where the workstation's widgets are, for tests");
 

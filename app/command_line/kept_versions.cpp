@@ -10,15 +10,15 @@ namespace arthronaut::command_line {
 
 VersionOptions add_version_options(CLI::App& plan, VersionArguments& arguments) {
   VersionOptions options{};
-  options.take =
-      plan.add_option("--take", arguments.taken, "Take a kept version as the plan")->check(above_zero());
+  options.take = plan.add_option("--take", arguments.taken, "Take a kept version as the plan")
+                     ->check(whole_between(1, 1000000));
   options.keep =
       plan.add_flag("--keep", arguments.keeps, "Keep the plan as a version beside the one that is worked on");
   options.versions =
       plan.add_flag("--versions", arguments.lists, "List the kept versions and how each differs");
   options.name_version = plan.add_option("--name-version", arguments.named,
                                          "Give this kept version --name and --note, in place of its own")
-                             ->check(above_zero());
+                             ->check(whole_between(1, 1000000));
   options.keep->excludes(options.name_version);
   plan.add_option("--name", arguments.words.name,
                   "What the version is called that is kept or named; no patient's name");

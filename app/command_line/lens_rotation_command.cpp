@@ -110,8 +110,8 @@ void add_lens_rotation_experiment(CLI::App& experiment, Context& context) {
                                      "on a recorded clip",
                                      "arthronaut experiment lens-rotation --frames 500 -o rotation");
   const auto arguments = std::make_shared<LensRotationArguments>();
-  auto* frames =
-      command->add_option("--frames", arguments->frames, "Frames to simulate")->check(between(1, 100000));
+  auto* frames = command->add_option("--frames", arguments->frames, "Frames to simulate")
+                     ->check(whole_between(1, 100000));
   auto* seed = command
                    ->add_option("--seed", arguments->seed,
                                 "Seed of the simulation; the same seed gives the same figures")

@@ -330,7 +330,7 @@ void add_navigate_command(CLI::App& app, Context& context) {
   command
       ->add_option("--igtl", arguments->igtl_port,
                    "Serve poses and states by OpenIGTLink on this port, 0 for any free one, while it runs")
-      ->check(between(0, 65535));
+      ->check(whole_between(0, 65535));
   command
       ->add_flag("--igtl-network", arguments->igtl_network,
                  "Serve other machines too, and not this one alone: there is no password")

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "planning/bones/mesh_file.h"
@@ -20,11 +21,13 @@ namespace {
 namespace fs = std::filesystem;
 
 // limits: as the help has them.
-CLI::Validator of_number(const std::string& limits, const std::function<bool(double)>& is_right) {
+template <typename Number>
+CLI::Validator of_number(const std::string& limits, const std::function<bool(Number)>& is_right) {
   return {[limits, is_right](const std::string& text) {
-            double value = 0;
+            Number value = 0;
             if (CLI::detail::lexical_cast(text, value) && is_right(value)) return std::string();
-            return "\"" + text + "\" must be a number, " + limits;
+            const bool is_whole = std::is_integral_v<Number>;
+            return "\"" + text + "\" must be a " + (is_whole ? "whole number, " : "number, ") + limits;
           },
           limits};
 }
@@ -72,24 +75,30 @@ void refuse_unwritable_file(const fs::path& file) {
 }  // namespace
 
 CLI::Validator between(double least, double greatest) {
-  return of_number(files::format("%.16g to %.16g", least, greatest),
-                   [least, greatest](double value) { return value >= least && value <= greatest; });
+  return of_number<double>(files::format("%.16g to %.16g", least, greatest),
+                           [least, greatest](double value) { return value >= least && value <= greatest; });
+}
+
+CLI::Validator whole_between(std::int64_t least, std::int64_t greatest) {
+  return of_number<std::int64_t>(
+      std::to_string(least) + " to " + std::to_string(greatest),
+      [least, greatest](std::int64_t value) { return value >= least && value <= greatest; });
 }
 
 CLI::Validator finite() {
-  return of_number("finite", [](double value) { return std::isfinite(value); });
+  return of_number<double>("finite", [](double value) { return std::isfinite(value); });
 }
 
 CLI::Validator above_zero() {
-  return of_number("above 0", [](double value) { return value > 0 && std::isfinite(value); });
+  return of_number<double>("above 0", [](double value) { return value > 0 && std::isfinite(value); });
 }
 
-CLI::Validator a_seed() { return between(0, 0x1p53); }
+CLI::Validator a_seed() { return whole_between(0, std::int64_t{1} << 53); }
 
 CLI::Validator a_marker_id() {
   constexpr int kDictionarySize = 50;
-  return of_number("0 to 49 (DICT_4X4_50)",
-                   [](double value) { return value >= 0 && value < kDictionarySize; });
+  return of_number<std::int64_t>("0 to 49 (DICT_4X4_50)",
+                                 [](std::int64_t value) { return value >= 0 && value < kDictionarySize; });
 }
 
 CLI::Validator a_name() {

@@ -1,9 +1,10 @@
 // Checks of what was asked for, made before any work. CLI11's own let NaN pass, and name limits of 309
-// digits: every option that takes a fraction has one of these. A wrong value is wrong usage; a file that
+// digits: every option that takes a number has one of these. A wrong value is wrong usage; a file that
 // cannot be written, or that would be lost, is invalid input.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -13,6 +14,7 @@
 namespace arthronaut::command_line {
 
 [[nodiscard]] CLI::Validator between(double least, double greatest);
+[[nodiscard]] CLI::Validator whole_between(std::int64_t least, std::int64_t greatest);
 [[nodiscard]] CLI::Validator finite();
 [[nodiscard]] CLI::Validator above_zero();  // and finite
 [[nodiscard]] CLI::Validator a_seed();      // 0 to 2^53, which every reader of JSON keeps

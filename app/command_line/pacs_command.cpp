@@ -102,12 +102,12 @@ void add_connection_options(CLI::App& sub, Connection& connection, bool peer_may
       ->check(between(1, 3600));
   sub.add_option("--retries", connection.options.retries,
                  "How often a connection that fails or breaks is tried again; default: 3")
-      ->check(between(0, 100));
+      ->check(whole_between(0, 100));
   if (peer_may_call_us)
     sub.add_option("--listen", connection.options.listening_port,
                    "Port where the peer may call us by our AE title: images by C-MOVE, reports of storage "
                    "commitment")
-        ->check(between(1, 65535))
+        ->check(whole_between(1, 65535))
         ->excludes(web);
 }
 
@@ -196,7 +196,7 @@ void add_find(CLI::App& pacs_app, Context& context) {
                                                  {"study", pacs::FindLevel::Study},
                                                  {"series", pacs::FindLevel::Series}}));
   sub->add_option("--most", arguments->find.most_studies, "Most studies to list; default: 500")
-      ->check(between(1, 1000000));
+      ->check(whole_between(1, 1000000));
   sub->add_flag("--json", arguments->as_json, "The list as JSON");
   sub->callback([&context, arguments] { find(context, *arguments); });
 }

@@ -60,7 +60,8 @@ void add_predicted_error_experiment(CLI::App& experiment, Context& context) {
                      "pictures, with poor tools and a poor camera among them",
                      "arthronaut experiment predicted-error --operations 100 -o errors.csv");
   const auto arguments = std::make_shared<PredictedErrorArguments>();
-  command->add_option("--operations", arguments->operations, "Number of operations")->check(above_zero());
+  command->add_option("--operations", arguments->operations, "Number of operations")
+      ->check(whole_between(1, 1000000));
   command
       ->add_option("--seed", arguments->seed, "Seed of the operations; the same seed gives the same figures")
       ->check(a_seed());

@@ -110,7 +110,7 @@ void add_registration_experiment(CLI::App& experiment, Context& context) {
   const auto arguments = std::make_shared<ExperimentArguments>();
   command->add_option("--bone", arguments->bone, "Surface mesh of a femur, or of any bone with --area")
       ->required();
-  command->add_option("--trials", arguments->trials, "Number of trials")->check(above_zero());
+  command->add_option("--trials", arguments->trials, "Number of trials")->check(whole_between(1, 1000000));
   command->add_option("--noise", arguments->noise, "dry, ex-vivo or hard")
       ->check(CLI::IsMember({"dry", "ex-vivo", "hard"}));
   command->add_option("--seed", arguments->seed, "Seed of the trials; the same seed gives the same figures")

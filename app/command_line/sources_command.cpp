@@ -1,8 +1,7 @@
-#include "app/command_line/sources_command.h"
-
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "app/command_line/command.h"
 #include "navigation/sources/camera_facts.h"
 #include "navigation/sources/connected_cameras.h"
 #include "planning/files/format.h"
@@ -90,7 +89,7 @@ void list_sources(Context& context, const SourcesArguments& arguments) {
   } else if (sources::is_camera_address(arguments.camera)) {
     addresses.push_back(sources::read_camera_address(arguments.camera));
   } else {
-    throw InvalidInput(arguments.camera, "", "is no camera: /dev/video0");
+    throw InvalidInput(arguments.camera, "", "is no camera; one is named as /dev/video0 is");
   }
   ordered_json document = {
       {"format", "arthronaut.sources"}, {"version", 1}, {"cameras", ordered_json::array()}};

@@ -1,9 +1,8 @@
-#include "app/command_line/train_command.h"
-
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/case/exercise_case.h"
+#include "app/command_line/command.h"
 #include "app/command_line/interruption.h"
 #include "app/command_line/option_checks.h"
 #include "navigation/training/board_run.h"
@@ -83,9 +82,6 @@ void say_score(const Context& context, const Exercise& exercise, const Score& sc
 
 void train(Context& context, const Arguments& arguments) {
   const Exercise* exercise = training::find_exercise(arguments.exercise);
-  if (exercise == nullptr)
-    throw InvalidInput("there is no exercise \"" + arguments.exercise +
-                       "\"; \"arthronaut train --list\" names them");
   const Level level = training::level_from_text(arguments.level);
   const bool is_operation = exercise->goal != training::Goal::Calibrate;
   if (!is_operation && !arguments.case_folder.empty())
@@ -168,7 +164,11 @@ void add_train_command(CLI::App& app, Context& context) {
   CLI::Option* scores =
       sub->add_flag("--scores", arguments->scores,
                     "All scores that were kept, oldest first; of --exercise alone where it is given");
-  sub->add_option("--exercise", arguments->exercise, "Which one; --list names them");
+  sub->add_option("--exercise", arguments->exercise, "Which one; --list names them")
+      ->check(read_by([](const std::string& id) {
+        if (training::find_exercise(id) == nullptr)
+          throw InvalidInput("there is no exercise \"" + id + "\"; \"arthronaut train --list\" names them");
+      }));
   sub->add_option("--level", arguments->level, "How much goes wrong")
       ->check(CLI::IsMember({"easy", "medium", "hard"}))
       ->capture_default_str();

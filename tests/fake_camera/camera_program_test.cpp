@@ -71,7 +71,9 @@ TEST_F(CameraProgram, ListsWhatIsConnected) {
   const auto unknown = run_program({"sources", "/dev/video0?colour=red"});
   EXPECT_EQ(unknown.exit_code, 3);
   EXPECT_THAT(unknown.errors, HasSubstr("\"colour=red\""));
-  EXPECT_EQ(run_program({"sources", "clip.mkv"}).exit_code, 3);
+  const auto clip = run_program({"sources", "clip.mkv"});
+  EXPECT_EQ(clip.exit_code, 3);
+  EXPECT_THAT(clip.errors, HasSubstr("clip.mkv: is no camera; one is named as /dev/video0 is"));
 }
 
 // From the driver's memory to a recorded session, with the plug pulled out and put in again on the way.

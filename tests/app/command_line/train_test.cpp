@@ -55,8 +55,9 @@ TEST_F(TrainCommand, RefusesWhatIsNotThere) {
   EXPECT_EQ(train({}).exit_code, 2);
   EXPECT_EQ(train({"--exercise", "aim", "--level", "mad"}).exit_code, 2);
   const auto unknown = train({"--exercise", "juggle"});
-  EXPECT_EQ(unknown.exit_code, 3);
-  EXPECT_THAT(unknown.errors, HasSubstr("juggle"));
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.errors, HasSubstr("--exercise: there is no exercise \"juggle\""));
+  EXPECT_EQ(train({"--scores", "--exercise", "juggle"}).exit_code, 2);
   const auto hand = train({"--exercise", "aim", "--hand", folder_ / "none.json"});
   EXPECT_EQ(hand.exit_code, 3);
   EXPECT_THAT(hand.errors, HasSubstr("none.json"));

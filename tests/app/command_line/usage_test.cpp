@@ -43,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(All, Subcommand,
                                            "track", "pivot", "digitise", "register", "import", "landmarks",
                                            "plan", "phantom", "navigate", "replay", "report", "dicom",
                                            "resume", "rig", "segment", "series", "verify", "pacs", "markers",
-                                           "demo", "train", "sources"),
+                                           "demo", "train", "sources", "experiment"),
                          [](const auto& test) {
                            std::string name = test.param;
                            std::replace(name.begin(), name.end(), '-',
@@ -150,6 +150,15 @@ TEST(CommandLine, AValueThatCannotBeRightIsWrongUsage) {
                  "--markers");
   expect_refused({"markers", "-o", "m.pdf"}, {"--size-mm", "101"}, "--size-mm");
   expect_refused({"calibrate", "--square-mm", "1.5", "-o", "c.json"}, {"a.png", "b.png"}, "three pictures");
+  for (const char* whole : {"2.5", "1e1", "9999999999", "nan"}) {
+    const std::string is_no_number = "\"" + std::string(whole) + "\" must be a whole number, ";
+    expect_refused({"pivot", "--poses", "p.csv", "-o", "t.json"}, {"--marker", whole},
+                   "--marker: " + is_no_number);
+    expect_refused(with_case, {"--igtl", whole}, "--igtl: " + is_no_number);
+    expect_refused({"experiment", "registration", "--bone", "b"}, {"--trials", whole},
+                   "--trials: " + is_no_number);
+  }
+  expect_refused({"demo", "-o", "k"}, {"--seed", "1.5"}, "--seed: \"1.5\" must be a whole number, ");
   expect_refused({"rig", "--poses", "p.csv", "--tool", "probe", "-o", "t.json"}, {"--markers", "5,5"},
                  "--markers");
   expect_refused({"rig", "--poses", "p.csv", "--tool", "", "-o", "t.json"}, {}, "--tool");
