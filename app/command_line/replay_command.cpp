@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "app/command_line/command.h"
+#include "app/command_line/named_session.h"
 #include "app/command_line/option_checks.h"
 #include "app/command_line/tracking_report.h"
 #include "navigation/camera/calibration_words.h"
@@ -9,10 +10,8 @@
 #include "navigation/recording/recording_lock.h"
 #include "navigation/recording/replay.h"
 #include "navigation/recording/session_check.h"
-#include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/csv_cell.h"
-#include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
 
@@ -21,16 +20,6 @@ namespace {
 struct ReplayArguments {
   std::string case_folder, session, output;
 };
-
-std::filesystem::path session_folder(const ReplayArguments& arguments) {
-  const auto folders = cases::session_folders(arguments.case_folder);
-  if (folders.empty()) throw InvalidInput(arguments.case_folder, "", "the case has no session");
-  if (arguments.session.empty()) return folders.back();
-  for (const std::filesystem::path& folder : folders) {
-    if (folder.filename() == arguments.session) return folder;
-  }
-  throw InvalidInput(arguments.case_folder, "", "the case has no session \"" + arguments.session + "\"");
-}
 
 std::string line_of(const recording::Difference& difference) {
   const std::string where = difference.frame < 0 ? "session" : "frame " + std::to_string(difference.frame);
@@ -48,24 +37,9 @@ std::string table_of(const std::vector<recording::Difference>& differences) {
   return text;
 }
 
-void replay(Context& context, const ReplayArguments& arguments) {
-  refuse_before_the_work({.read = {}, .written = {arguments.output}});
-  const std::filesystem::path folder = session_folder(arguments);
-  const recording::RecordedSession session(folder);
-  const recording::ReplayOptions options = recording::replay_options_of(arguments.case_folder, session);
-  recording::ReplaySummary summary;
-  {
-    Progress progress("replaying", static_cast<long>(session.frames().size()));
-    summary = recording::replay_session(session, options, [&](long done) { progress.advance_to(done); });
-  }
-  // The same again from a record that was changed is no proof of what was done.
-  const recording::SessionCheck check = recording::check_session(folder);
-  const bool is_as_recorded = check.outcome != recording::SessionCheck::Outcome::Broken;
-  if (!arguments.output.empty()) files::write_atomically(arguments.output, table_of(summary.differences));
-  if (arguments.output == "-") {
-    if (!summary.is_same() || !is_as_recorded) context.exit_code = kUnreliable;
-    return;
-  }
+// What there is to say of a session that was run again, beside its differences.
+void say_result(const Context& context, const recording::RecordedSession& session,
+                const recording::ReplaySummary& summary) {
   context.say(format("session %s: %ld of %ld frames replayed", session.header().id.c_str(),
                      summary.replayed_frames, summary.recorded_frames));
   if (const auto& camera = session.pipeline_options().calibrated)
@@ -100,8 +74,14 @@ void replay(Context& context, const ReplayArguments& arguments) {
   for (const recording::Difference& difference : summary.differences) context.say(line_of(difference));
   if (summary.is_same())
     context.say(summary.states_equal == summary.states_compared ? "the same" : "the same within the limits");
+}
+
+// What speaks against it: empty where the session is as it was recorded and comes out the same.
+std::vector<std::string> doubts_of(const recording::ReplaySummary& summary,
+                                   const recording::SessionCheck& check) {
   std::vector<std::string> reasons;
-  if (!is_as_recorded)
+  // The same again from a record that was changed is no proof of what was done.
+  if (check.outcome == recording::SessionCheck::Outcome::Broken)
     reasons.push_back("the record is not as it was recorded: " + recording::check_words(check));
   if (!summary.is_same())
     reasons.push_back(summary.replayed_frames + summary.frames_without_picture == 0
@@ -109,7 +89,23 @@ void replay(Context& context, const ReplayArguments& arguments) {
                           : std::to_string(summary.differences.size()) + " differences above tolerance");
   if (const std::string cold = recording::cold_start_in_words(summary); !cold.empty())
     reasons.push_back(cold);
-  if (!reasons.empty()) context.say_unreliable("the replay", reasons);
+  return reasons;
+}
+
+void replay(Context& context, const ReplayArguments& arguments) {
+  refuse_before_the_work({.read = {}, .written = {arguments.output}});
+  const std::filesystem::path folder = sessions_named(arguments.case_folder, arguments.session).back();
+  const recording::RecordedSession session(folder);
+  const recording::ReplayOptions options = recording::replay_options_of(arguments.case_folder, session);
+  recording::ReplaySummary summary;
+  {
+    Progress progress("replaying", static_cast<long>(session.frames().size()));
+    summary = recording::replay_session(session, options, [&](long done) { progress.advance_to(done); });
+  }
+  const std::vector<std::string> doubts = doubts_of(summary, recording::check_session(folder));
+  if (!arguments.output.empty()) files::write_atomically(arguments.output, table_of(summary.differences));
+  if (arguments.output != "-") say_result(context, session, summary);
+  if (!doubts.empty()) context.say_unreliable("the replay", doubts);
 }
 
 }  // namespace

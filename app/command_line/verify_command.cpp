@@ -1,10 +1,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command_line/command.h"
+#include "app/command_line/named_session.h"
 #include "navigation/recording/session_check.h"
-#include "planning/cases/case.h"
 #include "planning/files/json_document.h"
-#include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
 
@@ -16,15 +15,6 @@ struct VerifyArguments {
   std::string case_folder, session;
   bool json = false;
 };
-
-std::vector<std::filesystem::path> sessions_of(const VerifyArguments& arguments) {
-  std::vector<std::filesystem::path> folders = cases::session_folders(arguments.case_folder);
-  if (folders.empty()) throw InvalidInput(arguments.case_folder, "", "the case has no session");
-  if (arguments.session.empty()) return folders;
-  for (const std::filesystem::path& folder : folders)
-    if (folder.filename() == arguments.session) return {folder};
-  throw InvalidInput(arguments.case_folder, "", "the case has no session \"" + arguments.session + "\"");
-}
 
 nlohmann::ordered_json json_of(const std::string& session, const SessionCheck& check) {
   nlohmann::ordered_json json;
@@ -50,7 +40,7 @@ void verify(Context& context, const VerifyArguments& arguments) {
   std::vector<std::string> reasons;
   nlohmann::ordered_json document = {
       {"format", "arthronaut.verify"}, {"version", 1}, {"sessions", nlohmann::ordered_json::array()}};
-  for (const std::filesystem::path& folder : sessions_of(arguments)) {
+  for (const std::filesystem::path& folder : sessions_named(arguments.case_folder, arguments.session)) {
     const std::string session = folder.filename();
     SessionCheck check;
     {

@@ -85,7 +85,8 @@ TEST_F(BadInput, VideoThatIsNotThereOrNoVideo) {
   test::write_file(folder_ / "clip.mkv", "no video");
   const auto result = run_program(track("-"));
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_THAT(result.errors, HasSubstr("clip.mkv"));
+  EXPECT_THAT(result.errors,
+              HasSubstr("clip.mkv: is not a video that can be read: its data are of no known format"));
   EXPECT_EQ(result.output, "");
 }
 
@@ -192,13 +193,13 @@ TEST_F(BadInput, FolderThatIsNotThere) {
 }
 
 TEST_F(BadInput, CaseThatIsNone) {
-  for (const char* command : {"navigate", "replay", "report", "resume"}) {
+  for (const char* command : {"navigate", "replay", "report", "resume", "verify"}) {
     std::vector<std::string> arguments{command, folder_ / "nothing.arthro"};
     if (arguments[0] == "navigate") arguments.insert(arguments.end(), {"--video", folder_ / "clip.mkv"});
     if (arguments[0] == "report") arguments.insert(arguments.end(), {"-o", folder_ / "report.pdf"});
     const auto result = run_program(arguments);
     EXPECT_EQ(result.exit_code, 3) << command;
-    EXPECT_THAT(result.errors, HasSubstr("nothing.arthro")) << command;
+    EXPECT_THAT(result.errors, HasSubstr("nothing.arthro: is not a case folder")) << command;
   }
 }
 
