@@ -43,6 +43,8 @@ nlohmann::ordered_json json_of(const Corners& corners_px) {
 
 nlohmann::ordered_json json_of(const pipeline::PictureObservation& seen) {
   nlohmann::ordered_json json;
+  json["format"] = "arthronaut.frame_dump";
+  json["version"] = 1;
   json["frame"] = seen.frame_index;
   json["time_s"] = static_cast<double>(seen.timestamp_ns) * 1e-9;
   json["is_frozen"] = seen.is_frozen;

@@ -11,6 +11,7 @@
 #include "navigation/camera/medium.h"
 #include "navigation/recording/video_encoder.h"
 #include "navigation/simulator/simulated_ruler.h"
+#include "planning/files/atomic_file.h"
 #include "planning/files/json_document.h"
 #include "tests/app/command_line/program.h"
 #include "tests/resources/described.h"
@@ -67,6 +68,8 @@ TEST_F(CheckFluidCommand, TrustsSaline) {
   EXPECT_THAT(result.output, AllOf(HasSubstr("flat port"), HasSubstr("focal length times index"),
                                    HasSubstr("no refraction"), HasSubstr("can be trusted")));
   const auto document = files::read_json(folder_ / "check.json", "arthronaut.fluid_check", 1);
+  EXPECT_EQ(test::undescribed(nlohmann::json::parse(files::read_text(folder_ / "check.json")), "fluid_check"),
+            "");
   EXPECT_NEAR(document.number("best_index"), camera::kSalineIndex, 0.01);
   EXPECT_EQ(document.objects("models").front().text("model"), "flat port");
 

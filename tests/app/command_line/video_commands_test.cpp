@@ -113,6 +113,7 @@ TEST_F(VideoCommands, TrackDumpsWhatItSawInEveryFrame) {
       EXPECT_GT(std::filesystem::file_size(dump / files::format("%06d.%s", i, extension)), 0u) << i;
   std::ifstream stream(dump / "000000.json");
   const auto first = nlohmann::json::parse(stream);
+  EXPECT_EQ(test::undescribed(first, "frame_dump"), "");
   EXPECT_EQ(first["markers"].size(), 2u);
   EXPECT_EQ(first["markers"][0]["state"], "tracked");
   double nearest_px = 1e9;
@@ -211,6 +212,10 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   EXPECT_THAT(changed.errors, HasSubstr("the record is not as it was recorded: session.sqlite: frames 0 to"));
   EXPECT_THAT(changed.output,
               HasSubstr("the recording was cut short: the program ended before the session did"));
+  const auto table = run_program({"replay", knee, "-o", "-"});
+  EXPECT_EQ(table.exit_code, 4);
+  EXPECT_THAT(table.output, ::testing::StartsWith("frame,what,amount,unit,detail\n7,pose of marker 2,"));
+  EXPECT_EQ(table.errors, changed.errors);
   const auto broken = run_program({"verify", knee, "--json"});
   EXPECT_EQ(broken.exit_code, 4);
   EXPECT_THAT(broken.errors, HasSubstr("session.sqlite: frames 0 to"));
