@@ -9,6 +9,7 @@
 #include "navigation/calibration/residual_plot.h"
 #include "navigation/camera/doubted_camera_file.h"
 #include "navigation/sources/frame_source.h"
+#include "planning/files/fixed_number.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 
@@ -39,9 +40,9 @@ std::vector<calibration::CalibrationPicture> observe(const std::vector<std::stri
 
 void say_result(const Context& context, const calibration::CalibrationSummary& summary, double square_mm) {
   for (const auto& picture : summary.pictures)
-    context.say(files::format("%s: %zu corners, %.2f px, tilted by %.0f degrees, lens at %.1f degrees%s",
+    context.say(files::format("%s: %zu corners, %.2f px, tilted by %.0f degrees, lens at %s degrees%s",
                               picture.name.c_str(), picture.residuals_px.size(), picture.rms_px,
-                              picture.tilt_deg, picture.lens_angle_deg,
+                              picture.tilt_deg, files::fixed(picture.lens_angle_deg, 1).c_str(),
                               picture.mark_is_used ? "" : " (without its mark)"));
   for (const std::string& note : summary.notes) context.say(note);
   const camera::Calibration& c = summary.record.calibration;

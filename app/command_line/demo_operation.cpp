@@ -22,6 +22,7 @@
 #include "navigation/tools/pivot_calibration.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
+#include "planning/files/fixed_number.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
@@ -149,8 +150,9 @@ class Demo {
         std::make_shared<const camera::CalibrationRecord>(summary.record);
     const camera::Calibration& found = summary.record.calibration;
     context_.say(format(
-        "          %zu stills, rms %.2f px; focal length %+.2f %%, principal point %.1f px from the truth",
-        pictures.size(), summary.rms_px, 100 * (found.focal_px / simulation_.camera.focal_px - 1),
+        "          %zu stills, rms %.2f px; focal length %s %%, principal point %.1f px from the truth",
+        pictures.size(), summary.rms_px,
+        files::fixed(100 * (found.focal_px / simulation_.camera.focal_px - 1), 2).c_str(),
         (found.principal_point_px -
          simulation_.camera.turned(simulation_.camera.principal_point_px,
                                    simulation_.camera.lens_angle_rad(found.reference_mark_angle_deg)))

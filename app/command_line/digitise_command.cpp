@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <memory>
 
 #include "app/command_line/command.h"
@@ -6,6 +5,7 @@
 #include "navigation/strokes/body_rows.h"
 #include "navigation/strokes/curves.h"
 #include "navigation/strokes/stroke_tangents.h"
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
@@ -37,10 +37,9 @@ void digitise(Context& context, const DigitiseArguments& arguments) {
       arguments.output, curves,
       arguments.with_shaft ? strokes::ShaftColumns::Write : strokes::ShaftColumns::LeaveOut);
   if (arguments.output != "-") {
-    char line[120];
-    std::snprintf(line, sizeof line, "%zu points on %d strokes, %.0f mm", curves.size(),
-                  curves.empty() ? 0 : curves.back().curve + 1, strokes::smoothed_length_mm(curves));
-    context.say(line);
+    const int count = curves.empty() ? 0 : curves.back().curve + 1;
+    context.say(files::format("%zu points on %d stroke%s, %.0f mm", curves.size(), count,
+                              count == 1 ? "" : "s", strokes::smoothed_length_mm(curves)));
   }
   if (curves.empty()) {
     context.say_unreliable("what was digitised",
