@@ -1,3 +1,4 @@
+// Removing a file, with the reason where that fails.
 #pragma once
 
 #include <filesystem>
