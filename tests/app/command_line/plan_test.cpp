@@ -1,4 +1,4 @@
-// plan and landmarks on the built-in knee, as a user types them.
+// plan: tunnels placed, checked, exported.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -10,14 +10,9 @@
 #include <sstream>
 
 #include "planning/cases/bone_doubts.h"
-#include "planning/cases/case.h"
-#include "planning/cases/plan_versions.h"
 #include "planning/files/atomic_file.h"
-#include "planning/phantom/phantom_case.h"
-#include "planning/phantom/phantom_knee.h"
-#include "tests/app/command_line/program.h"
+#include "tests/app/command_line/plan_command.h"
 #include "tests/resources/described.h"
-#include "tests/temporary_folder.h"
 
 namespace arthronaut {
 namespace {
@@ -26,32 +21,6 @@ using test::run_program;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-const phantom::PhantomKnee& built_in_knee() {
-  static const auto made = phantom::make_phantom_knee();
-  return made;
-}
-
-class PlanCommand : public ::testing::Test {
- protected:
-  PlanCommand() { save(knee_); }
-  void save(const cases::Case& knee) const { cases::save_case(folder_ / "knee.arthro", knee); }
-  // Of the tibial tunnel, as the command line takes it.
-  [[nodiscard]] std::string entry_text() const {
-    const Eigen::Vector3d& entry = knee_.plan.tunnels.at(bones::BoneKind::Tibia).entry_mm;
-    return std::to_string(entry.x()) + "," + std::to_string(entry.y()) + "," + std::to_string(entry.z());
-  }
-  [[nodiscard]] test::ProgramResult run(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin() + 1, folder_ / "knee.arthro");
-    return run_program(arguments);
-  }
-
-  const test::TemporaryFolder folder_;
-  const phantom::PhantomKnee& made_ = built_in_knee();
-  cases::Case knee_ = phantom::case_of(made_, "Phantom");
-};
-
-}  // namespace
 
 // The same checks as the window's: the entry's place, the footprint, the graft between both tunnels.
 TEST_F(PlanCommand, ChecksAllThatTheWindowChecks) {
@@ -152,78 +121,6 @@ TEST_F(PlanCommand, ADiskThatTakesNoLandmarksTakesNoPlan) {
   EXPECT_EQ(files::read_text(plan), before);
 }
 
-// A default takes the place of a plan that may be an evening's work, and no undo follows a command: it is
-// kept, once, and said; what is new takes nothing's place.
-TEST_F(PlanCommand, KeepsWhatADefaultTakesThePlaceOf) {
-  const tunnels::Tunnel by_hand = knee_.plan.tunnels.at(bones::BoneKind::Femur);
-  const auto first = run({"plan", "--bone", "femur", "--default"});
-  EXPECT_THAT(first.output, HasSubstr("kept as version 1, --take 1 brings it back"));
-  EXPECT_THAT(first.output, HasSubstr("femur: turned by "));
-  EXPECT_THAT(first.output, HasSubstr("default    at the native footprint ["));
-  EXPECT_THAT(run({"plan", "--bone", "femur", "--default"}).output, Not(HasSubstr("kept as version")));
-  EXPECT_EQ(run({"plan", "--take", "1"}).exit_code, 0);
-  const auto taken = cases::load_case(folder_ / "knee.arthro").plan.tunnels.at(bones::BoneKind::Femur);
-  EXPECT_LT((taken.entry_mm - by_hand.entry_mm).norm(), 1e-6);
-  const auto again = run({"plan", "--bone", "femur", "--default", "--json"});
-  EXPECT_EQ(nlohmann::json::parse(again.output).at("kept_version"), 1) << "it is a version already";
-  EXPECT_EQ(cases::load_plan_versions(folder_ / "knee.arthro").size(), 2U)
-      << "the default, too, when 1 was taken";
-}
-
-// Of a version and of markups the bone that is named is taken, and the other one's tunnel stays.
-TEST_F(PlanCommand, TakesTheBoneThatIsNamedAlone) {
-  using bones::BoneKind;
-  const auto plan = [&] { return cases::load_case(folder_ / "knee.arthro").plan; };
-  const cases::Plan first = plan();
-  EXPECT_EQ(run({"plan", "--keep", "--export", folder_ / "out"}).exit_code, 0);
-  for (const char* bone : {"femur", "tibia"})
-    EXPECT_LE(run({"plan", "--bone", bone, "--default"}).exit_code, 4);
-  const cases::Plan second = plan();
-  const auto off_mm = [](const cases::Plan& a, const cases::Plan& b, BoneKind bone) {
-    return (a.tunnels.at(bone).entry_mm - b.tunnels.at(bone).entry_mm).norm() +
-           (a.tunnels.at(bone).direction - b.tunnels.at(bone).direction).norm();
-  };
-  for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) ASSERT_GT(off_mm(first, second, bone), 0.01);
-  EXPECT_LE(run({"plan", "--bone", "femur", "--take", "1"}).exit_code, 4);
-  EXPECT_LT(off_mm(plan(), first, BoneKind::Femur), 1e-6);
-  EXPECT_LT(off_mm(plan(), second, BoneKind::Tibia), 1e-6);
-  EXPECT_LE(run({"plan", "--bone", "tibia", "--from-markups", folder_ / "out/plan.mrk.json"}).exit_code, 4);
-  EXPECT_LT(off_mm(plan(), first, BoneKind::Tibia), 1e-3);
-  EXPECT_EQ(run({"plan", "--take", "1", "--type", "am"}).exit_code, 2);
-}
-
-// So is what any other command takes the place of: a tunnel placed by numbers, taken from markups, removed, a
-// version taken again.
-TEST_F(PlanCommand, KeepsWhatAnyCommandTakesThePlaceOf) {
-  const std::vector<std::string> placed{"plan",        "--bone",          "femur",         "--at-footprint",
-                                        "--direction", "-0.83,-0.3,0.41", "--diameter-mm", "8"};
-  EXPECT_THAT(run(placed).output, HasSubstr("kept as version 1, --take 1 brings it back"));
-  EXPECT_THAT(run({"plan", "--take", "1"}).output, HasSubstr("kept as version 2, --take 2 brings it back"));
-  EXPECT_EQ(run({"plan", "--export", folder_ / "out"}).exit_code, 0);
-  EXPECT_THAT(run({"plan", "--bone", "femur", "--remove"}).output, HasSubstr("kept as version 1"))
-      << "which is the same";
-  EXPECT_EQ(run(placed).exit_code, 0);
-  EXPECT_EQ(run({"plan", "--take", "2"}).exit_code, 0);
-  EXPECT_THAT(run({"plan", "--from-markups", folder_ / "out/plan.mrk.json"}).output,
-              Not(HasSubstr("kept as version 3")));
-  const auto versions = cases::load_plan_versions(folder_ / "knee.arthro");
-  ASSERT_EQ(versions.size(), 2U);
-  EXPECT_NEAR(versions[1].plan.tunnels.at(bones::BoneKind::Femur).diameter_mm, 8, 1e-9);
-}
-
-// What a newer program says against a bone cannot be read: the plan that is there stays, and no version of it
-// is kept for nothing.
-TEST_F(PlanCommand, WhatCannotBeReadLeavesThePlan) {
-  std::ofstream(folder_ / "knee.arthro/bone_doubts.json")
-      << R"({"format": "arthronaut.bone_doubts", "version": 99})";
-  const std::string plan = files::read_text(folder_ / "knee.arthro/plan.json");
-  const auto result = run({"plan", "--bone", "femur", "--default"});
-  EXPECT_EQ(result.exit_code, 3);
-  EXPECT_THAT(result.errors, HasSubstr("bone_doubts.json"));
-  EXPECT_EQ(files::read_text(folder_ / "knee.arthro/plan.json"), plan);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "knee.arthro/plan_versions"));
-}
-
 // A diameter without a tunnel to place would be taken for a change of the one that is there; of a tunnel that
 // is not planned it is said so; an export that cannot be written is refused before half a minute of drilling.
 TEST_F(PlanCommand, WhatWouldDoNothingIsRefused) {
@@ -241,7 +138,8 @@ TEST_F(PlanCommand, WhatWouldDoNothingIsRefused) {
     EXPECT_EQ(beyond.exit_code, 2) << large;
     EXPECT_THAT(beyond.errors, HasSubstr("must be numbers of -1000000 to 1000000")) << large;
   }
-  EXPECT_THAT(run({"plan", "--take", "0"}).errors, HasSubstr("--take: \"0\" must be a number, above 0"));
+  EXPECT_THAT(run({"plan", "--take", "0"}).errors,
+              HasSubstr("--take: \"0\" must be a whole number, 1 to 1000000"));
   EXPECT_EQ(run({"plan", "--bone", "femur", "--direction", "1,0,0"}).exit_code, 2);
   EXPECT_EQ(run({"plan", "--bone", "femur", "--at-footprint", "--direction", "0,0,0"}).exit_code, 2);
   EXPECT_THAT(run({"plan", "--bone", "femur", "--type", "am"}).output,
@@ -268,41 +166,6 @@ TEST_F(PlanCommand, WhatTakesLongSaysWhatItDoes) {
   EXPECT_THAT(
       run_program({"plan", knee, "--bone", "femur", "--default"}, {.errors_on_terminal = true}).errors,
       HasSubstr("Making the default plan"));
-}
-
-// The window and the report propose what a case lacks, and the command left the grid's checks unmade.
-TEST_F(PlanCommand, ShowsThePlanOnProposedLandmarksAndKeepsNoneOfThem) {
-  knee_.landmarks.clear();
-  save(knee_);
-  const auto result = run({"plan", "--bone", "femur"});
-  EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_THAT(result.output,
-              HasSubstr("Grid: landmarks proposed from the bone's shape, confirmed by nobody"));
-  EXPECT_THAT(result.output, HasSubstr("Deep to shallow: "));
-  EXPECT_THAT(result.output, Not(HasSubstr("not checked")));
-  EXPECT_THAT(run({"plan", "--bone", "femur", "--json"}).output, HasSubstr("\"landmarks\": \"proposed\""));
-  EXPECT_TRUE(cases::load_case(folder_ / "knee.arthro").landmarks.empty());
-}
-
-// A knee without landmarks: they are proposed, and that is a reason to look before relying on it. They stay
-// in the case, as proposed, so that its grid is there for the checks and for whoever reads it; what a person
-// had placed stays as it was.
-TEST_F(PlanCommand, ADefaultOnProposedLandmarksIsNotReliableAndKeepsThem) {
-  knee_.landmarks.clear();
-  const Eigen::Vector3d placed = made_.femur_landmarks.at("notch_apex") + Eigen::Vector3d(0.5, 0, 0);
-  knee_.landmarks[bones::BoneKind::Femur]["notch_apex"] = placed;
-  save(knee_);
-  const auto result = run({"plan", "--bone", "femur", "--default"});
-  EXPECT_EQ(result.exit_code, 4) << result.output << result.errors;
-  EXPECT_THAT(result.output + result.errors, HasSubstr("blumensaat_anterior"));
-  EXPECT_THAT(result.output, Not(HasSubstr("not checked"))) << "the tibia's are proposed, too";
-  const cases::Case kept = cases::load_case(folder_ / "knee.arthro");
-  const auto& states = kept.landmark_states.at(bones::BoneKind::Femur);
-  EXPECT_TRUE(kept.landmarks.at(bones::BoneKind::Femur).contains("blumensaat_anterior"));
-  EXPECT_EQ(landmarks::state_of(states, "blumensaat_anterior"), landmarks::LandmarkState::Proposed);
-  EXPECT_EQ(kept.landmarks.at(bones::BoneKind::Femur).at("notch_apex"), placed);
-  EXPECT_EQ(landmarks::state_of(states, "notch_apex"), landmarks::LandmarkState::Confirmed);
-  EXPECT_FALSE(kept.landmarks.contains(bones::BoneKind::Tibia));
 }
 
 // Hazard 46: on landmarks that somebody confirmed, a bone that was cut off is a doubtful one all the same.
@@ -427,29 +290,6 @@ TEST_F(PlanCommand, ExportsPlanAndDrilledBones) {
   EXPECT_LT((saved.plan.tunnels.at(bones::BoneKind::Femur).entry_mm - before.entry_mm).norm(), 1e-3);
 }
 
-// Kept, changed, compared, taken again.
-TEST_F(PlanCommand, VersionsAreKeptComparedAndTaken) {
-  EXPECT_THAT(run({"plan", "--versions"}).output, HasSubstr("No version is kept"));
-  EXPECT_EQ(run({"plan", "--keep"}).exit_code, 0);
-  EXPECT_EQ(run({"plan", "--bone", "tibia", "--default"}).exit_code, 0);
-  const auto listed = run({"plan", "--versions"});
-  EXPECT_THAT(listed.output, HasSubstr("femur: the same"));
-  EXPECT_THAT(listed.output, HasSubstr("tibia: turned by "));
-  EXPECT_EQ(
-      run({"plan", "--name-version", "1", "--name", "first", "--note", "before the resident"}).exit_code, 0);
-  EXPECT_THAT(run({"plan", "--versions"}).output,
-              AllOf(HasSubstr("Version 1, \"first\", kept "), HasSubstr("of a right knee"),
-                    HasSubstr("\"before the resident\"")));
-  EXPECT_EQ(run({"plan", "--name-version", "7", "--name", "x"}).exit_code, 3);
-  EXPECT_EQ(run({"plan", "--name", "x"}).exit_code, 2) << "of no version";
-  const auto unknown = run({"plan", "--take", "7"});
-  EXPECT_EQ(unknown.exit_code, 3);
-  EXPECT_THAT(unknown.errors, HasSubstr("no version 7"));
-  EXPECT_EQ(run({"plan", "--take", "1"}).exit_code, 0);
-  const auto taken = cases::load_case(folder_ / "knee.arthro").plan.tunnels.at(bones::BoneKind::Tibia);
-  EXPECT_LT((taken.entry_mm - knee_.plan.tunnels.at(bones::BoneKind::Tibia).entry_mm).norm(), 1e-6);
-}
-
 // Where no tunnel is planned the list is empty: never null.
 TEST_F(PlanCommand, JsonSaysWhatItIs) {
   EXPECT_EQ(run({"plan", "--bone", "femur", "--remove"}).exit_code, 0);
@@ -508,43 +348,5 @@ TEST_F(PlanCommand, Hazard38NavigateAsksWhichOfTwoTunnelsIsDrilled) {
   EXPECT_THAT(single.errors, HasSubstr("holds no tunnel femur"));
 }
 
-TEST_F(PlanCommand, LandmarksAreProposedSetAndKept) {
-  knee_.landmarks.clear();
-  save(knee_);
-  const auto proposed = run({"landmarks", "--propose", "--json"});
-  EXPECT_EQ(proposed.exit_code, 0) << proposed.output << proposed.errors;
-  ASSERT_TRUE(nlohmann::json::accept(proposed.output)) << proposed.output;
-  EXPECT_EQ(test::undescribed(nlohmann::json::parse(proposed.output), "landmarks"), "");
-  EXPECT_EQ(run({"landmarks", "--set", "femur.notch_apex=1,2,3"}).exit_code, 0);
-  const cases::Case saved = cases::load_case(folder_ / "knee.arthro");
-  EXPECT_EQ(saved.landmarks.at(bones::BoneKind::Femur).at("notch_apex"), Eigen::Vector3d(1, 2, 3));
-  EXPECT_GT(saved.landmarks.at(bones::BoneKind::Femur).size(), 5U);
-  // The case may follow what is set and confirmed.
-  EXPECT_EQ(run_program({"landmarks", "--set", "femur.notch_apex=1,2,4", "--confirm", "femur",
-                         folder_ / "knee.arthro", "--json"})
-                .exit_code,
-            0);
-  EXPECT_EQ(run({"landmarks", "--propose"}).exit_code, 0);
-  const auto proposed_count = [&] {
-    std::size_t count = 0;
-    const cases::Case now = cases::load_case(folder_ / "knee.arthro");
-    for (const auto& [bone, states] : now.landmark_states)
-      for (const auto& [name, state] : states) count += state == landmarks::LandmarkState::Proposed ? 1 : 0;
-    return count;
-  };
-  const std::size_t before = proposed_count();
-  ASSERT_GT(before, 2U) << "the tibia's";
-  EXPECT_EQ(run_program({"landmarks", "--confirm", "tibia.plateau_medial,tibia.plateau_lateral",
-                         folder_ / "knee.arthro"})
-                .exit_code,
-            0);
-  EXPECT_EQ(proposed_count(), before - 2);
-  EXPECT_EQ(run({"landmarks", "--confirm", "all"}).exit_code, 0);
-  EXPECT_EQ(proposed_count(), 0U);
-  EXPECT_THAT(run({"landmarks", "--confirm", "femur,no_such_bone"}).errors, HasSubstr("no_such_bone"));
-  const auto unknown = run({"landmarks", "--set", "femur.no_such_point=1,2,3"});
-  EXPECT_NE(unknown.exit_code, 0);
-  EXPECT_THAT(unknown.errors, HasSubstr("no_such_point"));
-}
-
+}  // namespace
 }  // namespace arthronaut
