@@ -94,18 +94,27 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, cases::Case& knee
   auto planned =
       default_plan::plan_bone(input, knee.side, {.bundle = bundle, .diameter_mm = diameter_mm_of(arguments)});
   if (!planned.is_usable())
-    throw InvalidInput(arguments.case_folder, "", "has no default plan: " + planned.message);
-  if (arguments.within_spread) planned = default_plan::moved_to_passing(std::move(planned));
+    throw InvalidInput(
+        arguments.case_folder, "",
+        std::string("has no default plan") +
+            (planned.outcome == default_plan::DefaultTunnel::Outcome::NoLandmarks
+                 ? " (landmarks are placed by hand by L in Plan, or by arthronaut landmarks --set): "
+                 : ": ") +
+            planned.message);
+  if (arguments.within_spread) planned = default_plan::moved_within_spread(std::move(planned));
   verdict = {.is_reliable = planned.doubts.empty(),
              .reasons = planned.doubts,
              .source = planned.source,
              .place = planned.place,
              .off_norm_mm = planned.off_norm_mm,
-             .passing_entry_mm = planned.passing_entry_mm};
+             .other_entry = planned.other_entry};
   for (const tunnels::PlanCheck& check : planned.failed) {
     verdict.is_reliable = false;
-    verdict.reasons.push_back("no direction that a drill can follow from there passes the check \"" +
-                              check.name + "\": " + check.text);
+    verdict.reasons.push_back(
+        (arguments.within_spread && bundle == norms::Bundle::Whole && planned.off_norm_mm > 0
+             ? "with the aim from the norm's place it fails the check \""
+             : "no direction that a drill can follow from there passes the check \"") +
+        check.name + "\": " + check.text);
   }
   return planned.tunnel;
 }

@@ -203,7 +203,8 @@ void add_plan_command(CLI::App& app, Context& context) {
   sub->add_flag(
          "--within-spread", arguments->within_spread,
          "Where a check fails at the norm's place: enter at the nearest place within the norm's spread "
-         "that passes every check, and say how far off that is")
+         "that passes every check, or where none does and it is wrong there, where nothing is; how far off "
+         "that is is said")
       ->needs(by_default);
   auto* type =
       sub->add_option("--type", arguments->type,

@@ -147,7 +147,8 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review
     node["source"] = verdict.source;
     node["place"] = verdict.place;
     node["off_norm_mm"] = verdict.off_norm_mm;
-    if (const auto& p = verdict.passing_entry_mm) node["passing_entry_mm"] = {p->x(), p->y(), p->z()};
+    if (const auto& other = verdict.other_entry)
+      node[other->passes() ? "passing_entry_mm" : "drillable_entry_mm"] = files::to_json(other->entry_mm);
   }
   if (verdict.entry_moved_mm > 0) node["entry_moved_mm"] = verdict.entry_moved_mm;
   if (verdict.kept_version > 0) node["kept_version"] = verdict.kept_version;

@@ -8,6 +8,7 @@
 #include "app/command_line/command.h"
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
+#include "planning/default_plan/default_plan.h"
 #include "planning/plan_review/plan_review.h"
 
 namespace arthronaut::command_line {
@@ -18,8 +19,8 @@ struct PlanVerdict {
   std::vector<std::string> reasons;
   std::string source, place;  // as default_plan::DefaultTunnel has them; empty where no default was made
   double off_norm_mm = 0;
-  std::optional<Eigen::Vector3d> passing_entry_mm;  // see DefaultTunnel
-  double entry_moved_mm = 0;                        // of one that was placed now, onto the bone
+  std::optional<default_plan::OtherEntry> other_entry;  // see DefaultTunnel
+  double entry_moved_mm = 0;                            // of one that was placed now, onto the bone
   int kept_version = 0;  // of the plan that the default took the place of; 0: it took none's
 };
 

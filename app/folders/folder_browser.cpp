@@ -101,9 +101,13 @@ std::optional<fs::path> FolderBrowser::draw_typing(const widgets::Ui& ui, const 
   ImGui::SetNextItemWidth(line.width);
   if (typing_.takes_focus) ImGui::SetKeyboardFocusHere();
   typing_.takes_focus = false;
-  const bool is_entered = ImGui::InputText(
-      "##path", &typing_.text, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion,
-      complete, &listing_.folder);
+  // A path that is typed or pasted takes the place of the folder that stands there; one that was not there is
+  // mended.
+  const bool is_entered =
+      ImGui::InputText("##path", &typing_.text,
+                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
+                           (typing_.problem.empty() ? ImGuiInputTextFlags_AutoSelectAll : 0),
+                       complete, &listing_.folder);
   ui.log.note(name_ + "_path", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   if (is_entered) {
     auto found = go_to(typing_.text);

@@ -20,6 +20,7 @@ void PaintView::add_actions(widgets::Actions& actions) {
   add_edit_actions(actions);
   add_making_actions(actions);
   add_history_actions(actions);
+  add_key_actions(actions);
 }
 
 void PaintView::add_brush_actions(widgets::Actions& actions) {

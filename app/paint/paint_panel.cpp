@@ -70,6 +70,7 @@ void PaintView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const widgets::Rect axial = left.cut_top((left.height - gap) / 2, gap);
   const widgets::Rect coronal = rest.cut_top((rest.height - gap) / 2, gap);
   draw_slices(ui, {axial, coronal, left});
+  draw_keyed_pane(ui, {axial, coronal, left});
   draw_model(ui, rest);
   draw_panel(ui, panel);
 }
@@ -108,6 +109,7 @@ void PaintView::draw_slices(const widgets::Ui& ui, const std::array<widgets::Rec
     content.window = look_.window;
     content.labels = &labels;
     if (can_edit()) content.brush_mm = brushing_.brush.radius_mm;
+    content.shows_brush_at_cross = keys_.is_down && i == keys_.pane;
     // The new surfaces over the images: that is where they are judged.
     if (is_judging())
       for (const importing::ImportedBone& made : making_.result().bones)
@@ -130,6 +132,8 @@ void PaintView::draw_model(const widgets::Ui& ui, const widgets::Rect& area) {
       "Left drag paints   |   wheel goes through the slices\nCtrl + wheel zooms   |   Shift + drag shifts\n"
       "Ctrl + click: the other slices come here\n"
       "Shift + wheel: size of the brush   |   right drag: grey values\n\n"
+      "By keys, in the framed slice: Alt + arrows move the cross-hair,\n"
+      "Space lowers and lifts the brush there, Shift + Page up and down scroll\n\n"
       "The bones' surfaces are shown here when they are made");
 }
 
@@ -161,6 +165,11 @@ void PaintView::draw_quality(const widgets::Ui& ui) {
     for (const importing::QualityLine& line : importing::quality_lines(quality))
       widgets::status_row(ui, severity_of(line.verdict), line.name, line.text);
   }
+}
+
+std::string PaintView::next_step_here() const {
+  return next_step(*painting_, previewing_.kind, job_.is_running(), store_.is_of_case(*painting_),
+                   making_.state() == State::Making || making_.state() == State::Saving);
 }
 
 void PaintView::draw_steps(const widgets::Ui& ui) {
@@ -198,8 +207,7 @@ void PaintView::draw_panel(const widgets::Ui& ui, const widgets::Rect& area) {
     return;
   }
   widgets::begin_panel(ui, "paint.panel", rest, "Paint the bones");
-  widgets::text_in(ui.theme.strong, widgets::kAccent,
-                   next_step(*painting_, previewing_.kind, job_.is_running(), store_.is_of_case(*painting_)));
+  widgets::text_in(ui.theme.strong, widgets::kAccent, next_step_here());
   ImGui::Dummy({0, ui.theme.px(6)});
   draw_work(ui);
   if (previewing_.kind != Preview::None) {
@@ -215,7 +223,8 @@ void PaintView::draw_panel(const widgets::Ui& ui, const widgets::Rect& area) {
   const std::string brush = label_name(brushing_.label) + " on " +
                             (brushing_.layer == Layer::Strokes ? "strokes" : "bones") + ", " +
                             (brushing_.brush.is_ball ? "ball" : "disc") + " of " +
-                            widgets::fixed(2 * brushing_.brush.radius_mm, 1) + " mm";
+                            widgets::fixed(2 * brushing_.brush.radius_mm, 1) + " mm" +
+                            (keys_.is_down ? ", down: Space lifts it" : "");
   widgets::status_row(ui, Severity::Quiet, "Brush", brush);
   if (!hint_.empty()) widgets::status_row(ui, Severity::Caution, "Not done", hint_);
   if (!making_.failure().empty()) widgets::status_row(ui, Severity::Bad, "No surfaces", making_.failure());
@@ -256,8 +265,8 @@ void PaintView::note_states(const widgets::Ui& ui) const {
   ui.log.note_state("paint_work", job_.is_running() ? job_.what() : "");
   ui.log.note_state("paint_hint", !hint_.empty() ? hint_ : making_.failure());
   ui.log.note_state("paint_saved", store_.is_saved(*painting_) ? "yes" : "no");
-  ui.log.note_state("paint_next", next_step(*painting_, previewing_.kind, job_.is_running(),
-                                            store_.is_of_case(*painting_)));
+  ui.log.note_state("paint_next", next_step_here());
+  ui.log.note_state("paint_keyed_pane", std::to_string(keys_.pane));
   ui.log.note_state("paint_cross", widgets::fixed(look_.cross_mm.x(), 1) + " " +
                                        widgets::fixed(look_.cross_mm.y(), 1) + " " +
                                        widgets::fixed(look_.cross_mm.z(), 1));

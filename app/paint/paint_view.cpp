@@ -47,6 +47,7 @@ void PaintView::open(const cases::Case& knee, const std::filesystem::path& case_
   painting_.reset();
   previewing_ = {};
   brushing_ = {};
+  keys_ = {};
   look_ = {};
   hint_.clear();
   job_.cancel();
@@ -78,6 +79,7 @@ void PaintView::close() {
 }
 
 void PaintView::leave() {
+  keys_.is_down = false;
   if (is_ready()) store_.keep_now(*painting_);
 }
 
@@ -114,6 +116,7 @@ void PaintView::tick(double now_s) {
       look_.cross_mm = joint_->center_mm();
       for (plan::SlicePane& pane : panes_) pane.show(look_.cross_mm, kAround * joint_->size_mm().maxCoeff());
     }
+    keys_.pane = sharpest_pane();
     if (!painting_->holds(Layer::Strokes) && painting_->holds(Layer::Bones)) brushing_.layer = Layer::Bones;
     previewing_.threshold = segmentation::CtBonesOptions{}.threshold_for(volume);
   }
@@ -248,20 +251,25 @@ void PaintView::follow(std::size_t pane, const plan::SliceEvent& event) {
   if (event.brush_steps != 0)
     brushing_.brush.radius_mm =
         std::clamp(brushing_.brush.radius_mm * std::pow(1.2, event.brush_steps), 0.3, 40.0);
-  if (!event.painted || !can_edit()) return;
+  if (event.painted) (void)paint(pane, *event.painted);
+}
+
+bool PaintView::paint(std::size_t pane, const plan::SliceEvent::Painted& drawn) {
+  if (!can_edit()) return false;
   // A whole-map edit that runs would be painted over by what it began with.
   if (brushing_.layer == Layer::Bones && job_.is_running()) {
     hint_ = "Wait until " + job_.what() + " is done, or stop it with Esc";
-    return;
+    return false;
   }
-  if (event.painted->begins) hint_.clear();
+  if (drawn.begins) hint_.clear();
   brushing_.pane = pane;
   std::uint8_t label = brushing_.label;
   const std::string where = brushing_.layer == Layer::Strokes ? "stroke" : "bone";
   painting_->paint(
-      brushing_.layer, {event.painted->from_mm, event.painted->to_mm, panes_[pane].normal(), brushing_.brush},
-      label, label == painting::kNothing ? "Erase " + where : "Paint " + label_name(label) + " " + where,
-      !event.painted->begins);
+      brushing_.layer, {drawn.from_mm, drawn.to_mm, panes_[pane].normal(), brushing_.brush}, label,
+      label == painting::kNothing ? "Erase " + where : "Paint " + label_name(label) + " " + where,
+      !drawn.begins);
+  return true;
 }
 
 }  // namespace arthronaut::paint

@@ -54,6 +54,12 @@ class PaintView {
   void add_making_actions(widgets::Actions& actions);
   void add_history_actions(widgets::Actions& actions);
 
+  // paint_keys.cpp
+  void add_key_actions(widgets::Actions& actions);
+  [[nodiscard]] std::size_t sharpest_pane() const;
+  void draw_keyed_pane(const widgets::Ui& ui, const std::array<widgets::Rect, 3>& areas);
+  void move_cross(const Eigen::Vector3d& way_mm);
+
   [[nodiscard]] bool is_ready() const { return painting_.has_value(); }
   [[nodiscard]] bool can_edit() const;
   [[nodiscard]] bool is_working() const;  // something runs that Esc stops
@@ -72,6 +78,7 @@ class PaintView {
 
   // paint_panel.cpp
   void draw_panel(const widgets::Ui& ui, const widgets::Rect& area);
+  [[nodiscard]] std::string next_step_here() const;
   void draw_steps(const widgets::Ui& ui);
   void draw_quality(const widgets::Ui& ui);
   void draw_work(const widgets::Ui& ui);
@@ -80,12 +87,20 @@ class PaintView {
   void note_states(const widgets::Ui& ui) const;
   [[nodiscard]] plan::SliceLabels labels_shown();
   void follow(std::size_t pane, const plan::SliceEvent& event);
+  // False, and why not is said, where nothing can be painted now.
+  bool paint(std::size_t pane, const plan::SliceEvent::Painted& drawn);
 
   struct Brushing {
     std::uint8_t label = painting::kFemur;  // kNothing: the eraser
     painting::Layer layer = painting::Layer::Strokes;
     painting::Brush brush;
     std::size_t pane = 0;  // that was last painted in
+  };
+  struct Keys {
+    std::size_t pane = 0;                   // in which they act
+    bool is_down = false;                   // the brush: painting goes on with the cross-hair
+    std::uint8_t label = painting::kFemur;  // of the step that goes on
+    painting::Layer layer = painting::Layer::Strokes;
   };
   struct Previewing {
     Preview kind = Preview::None;
@@ -117,6 +132,7 @@ class PaintView {
   std::array<plan::SlicePane, 3> panes_;
   widgets::ScenePane model_;
   Brushing brushing_;
+  Keys keys_;
   Previewing previewing_;
   Look look_;
 };

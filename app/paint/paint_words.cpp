@@ -4,7 +4,9 @@ namespace arthronaut::paint {
 
 using painting::Layer;
 
-std::string next_step(const painting::Painting& painting, Preview preview, bool is_working, bool is_of_case) {
+std::string next_step(const painting::Painting& painting, Preview preview, bool is_working, bool is_of_case,
+                      bool makes_bones) {
+  if (makes_bones) return "Wait for the surfaces: they are judged here before they are taken. Esc stops";
   if (preview == Preview::Threshold)
     return "Up and Down move the threshold; Enter takes what is coloured, Esc leaves it";
   if (preview == Preview::Growth)

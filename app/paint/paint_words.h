@@ -13,9 +13,10 @@ namespace arthronaut::paint {
 enum class Preview { None, Growth, Threshold };
 
 // What to do next, as one sentence.
-// is_of_case: nothing was painted yet over the bones that the case has.
+// is_of_case: nothing was painted yet over the bones that the case has. makes_bones: their surfaces are on
+// the way.
 [[nodiscard]] std::string next_step(const painting::Painting& painting, Preview preview, bool is_working,
-                                    bool is_of_case = false);
+                                    bool is_of_case = false, bool makes_bones = false);
 
 [[nodiscard]] widgets::Severity severity_of(importing::QualityVerdict verdict);
 

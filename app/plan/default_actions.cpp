@@ -60,9 +60,9 @@ std::vector<MadeTunnel> PlanView::moved_defaults() const {
   std::vector<MadeTunnel> moved;
   for (const MadeTunnel& one : state_.made) {
     const auto now = model_->tunnel(one.key);
-    if (one.made.passing_entry_mm && now && now->entry_mm == one.made.tunnel.entry_mm &&
+    if (one.made.other_entry && now && now->entry_mm == one.made.tunnel.entry_mm &&
         now->direction == one.made.tunnel.direction && now->diameter_mm == one.made.tunnel.diameter_mm)
-      moved.push_back({.key = one.key, .made = default_plan::moved_to_passing(one.made)});
+      moved.push_back({.key = one.key, .made = default_plan::moved_within_spread(one.made)});
   }
   return moved;
 }
@@ -91,7 +91,7 @@ void PlanView::add_default_actions(widgets::Actions& actions) {
       {"plan.within_spread",
        "Enter where it passes",
        "Tunnels of the default plan that fail a check: entered at the nearest place within the norm's "
-       "spread from which they pass every check",
+       "spread from which they pass every check; where none does, where nothing is wrong",
        GLFW_KEY_N,
        GLFW_MOD_SHIFT,
        false,

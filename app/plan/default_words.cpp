@@ -18,10 +18,13 @@ std::string default_in_words(const std::vector<MadeTunnel>& made, bool took_the_
     words += "Default " + name + ": " + one.made.place + ".";
     for (const std::string& wrong : tunnels::wrong_in_words(one.checks))
       words += " Wrong there: " + wrong + ".";
+    // Off the norm's place a single tunnel keeps the aim that it had there.
+    const bool is_moved = one.key.bundle == norms::Bundle::Whole && one.made.off_norm_mm > 0;
     for (const tunnels::PlanCheck& check : one.made.failed)
       if (check.verdict == tunnels::PlanCheck::Verdict::Look)
-        words += " No aim from there passes it: " + check.name + ": " + check.text + ".";
-    if (one.made.passing_entry_mm) words += " Shift+N enters there instead.";
+        words += (is_moved ? " To be looked at: " : " No aim from there passes it: ") + check.name + ": " +
+                 check.text + ".";
+    if (one.made.other_entry) words += " Shift+N enters there instead.";
     words += "\n";
   }
   if (std::ranges::any_of(

@@ -29,6 +29,14 @@ void PlanView::select_landmark(std::size_t row) {
   slices_.set_cross(at->second);
 }
 
+// Enter confirms one: it has to be in sight before. Where all are confirmed the view stays as it is.
+void PlanView::look_at_landmarks() {
+  const auto rows = landmark_rows(*model_, state_.key.bone);
+  if (!has_to_confirm(rows)) return;
+  const bool is_proposed = rows[state_.landmark].state == LandmarkRow::State::Proposed;
+  select_landmark(is_proposed ? state_.landmark : *next_proposed(rows, state_.landmark));
+}
+
 std::string PlanView::landmark_title() const {
   const landmarks::LandmarkKind* kind = landmarks::find_landmark(state_.key.bone, landmark());
   return kind == nullptr ? "" : std::string(kind->title);
@@ -93,7 +101,9 @@ void PlanView::confirm_landmarks(bool all) {
 
 // A landmark is placed where it is listed: elsewhere nothing shows which one a click would move.
 void PlanView::show_page(PanelPage page) {
+  const bool begins = page == PanelPage::Landmarks && state_.page != page;
   state_.page = page;
+  if (begins) look_at_landmarks();
   if (page != PanelPage::Landmarks && state_.placing == Placing::Landmark) state_.placing = Placing::Nothing;
 }
 

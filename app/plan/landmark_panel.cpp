@@ -95,6 +95,8 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
   };
   const std::string about_lines = beside(about), state_lines = beside(word);
   const float question = std::max(picture, height_of(about_lines) + height_of(state_lines));
+  // Of each bone: one list is not scrolled to where the other one was.
+  ImGui::PushID(static_cast<int>(bone));
   ImGui::BeginChild("landmarks", {0, ImGui::GetContentRegionAvail().y - question - room_below_px});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, ui.theme.px(2)});
   const float height = ui.theme.px(34);
@@ -125,6 +127,7 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
   }
   ImGui::PopStyleVar();
   ImGui::EndChild();
+  ImGui::PopID();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   drawing.draw(ui, {at.x, at.y, picture, picture}, model.knee().side, bone, row.name);
   ImDrawList& draw = *ImGui::GetWindowDrawList();

@@ -45,6 +45,7 @@ void PlanView::add_actions(widgets::Actions& actions) {
                [this] {
                  work_on_bone(state_.key.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur);
                  if (bones_.only()) look_from(scene::ViewDirection::Anterior);
+                 if (state_.page == PanelPage::Landmarks) look_at_landmarks();
                }});
 }
 

@@ -154,9 +154,9 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
   const auto checks = plan_review::as_side_is_doubted(panel.model.checks(panel.key), side);
   bool has_doubts = false;
   for (const tunnels::PlanCheck* const check : worst_first(checks)) {
-    // What is wrong first: it must not be pushed out of sight by what is only to be looked at.
-    if (check->verdict != tunnels::PlanCheck::Verdict::Wrong && !std::exchange(has_doubts, true))
-      draw_doubts(ui, panel);
+    // What speaks against the tunnel can be mended here: it must not be pushed out of sight by what stays
+    // with the bone.
+    if (!tunnels::is_failed(*check) && !std::exchange(has_doubts, true)) draw_doubts(ui, panel);
     ImGui::BeginGroup();
     widgets::status_row(ui, severity_of(check->verdict), check->name, files::with_signs(check->text));
     ImGui::EndGroup();

@@ -29,7 +29,7 @@ NextStep to_theatre(const open_case::PlanModel& model, const StepState& state) {
   return {
       "The plan can be taken to theatre" +
           (count == 0 ? "" : ", with " + std::to_string(count) + (count == 1 ? " warning" : " warnings")) +
-          ": set up the arthroscope",
+          ": set up the arthroscope. Ctrl+E exports it; F3, then R, writes its report",
       "mode.setup"};
 }
 
@@ -146,29 +146,37 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
   if (!model.tunnel(state.key))
     return {"Place the entry of the " + adjective(state.key) + " tunnel: press P, then click on the bone",
             "plan.place"};
-  const auto& checks = model.checks(state.key);
-  const auto wrong = std::find_if(checks.begin(), checks.end(), [](const tunnels::PlanCheck& check) {
-    return check.verdict == Verdict::Wrong;
-  });
-  if (wrong != checks.end())
-    return {"Mend the " + adjective(state.key) + " tunnel: " + wrong->name +
-                ". Drag its entry or its aim, or take another diameter",
-            ""};
-  if (beside) {
-    if (!model.tunnel(*beside))
-      return {"Plan the " + adjective(*beside) + " tunnel too: press B", "plan.other_bundle"};
-    if (is_wrong(model, *beside))
-      return {"Mend the " + adjective(*beside) + " tunnel: press B", "plan.other_bundle"};
-  }
+  // By them it was put, and everything is told where it lies.
   if (has_unconfirmed_grid(model, here) && state.shows_landmarks)
     return {"Look at each landmark of the " + bone + ": Enter confirms it, or drag it",
             "plan.landmark_confirm"};
   if (has_unconfirmed_grid(model, here))
     return {"Look at the " + bone + "'s landmarks, which nobody has confirmed: press L",
             "plan.landmarks_page"};
+  const auto& checks = model.checks(state.key);
+  const auto wrong = std::find_if(checks.begin(), checks.end(), [](const tunnels::PlanCheck& check) {
+    return check.verdict == Verdict::Wrong;
+  });
+  if (wrong != checks.end())
+    return {"Mend the " + adjective(state.key) + " tunnel: " + wrong->name +
+                (state.can_enter_elsewhere
+                     ? ". Shift+N enters beside it, where nothing is wrong; or drag it"
+                     : ". Drag its entry (M shows where to) or its aim, or take another diameter"),
+            state.can_enter_elsewhere ? "plan.within_spread" : ""};
+  if (beside) {
+    if (!model.tunnel(*beside))
+      return {"Plan the " + adjective(*beside) + " tunnel too: press B", "plan.other_bundle"};
+    if (is_wrong(model, *beside))
+      return {"Mend the " + adjective(*beside) + " tunnel: press B", "plan.other_bundle"};
+  }
   if (!model.has_bone(other)) return to_theatre(model, state);
   const auto others = model.knee().plan.of(other);
   if (others.empty()) return {"Plan the " + adjective(other) + " tunnel: press Tab", "plan.bone"};
+  if (has_unconfirmed_grid(model, other))
+    return {"Look at the " + std::string(bones::to_text(other)) +
+                "'s landmarks, which nobody has confirmed: press Tab" +
+                (state.shows_landmarks ? "" : ", then L"),
+            "plan.bone"};
   for (const tunnels::TunnelKey& key : others) {
     if (const auto missing = other_bundle(key); missing && !model.tunnel(*missing))
       return {"Plan the " + adjective(*missing) + " tunnel too: press Tab", "plan.bone"};

@@ -24,14 +24,15 @@ struct StepState {
   bool places_entry = false;
   bool shows_landmarks = false;  // whose keys P, Enter and the arrows are then
   bool is_read_only = false, is_in_conflict = false;
-  bool makes_default = false;   // the default plan is on its way
-  bool is_unsaved = false;      // it could not be saved
-  std::string side_doubt = {};  // what of the bones contradicts the case's side; empty: nothing does
-  std::size_t bone_doubts = 0;  // all that spoke against the bones
+  bool makes_default = false;        // the default plan is on its way
+  bool is_unsaved = false;           // it could not be saved
+  bool can_enter_elsewhere = false;  // within the norm's spread, where it does better
+  std::string side_doubt = {};       // what of the bones contradicts the case's side; empty: nothing does
+  std::size_t bone_doubts = 0;       // all that spoke against the bones
 };
 
-// The first of what is missing: an answer to a conflict, the right side, an entry, a tunnel that can be
-// drilled, the other bundle's, the other bone's; else to theatre.
+// The first of what is missing: an answer to a conflict, the right side, an entry, a look at the landmarks
+// that it was put by, a tunnel that can be drilled, the other bundle's, the other bone's; else to theatre.
 [[nodiscard]] NextStep next_step(const open_case::PlanModel& model, const StepState& state);
 
 // The same checks, for as long as they are there, with what speaks against the tunnel first: wrong, to be

@@ -162,15 +162,17 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   std::size_t doubt_count = 0;
   for (const auto& [bone, doubts] : bone_doubts_)
     doubt_count += plan_review::doubts_but_side(bone_doubts_, bone).size();
-  const StepState step{state_.key,
-                       state_.placing == Placing::Entry,
-                       state_.page == PanelPage::Landmarks,
-                       status.save == open_case::PlanStatus::Save::ReadOnly,
-                       history_.is_in_conflict(),
-                       defaults_.is_running(),
-                       status.save == open_case::PlanStatus::Save::Failed,
-                       plan_review::side_doubt(bone_doubts_),
-                       doubt_count};
+  const StepState step{
+      state_.key,
+      state_.placing == Placing::Entry,
+      state_.page == PanelPage::Landmarks,
+      status.save == open_case::PlanStatus::Save::ReadOnly,
+      history_.is_in_conflict(),
+      defaults_.is_running(),
+      status.save == open_case::PlanStatus::Save::Failed,
+      std::ranges::any_of(moved_defaults(), [this](const MadeTunnel& one) { return one.key == state_.key; }),
+      plan_review::side_doubt(bone_doubts_),
+      doubt_count};
   const NextStep next = next_step(*model_, step);
   const PanelClick clicked =
       draw_plan_panel(ui, panel,

@@ -116,6 +116,7 @@ class PlanView : public mode::Mode {
   // landmark_actions.cpp
   void add_landmark_actions(widgets::Actions& actions);
   void select_landmark(std::size_t row);
+  void look_at_landmarks();
   void confirm_landmarks(bool all);
   void follow_landmark(const PaneEvent& event);
   void place_landmark(const scene::SceneRay& ray);

@@ -143,9 +143,13 @@ SliceEvent SlicePane::draw(const widgets::Ui& ui, const char* name, const widget
     draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(labels_.texture())), rect.min(),
                   rect.max());
   draw_overlay(ui, rect, content);
-  if (content.brush_mm && event.is_hovered)
-    draw.AddCircle(ImGui::GetIO().MousePos, static_cast<float>(*content.brush_mm / mm_per_px_),
-                   widgets::kText, 0, ui.theme.px(1.5F));
+  if (content.brush_mm && (content.shows_brush_at_cross || event.is_hovered)) {
+    const ImVec2 at = content.shows_brush_at_cross
+                          ? screen(rect, shown_.plane.pixel_of(content.cross_mm, shown_.size_px))
+                          : ImGui::GetIO().MousePos;
+    draw.AddCircle(at, static_cast<float>(*content.brush_mm / mm_per_px_), widgets::kText, 0,
+                   ui.theme.px(1.5F));
+  }
   draw_frame(ui, rect, content);
   draw.PopClipRect();
   ui.log.note(name, rect.min(), rect.max());

@@ -72,7 +72,8 @@ struct SliceContent {
   bool measures = false;  // a click sets a point instead of the cross-hair, a drag two
   const SliceLabels* labels = nullptr;
   std::optional<double> brush_mm =
-      {};  // radius; the left button then paints instead of moving the cross-hair
+      {};                             // radius; the left button then paints instead of moving the cross-hair
+  bool shows_brush_at_cross = false;  // where keys paint; else it is drawn at the mouse
 };
 
 struct SliceEvent {

@@ -93,7 +93,10 @@ void WorkstationWindow::take_opened_case() {
       {case_->folder(), knee.name, std::string(bones::to_text(knee.side)), files::utc_now()});
   workstation_library::note_case(case_->folder());
   start_.leave();  // it may have begun a picture since, and Plan draws from here on
+  const bool is_new_here = !is_same_folder || shows_paint_;
   shows_start_ = shows_paint_ = false;
+  // Where nothing is planned there is nothing to set up for, to drill or to look back at: Plan comes first.
+  if (!is_unpainted() && is_new_here && model()->knee().plan.tunnels.empty()) shown_ = 0;
   if (case_->is_read_only() && !shown().works_read_only()) shown_ = 0;
   // Opened once more, as when the program that died has let go of it, it is still looked for.
   looks_for_cut_off_ = all_know && (looks_for_cut_off_ || !is_same_folder) && !is_unpainted();

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "planning/default_plan/aim.h"
+#include "planning/default_plan/place_words.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/landmarks/anatomical_axes.h"
@@ -243,8 +244,26 @@ std::vector<Eigen::Vector2d> steps_within_spread() {
   return steps;
 }
 
-// Where within the norm's spread a tunnel of the same aim passes every check, as the map of entries shows it.
-std::optional<Vector3d> nearest_that_passes(const Site& site, const Tunnel& at_norm) {
+bool is_wrong(const std::vector<tunnels::PlanCheck>& failed) {
+  return std::ranges::any_of(
+      failed, [](const auto& check) { return check.verdict == tunnels::PlanCheck::Verdict::Wrong; });
+}
+
+double wall_mm(const std::vector<tunnels::PlanCheck>& failed) {
+  const auto wall = std::ranges::find(failed, "Wall", &tunnels::PlanCheck::name);
+  return wall == failed.end() ? std::numeric_limits<double>::infinity() : wall->value.value_or(0);
+}
+
+bool is_better(const std::vector<tunnels::PlanCheck>& failed, const std::vector<tunnels::PlanCheck>& than) {
+  return failed.size() != than.size() ? failed.size() < than.size() : wall_mm(failed) > wall_mm(than);
+}
+
+// Where within the norm's spread a tunnel of the same aim passes every check, as the map of entries shows it,
+// the nearest to the norm's place; where none does, where the fewest fail and none is wrong, of these where
+// the wall is thickest.
+std::optional<OtherEntry> better_entry(const Site& site, const Tunnel& at_norm,
+                                       const std::vector<tunnels::PlanCheck>& failed) {
+  std::optional<OtherEntry> best;
   for (const Eigen::Vector2d& step : steps_within_spread()) {
     if (site.options.stop.stop_requested()) return std::nullopt;
     norms::InsertionNorm norm = norms::default_norm(at_norm.bone, at_norm.bundle);
@@ -253,53 +272,19 @@ std::optional<Vector3d> nearest_that_passes(const Site& site, const Tunnel& at_n
     auto moved = site.at(norm);
     if (!moved) continue;
     moved->direction = at_norm.direction;
-    if (site.failed_by(*moved).empty()) return moved->entry_mm;
+    OtherEntry here{.entry_mm = moved->entry_mm, .failed = site.failed_by(*moved)};
+    if (here.failed.empty()) return here;
+    if (!is_wrong(here.failed) && (!best || is_better(here.failed, best->failed))) best = std::move(here);
   }
-  return std::nullopt;
-}
-
-// On the plateau "0.9 mm lateral, 0.4 mm anterior"; on the wall of the notch "0.9 mm proximal, ...".
-std::string way_in_words(const Vector3d& way_mm, bones::BoneKind bone,
-                         const landmarks::AnatomicalAxes& axes) {
-  const double lateral = way_mm.dot(axes.lateral), proximal = way_mm.dot(axes.proximal),
-               anterior = way_mm.dot(axes.anterior);
-  const std::string first =
-      bone == bones::BoneKind::Tibia
-          ? files::format("%.1f mm %s", std::abs(lateral), lateral > 0 ? "lateral" : "medial")
-          : files::format("%.1f mm %s", std::abs(proximal), proximal > 0 ? "proximal" : "distal");
-  return first + files::format(", %.1f mm %s", std::abs(anterior), anterior > 0 ? "anterior" : "posterior");
-}
-
-// Which way the surgeon would move, and why: at a tibia's mouth the thin place is mostly a flank of the
-// eminence.
-std::string thin_place_in_words(const Tunnel& tunnel, const std::vector<tunnels::PlanCheck>& failed,
-                                const landmarks::AnatomicalAxes& axes) {
-  const auto wall = std::ranges::find(failed, "Wall", &tunnels::PlanCheck::name);
-  if (wall == failed.end() || !wall->at_mm || !wall->value) return "";
-  const Vector3d way_mm = *wall->at_mm - tunnel.entry_mm;
-  if (way_mm.dot(tunnel.direction) > tunnel.diameter_mm) return "";  // not beside the mouth
-  const bool is_on_ridge = *wall->value < -tunnel.diameter_mm / 4;   // the edge is nearer than half a radius
-  return (is_on_ridge ? "; there it stands on a ridge narrower than the tunnel, and the bone falls away "
-                      : "; there the bone beside it is thinnest ") +
-         way_in_words(way_mm, tunnel.bone, axes) + " of the entry";
+  return is_wrong(failed) ? best : std::nullopt;
 }
 
 // The entry itself stays: which places pass changes with what of the shaft another scan shows, by whose axis
 // the tunnel is aimed, and a default that follows them leaps by 1 to 2 mm (CT 051).
 void look_around(const Site& site, const Tunnel& at_norm, DefaultTunnel& result) {
   if (result.failed.empty()) return;
-  result.place += thin_place_in_words(at_norm, result.failed, site.joint.axes);
-  result.passing_entry_mm = nearest_that_passes(site, at_norm);
-  if (!result.passing_entry_mm) {
-    result.place += "; with this aim no place within the norm's spread passes";
-    return;
-  }
-  const Vector3d way_mm = *result.passing_entry_mm - at_norm.entry_mm;
-  result.place += files::format(
-      "; with this aim a tunnel %.1f mm from that entry (%s), still within the norm's spread, passes every "
-      "check%s",
-      way_mm.norm(), way_in_words(way_mm, at_norm.bone, site.joint.axes).c_str(),
-      site.fails_by_diameter(at_norm) ? " but that of its diameter, which was asked for" : "");
+  result.other_entry = better_entry(site, at_norm, result.failed);
+  result.place += around_in_words(at_norm, result, site.joint.axes, site.fails_by_diameter(at_norm));
 }
 
 DefaultTunnel stopped() {

@@ -57,6 +57,15 @@ struct BoneInput {
   bones::UnseenParts unseen = {};
 };
 
+// The entry nearest to the norm's place and within its spread that passes every check of the tunnel alone.
+// Where none does and the tunnel at the norm's place is wrong: one where nothing is, the fewest checks fail,
+// and of these the wall is thickest.
+struct OtherEntry {
+  Eigen::Vector3d entry_mm = Eigen::Vector3d::Zero();
+  std::vector<tunnels::PlanCheck> failed;  // to be looked at there, as DefaultTunnel::failed
+  [[nodiscard]] bool passes() const { return failed.empty(); }
+};
+
 struct DefaultTunnel {
   enum class Outcome {
     NotRun,
@@ -78,20 +87,20 @@ struct DefaultTunnel {
   // Not that of its diameter, which was asked for: the plan's own checks say that. With them "Exit", not
   // checked, where every one leaves unseen.
   std::vector<tunnels::PlanCheck> failed;
-  // Of a single tunnel of which some fail: the entry nearest to the norm's place and within its spread from
-  // which one of the same aim passes them all. `place` says where it lies. The surgeon may move there
-  // (moved_to_passing).
-  std::optional<Eigen::Vector3d> passing_entry_mm;
+  // Of a single tunnel of which some fail: an entry within the norm's spread from which one of the same aim
+  // does better. `place` says where it lies. The surgeon may move there (moved_within_spread).
+  std::optional<OtherEntry> other_entry;
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Planned; }
 };
 
 // One bone. Throws InvalidInput for options out of range alone.
 [[nodiscard]] DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options& options = {});
 
-// Entered where every check passes instead of at the norm's place; `place` says how far off that it is and
-// what failed there. As it was where nothing within the norm's spread passes, or nothing failed. Which place
-// passes may differ by 1 to 2 mm between two scans of a bone, so nobody is moved there unasked.
-[[nodiscard]] DefaultTunnel moved_to_passing(DefaultTunnel made);
+// Entered at `other_entry` instead of at the norm's place; `place` says how far off that it is and what
+// failed there, `failed` what does here. As it was where nothing within the norm's spread is better, or
+// nothing failed. Which place passes may differ by 1 to 2 mm between two scans of a bone, so nobody is moved
+// there unasked.
+[[nodiscard]] DefaultTunnel moved_within_spread(DefaultTunnel made);
 
 // What to keep clear of: the tunnel of the other bundle in that bone. Null for the whole ligament's, and
 // where there is none.

@@ -37,6 +37,7 @@ TEST(PaintWords, TheNextStepIsWhatIsMissing) {
   bones[7] = painting::kFemur;
   painting.put(Layer::Bones, bones, "");
   EXPECT_THAT(next(), HasSubstr("(A)"));
+  EXPECT_THAT(next_step(painting, Preview::None, false, false, true), HasSubstr("Wait for the surfaces"));
   painting.undo();
   painting.go_to(0);
   stroke(4, painting::kTibia);

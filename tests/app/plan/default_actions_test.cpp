@@ -84,11 +84,11 @@ TEST_F(DefaultActions, EntersWhereItPassesWhenAsked) {
   action("plan.default").run();
   settle();
   const auto made = model.default_tunnel(BoneKind::Femur);
-  ASSERT_TRUE(made.passing_entry_mm) << made.place;
+  ASSERT_TRUE(made.other_entry) << made.place;
   EXPECT_EQ(model.tunnel(BoneKind::Femur)->entry_mm, made.tunnel.entry_mm);
   ASSERT_TRUE(action("plan.within_spread").can_run());
   action("plan.within_spread").run();
-  EXPECT_EQ(model.tunnel(BoneKind::Femur)->entry_mm, *made.passing_entry_mm);
+  EXPECT_EQ(model.tunnel(BoneKind::Femur)->entry_mm, made.other_entry->entry_mm);
   EXPECT_FALSE(action("plan.within_spread").can_run());
   action("plan.undo").run();
   EXPECT_EQ(model.tunnel(BoneKind::Femur)->entry_mm, made.tunnel.entry_mm) << "one step";

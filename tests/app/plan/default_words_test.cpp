@@ -35,8 +35,17 @@ TEST(DefaultWords, SayWhereEachTunnelIsAndWhatIsWrongThere) {
 TEST(DefaultWords, NameTheKeyThatEntersWhereItPasses) {
   std::vector<MadeTunnel> one{made(BoneKind::Tibia, "at the norm's place; 1.3 mm from it one passes")};
   EXPECT_THAT(default_in_words(one, false), Not(HasSubstr("Shift+N")));
-  one[0].made.passing_entry_mm = Eigen::Vector3d(1, 2, 3);
+  one[0].made.other_entry = default_plan::OtherEntry{};
   EXPECT_THAT(default_in_words(one, false), HasSubstr("one passes. Shift+N enters there instead."));
+}
+
+// Moved there it keeps the aim: nobody tried others from there.
+TEST(DefaultWords, SayWhatIsToBeLookedAtWhereItWasMovedTo) {
+  std::vector<MadeTunnel> one{made(BoneKind::Tibia, "1.4 mm off the norm's place")};
+  one[0].made.off_norm_mm = 1.4;
+  one[0].made.failed = {{.verdict = tunnels::PlanCheck::Verdict::Look, .name = "Wall", .text = "0.5 mm"}};
+  EXPECT_EQ(default_in_words(one, false),
+            "Default tibia: 1.4 mm off the norm's place. To be looked at: Wall: 0.5 mm.");
 }
 
 TEST(DefaultWords, SayWhatTheyRestOnAndHowToHaveThePlanBack) {

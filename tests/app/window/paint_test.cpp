@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
+#include <thread>
 
 #include "planning/cases/case.h"
 #include "planning/cases/case_lock.h"
@@ -185,6 +187,52 @@ TEST_F(PaintWindow, StrokesBecomeTheBonesOfTheCaseAndACrashLosesNothing) {
   ASSERT_TRUE(app.wait_for_state("painting", "ready", 60));
   app.press("Escape");
   ASSERT_TRUE(app.wait_for_state("screen", "mode"));
+}
+
+// Strokes need no mouse: the brush stands at the framed slice's cross-hair, and paints along while it is
+// down.
+TEST_F(PaintWindow, StrokesArePaintedByKeys) {
+  const VirtualDisplay display(1280, 720);
+  {
+    RunningWorkstation app(display, folder_.path(), {case_folder().string()});
+    ASSERT_TRUE(app.wait_for_state("painting", "ready", 120));
+    const std::string pane = app.state("paint_keyed_pane"), middle = app.state("paint_cross");
+    const auto leaves = [&](const std::string& cross) {
+      for (int i = 0; i < 200 && app.state("paint_cross") == cross; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      return app.state("paint_cross") != cross;
+    };
+    app.press("shift+Next");
+    ASSERT_TRUE(leaves(middle)) << "another image";
+    app.press("shift+Prior");
+    ASSERT_TRUE(app.wait_for_state("paint_cross", middle));
+    app.press("shift+S");
+    app.press("shift+S");
+    app.press("shift+S");
+    ASSERT_TRUE(app.wait_for_state("paint_keyed_pane", pane)) << "round";
+    app.press("alt+Up");
+    ASSERT_TRUE(leaves(middle));
+    EXPECT_EQ(app.state("paint_undo"), "") << "it is lifted";
+    app.press("2");
+    app.press("space");
+    ASSERT_TRUE(app.wait_for_state("paint_undo", "Paint tibia stroke"));
+    for (int i = 0; i < 5; ++i) app.press("alt+Right");
+    app.press("3");
+    app.press("alt+Right");
+    ASSERT_TRUE(app.wait_for_state("paint_undo", "Paint surroundings stroke"));
+    app.press("ctrl+z");
+    ASSERT_TRUE(app.wait_for_state("paint_undo", "Paint tibia stroke")) << "all of it one step";
+    app.press("space");
+    const std::string end = app.state("paint_cross");
+    app.press("alt+Right");
+    ASSERT_TRUE(leaves(end));
+    EXPECT_EQ(app.state("paint_undo"), "Paint tibia stroke");
+    ASSERT_TRUE(app.wait_for_state("paint_saved", "yes", 60));
+  }
+  const auto saved = painting::load_painting(case_folder(), known_.labels);
+  ASSERT_TRUE(saved);
+  EXPECT_GT(std::ranges::count(saved->strokes, painting::kTibia), 20) << "more than where it was lowered";
+  EXPECT_EQ(std::ranges::count(saved->strokes, painting::kSurroundings), 0);
 }
 
 // A CT: the threshold's preview is moved and taken, femur and tibia, which are one label then, are parted by

@@ -141,6 +141,63 @@ TEST_F(StartWindow, FindsACaseInTheFoldersByKeys) {
   EXPECT_EQ(app.state("case"), "open");
 }
 
+// Where nothing is planned there is nothing to look back at: such a case opens in Plan, another one in the
+// mode that is open.
+TEST_F(StartWindow, ACaseWithoutAPlanOpensInPlan) {
+  cases::Case bare = knee();
+  bare.plan = {};
+  cases::save_case(folder_ / "Planned.arthro", knee());
+  cases::save_case(folder_ / "Other.arthro", knee());
+  cases::save_case(folder_ / "Bare.arthro", bare);
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {(folder_ / "Planned.arthro").string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  for (const auto& [name, mode] : {std::pair("Other.arthro", "review"), std::pair("Bare.arthro", "plan")}) {
+    app.press("F3");
+    ASSERT_TRUE(app.wait_for_state("mode", "review"));
+    app.press("F5");
+    ASSERT_TRUE(app.wait_for_state("start", "cases"));
+    app.press("o");
+    ASSERT_TRUE(app.wait_for_state("start", "browse"));
+    app.press("ctrl+l");
+    ASSERT_TRUE(app.wait_for_widget("start.entry_path"));
+    app.type((folder_ / name).string());
+    ASSERT_TRUE(app.wait_for_state("typed_path", (folder_ / name).string(), 10));
+    app.press("Return");
+    ASSERT_TRUE(app.wait_for_state("folder", (folder_ / name).string(), 120));
+    EXPECT_TRUE(app.wait_for_state("mode", mode, 10)) << app.state("mode");
+  }
+}
+
+// A whole path that is typed or pasted takes the place of the folder that stands in the field, also the
+// second time; what was not there is mended instead.
+TEST_F(StartWindow, ATypedPathTakesThePlaceOfWhatStandsThere) {
+  for (const char* name : {"one", "two", "three"}) std::filesystem::create_directories(folder_ / "at" / name);
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {"--frames", "0"});
+  ASSERT_TRUE(app.wait_for_state("start", "cases", 60));
+  app.press("o");
+  ASSERT_TRUE(app.wait_for_state("start", "browse"));
+  const std::string at = (folder_ / "at").string();
+  const auto typed = [&](const std::string& text) {
+    app.press("ctrl+l");
+    EXPECT_TRUE(app.wait_for_widget("start.entry_path"));
+    app.type(text);
+    return app.wait_for_state("typed_path", text, 10);
+  };
+  for (const char* name : {"/one", "/two"}) {
+    ASSERT_TRUE(typed(at + name)) << app.state("typed_path");
+    app.press("Return");
+    ASSERT_TRUE(app.wait_for_state("typed_path", ""));
+  }
+  ASSERT_TRUE(typed(at + "/thre"));
+  app.press("Return");
+  ASSERT_TRUE(
+      app.wait_for_state("typed_problem", "There is no " + at + "/thre. As far as " + at + " it is there"));
+  app.type("e");
+  EXPECT_TRUE(app.wait_for_state("typed_path", at + "/three", 10)) << app.state("typed_path");
+}
+
 // Hazard 15: what writes into a case is not in front of one that another program has open.
 TEST_F(StartWindow, Hazard15SetUpDoesNotStandOnAReadOnlyCase) {
   const auto mine = folder_ / "arthronaut" / "cases" / "Mine.arthro";

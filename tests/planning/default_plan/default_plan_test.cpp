@@ -83,10 +83,10 @@ TEST(DefaultPlan, SaysWhereWithinTheNormsSpreadATibiaPassesEveryCheck) {
   const Knee& knee = knee_of(Side::Right);
   const auto whole = plan_bone(knee.inputs(true)[1], Side::Right);
   ASSERT_TRUE(whole.failed.empty());
-  EXPECT_FALSE(whole.passing_entry_mm);
+  EXPECT_FALSE(whole.other_entry);
   EXPECT_EQ(whole.place, "at the norm's place");
   constexpr double kHole_mm = 6;
-  for (const double wall_left_mm : {0.2, -2.0}) {
+  for (const double wall_left_mm : {0.2, -1.2, -2.0}) {
     SCOPED_TRACE(wall_left_mm);
     tunnels::Tunnel hole = whole.tunnel;
     hole.diameter_mm = kHole_mm;
@@ -113,24 +113,43 @@ TEST(DefaultPlan, SaysWhereWithinTheNormsSpreadATibiaPassesEveryCheck) {
     EXPECT_NEAR(medial_mm, whole.tunnel.diameter_mm / 2 + std::min(wall_left_mm, 0.0), 1);
     EXPECT_THAT(made.place, StartsWith("at the norm's place; there the bone beside it is thinnest "));
     EXPECT_THAT(made.place, HasSubstr(files::format("%.1f mm medial", medial_mm)));
-    if (wall_left_mm < 0) {
+    const bool is_wrong = wall->verdict == tunnels::PlanCheck::Verdict::Wrong;
+    EXPECT_EQ(is_wrong, wall_left_mm < 0);
+    // No place passes, but one where the tunnel does not break out is better than the norm's.
+    if (wall_left_mm == -1.2) {
+      ASSERT_TRUE(made.other_entry) << made.place;
+      EXPECT_FALSE(made.other_entry->passes());
       EXPECT_THAT(made.place,
-                  EndsWith(" of the entry; with this aim no place within the norm's spread passes"));
-      EXPECT_FALSE(made.passing_entry_mm);
+                  HasSubstr("still within the norm's spread, can be drilled; none there passes every "
+                            "check, and to be looked at is Wall: 0."));
+      const auto moved = moved_within_spread(made);
+      const double left_mm = tunnels::measure(moved.tunnel, surface).wall_mm;
+      EXPECT_GT(left_mm, 0);
+      EXPECT_LT(left_mm, 1);
+      ASSERT_EQ(moved.failed.size(), 1U);
+      EXPECT_EQ(moved.failed[0].verdict, tunnels::PlanCheck::Verdict::Look);
+      EXPECT_THAT(moved.place,
+                  HasSubstr("within its spread, where it can be drilled; at the norm's place Wall: "));
       continue;
     }
-    ASSERT_TRUE(made.passing_entry_mm) << made.place;
-    const double away_mm = (*made.passing_entry_mm - made.tunnel.entry_mm).norm();
+    if (wall_left_mm < 0) {
+      EXPECT_THAT(made.place,
+                  EndsWith(" of the entry; with this aim no place within the norm's spread is better"));
+      EXPECT_FALSE(made.other_entry);
+      continue;
+    }
+    ASSERT_TRUE(made.other_entry) << made.place;
+    const double away_mm = (made.other_entry->entry_mm - made.tunnel.entry_mm).norm();
     EXPECT_GT(away_mm, 0.3);
     EXPECT_LT(away_mm, 2);  // one sigma is 1.8 mm
     EXPECT_THAT(made.place, HasSubstr(files::format(
                                 " of the entry; with this aim a tunnel %.1f mm from that entry (", away_mm)));
     EXPECT_NE(made.place.find(" mm lateral, "), std::string::npos) << made.place;  // the hole is medial
     tunnels::Tunnel moved = made.tunnel;
-    moved.entry_mm = *made.passing_entry_mm;
+    moved.entry_mm = made.other_entry->entry_mm;
     EXPECT_GE(tunnels::measure(moved, surface).wall_mm, 1);  // what the tibia's check asks for
-    const auto taken = moved_to_passing(made);
-    EXPECT_EQ(taken.tunnel.entry_mm, *made.passing_entry_mm);
+    const auto taken = moved_within_spread(made);
+    EXPECT_EQ(taken.tunnel.entry_mm, made.other_entry->entry_mm);
     EXPECT_EQ(taken.tunnel.direction, made.tunnel.direction);
     EXPECT_NEAR(taken.off_norm_mm, away_mm, 1e-9);
     EXPECT_TRUE(taken.failed.empty());
@@ -139,7 +158,7 @@ TEST(DefaultPlan, SaysWhereWithinTheNormsSpreadATibiaPassesEveryCheck) {
                                          "it passes; at the norm's place Wall: ",
                                          away_mm)));
     const auto narrow = plan_bone(input, Side::Right, {.diameter_mm = 7.8});
-    ASSERT_TRUE(narrow.passing_entry_mm) << narrow.place;
+    ASSERT_TRUE(narrow.other_entry) << narrow.place;
     EXPECT_THAT(narrow.place, EndsWith("passes every check but that of its diameter, which was asked for"));
     EXPECT_THAT(made.place, EndsWith("passes every check"));
   }
@@ -165,15 +184,16 @@ TEST(DefaultPlan, NamesTheCheckThatNoAimPasses) {
         tunnels::measure(made.tunnel, knee.femur).wall_mm < tunnels::PlanNorms{}.thin_wall_mm;
     EXPECT_EQ(is_thin, further_mm > 10);
     ASSERT_EQ(made.failed.size(), is_thin ? 1U : 0U);
-    EXPECT_EQ(moved_to_passing(made).tunnel.entry_mm, made.passing_entry_mm.value_or(made.tunnel.entry_mm));
+    EXPECT_EQ(moved_within_spread(made).tunnel.entry_mm,
+              (made.other_entry ? made.other_entry->entry_mm : made.tunnel.entry_mm));
     if (!is_thin) {
-      EXPECT_FALSE(made.passing_entry_mm);
+      EXPECT_FALSE(made.other_entry);
       continue;
     }
     EXPECT_EQ(made.failed[0].name, "Wall");
-    ASSERT_TRUE(made.passing_entry_mm) << made.place;
+    ASSERT_TRUE(made.other_entry) << made.place;
     EXPECT_THAT(made.place, HasSubstr(" anterior), still within the norm's spread, passes every check"));
-    EXPECT_GE(tunnels::measure(moved_to_passing(made).tunnel, knee.femur).wall_mm,
+    EXPECT_GE(tunnels::measure(moved_within_spread(made).tunnel, knee.femur).wall_mm,
               tunnels::PlanNorms{}.thin_wall_mm);
   }
 }
