@@ -111,7 +111,8 @@ std::string calibration_in_words(bool is_simulated, const fs::path& case_folder,
   if (!is_built_in)
     for (const std::string& doubt : camera::read_camera_doubts(cases::camera_file(case_folder)))
       words += ", NOT RELIABLE: " + doubt;
-  if (!is_any_calibrated) return words + "; tools nominal";
+  const std::string unmeasured = dates == Dates::AsAge ? "not measured" : "nominal";
+  if (!is_any_calibrated) return words + "; tools " + unmeasured;
   // Those of which the same is to be said stand together.
   std::vector<std::pair<std::string, std::string>> calibrated;  // in words, their names
   const auto add = [](std::string& names, const std::string& name) {
@@ -127,8 +128,11 @@ std::string calibration_in_words(bool is_simulated, const fs::path& case_folder,
     if (same == calibrated.end()) same = calibrated.insert(calibrated.end(), {how, ""});
     add(same->second, tool.name + but_not(tool.nominal));
   }
-  for (const auto& [how, names] : calibrated) words += "; " + names + " " + how;
-  return nominal.empty() ? words : words + "; nominal: " + nominal;
+  // In short all of them are "tools" where the same is to be said of all.
+  const bool are_alike = dates == Dates::AsAge && calibrated.size() == 1 && nominal.empty() &&
+                         calibrated.front().second.find('(') == std::string::npos;
+  for (const auto& [how, names] : calibrated) words += "; " + (are_alike ? "tools" : names) + " " + how;
+  return nominal.empty() ? words : words + "; " + unmeasured + ": " + nominal;
 }
 
 bool has_real_camera(const fs::path& case_folder) {

@@ -42,7 +42,7 @@ enum class Dates { Told, AsAge };
 [[nodiscard]] std::string in_words(const provenance::Provenance& provenance, const std::string& now_utc,
                                    Dates dates = Dates::Told);
 // All of it for the screen: "camera measured 2026-11-21; probe measured 2026-11-21; nominal: femoral guide";
-// "camera built in; tools nominal". Throws as those.
+// "camera built in; tools nominal"; AsAge: "not measured" in the place of "nominal". Throws as those.
 [[nodiscard]] std::string calibration_in_words(bool is_simulated, const std::filesystem::path& case_folder,
                                                const std::string& now_utc, Dates dates = Dates::Told);
 

@@ -1,5 +1,6 @@
 #include "app/navigate/beginning_words.h"
 
+#include "app/navigate/plan_words.h"
 #include "navigation/camera/medium.h"
 #include "planning/cases/case.h"
 #include "planning/files/format.h"
@@ -27,7 +28,9 @@ Severity severity_of(const plan_review::TunnelVerdict& verdict) {
 
 // Behind the plan's own words.
 std::string in_words(const plan_review::TunnelVerdict& verdict) {
-  return verdict.is_fine() ? "" : (verdict.is_wrong() ? "; WRONG: " : "; look: ") + verdict.in_short();
+  return verdict.is_fine()
+             ? ""
+             : (verdict.is_wrong() ? "; WRONG: " : "; check: ") + in_plain_words(verdict).in_short();
 }
 
 // All of it: what is confirmed was read.
@@ -36,8 +39,9 @@ std::string in_full(const plan_review::TunnelVerdict& verdict) {
   const auto add = [&](const char* head, const std::vector<std::string>& reasons) {
     for (const std::string& reason : reasons) words += (&reason == &reasons.front() ? head : "; ") + reason;
   };
-  add("; WRONG: ", verdict.wrong);
-  add("; look: ", verdict.look);
+  const plan_review::TunnelVerdict plain = in_plain_words(verdict);
+  add("; WRONG: ", plain.wrong);
+  add("; check: ", plain.look);
   return words;
 }
 

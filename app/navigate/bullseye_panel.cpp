@@ -34,55 +34,44 @@ void draw_target(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, 
                  widgets::kQuietText, label.text.c_str());
 }
 
-// As surgeons shorten them, where they stand beside the target; the words in full stand beside the numbers.
-std::string in_short(std::string_view direction) {
-  const bool has_three = direction == "medial" || direction == "lateral" || direction == "anterior";
-  return std::string(direction.substr(0, has_three ? 3 : 4));
-}
-
-// The target as large as it can be with its words around it; where large words would take most of it, or
-// stand in it, they are small.
-struct Layout {
-  ImFont* font = nullptr;  // of the directions
-  float radius = 0;
+// In letters for afar, or in small ones where these leave no target.
+struct Words {
+  ImFont* font = nullptr;
+  TargetWords at;
 };
 
-Layout layout_in(const widgets::Ui& ui, const widgets::Rect& area, const BullseyePoint* point) {
-  const auto with = [&](ImFont* font) {
-    float beside = 0;
-    for (const bool is_positive : {true, false})
-      if (point != nullptr)
-        beside = std::max(
-            beside, font->CalcTextSizeA(font->FontSize, 1e9F, 0,
-                                        in_short(landmarks::to_text(point->side_is, is_positive)).c_str())
-                        .x);
-    const float radius =
-        std::min(area.width / 2 - beside - ui.theme.px(8), area.height / 2 - font->FontSize * 1.05F);
-    return Layout{font, std::max(radius, 10.F)};
+Words words_in(const widgets::Ui& ui, const widgets::Rect& area, const BullseyePoint* point) {
+  const auto name = [&](landmarks::AnatomicalDirection direction, bool is_positive) {
+    return landmarks::to_text(direction, is_positive);
   };
-  const Layout large = with(ui.theme.afar), small = with(ui.theme.body);
-  return large.radius > 0.85F * small.radius ? large : small;
+  const DirectionNames names = point == nullptr
+                                   ? DirectionNames{}
+                                   : DirectionNames{name(point->up_is, true), name(point->up_is, false),
+                                                    name(point->side_is, !point->side_is_right),
+                                                    name(point->side_is, point->side_is_right)};
+  Words words;
+  for (ImFont* const font : {ui.theme.afar, ui.theme.body}) {
+    words = {font, words_about_target(area, names, font->FontSize, [&](const std::string& text) {
+               return font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
+             })};
+    if (words.at.fits) break;
+  }
+  words.at.radius_px = std::max(words.at.radius_px, 10.F);
+  return words;
 }
 
-void draw_directions(ImDrawList& draw, const widgets::Rect& area, const ImVec2& center, const Layout& layout,
-                     const BullseyePoint& point) {
-  ImFont* const font = layout.font;
-  const float radius = layout.radius;
-  const auto put = [&](landmarks::AnatomicalDirection direction, bool is_positive, float x, float y,
-                       float align) {
-    const std::string_view whole = landmarks::to_text(direction, is_positive);
-    // Above and below there is room for the whole word.
-    const std::string text = align == 0.5F ? std::string(whole) : in_short(whole);
-    const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
-    const float left = std::clamp(x - width * align, area.x + 4, area.x + area.width - width - 4);
-    draw.AddText(font, font->FontSize, {left, y}, widgets::kQuietText, text.c_str());
-  };
-  put(point.up_is, true, center.x, center.y - radius - font->FontSize * 1.02F, 0.5F);
-  put(point.up_is, false, center.x, center.y + radius + font->FontSize * 0.02F, 0.5F);
-  // Between circle and edge, above the line that they belong to.
-  const float y = center.y - font->FontSize * 1.02F;
-  put(point.side_is, point.side_is_right, area.x + area.width, y, 1);
-  put(point.side_is, !point.side_is_right, area.x, y, 0);
+void draw_directions(ImDrawList& draw, const Words& words) {
+  for (const DirectionLabel* const label : {&words.at.up, &words.at.down, &words.at.left, &words.at.right}) {
+    draw.AddText(words.font, words.font->FontSize, label->place.min(), widgets::kQuietText,
+                 label->text.c_str());
+    const widgets::Rect& arrow = label->arrow;
+    if (arrow.width <= 0) continue;
+    const bool points_left = label == &words.at.left;
+    const float tip = points_left ? arrow.x : arrow.x + arrow.width,
+                back = points_left ? arrow.x + arrow.width : arrow.x;
+    draw.AddTriangleFilled({tip, arrow.center().y}, {back, arrow.y}, {back, arrow.y + arrow.height},
+                           widgets::kQuietText);
+  }
 }
 
 // The axis of the guide as a dot with a tail that leans as the guide does: 1 degree as long as 1 mm.
@@ -138,7 +127,7 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
     draw.AddText(ui.theme.title, ui.theme.title->FontSize, at, widgets::kAccent, screen.tunnel.c_str());
   };
   if (!screen.display.guidance_is_valid || !screen.plan) {
-    draw.AddCircle(center, layout_in(ui, area, nullptr).radius, widgets::kPanelEdge, 96, ui.theme.px(2));
+    draw.AddCircle(center, words_in(ui, area, nullptr).at.radius_px, widgets::kPanelEdge, 96, ui.theme.px(2));
     put_name();
     // That there is no picture is said where it would be.
     if (screen.display.has_picture)
@@ -149,8 +138,9 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   const guidance::GuidanceNumbers& numbers = screen.display.guidance;
   const BullseyePoint point = guidance::bullseye_point(numbers.guide_point_mm, numbers.guide_direction,
                                                        numbers.across_plan, *screen.plan);
-  const Layout layout = layout_in(ui, area, &point);
-  const float radius = layout.radius;
+  const Words words = words_in(ui, area, &point);
+  const float radius = words.at.radius_px;
+  ui.log.note_state("directions", words.font == ui.theme.afar ? "for afar" : "small");
   // The guide stands on the plan: seen at a glance, by a ring and a tick, in the first second the whole disc.
   const bool is_just_reached = screen.reached_for_s && *screen.reached_for_s < 1;
   draw_target(ui, draw, center, radius,
@@ -158,11 +148,11 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   put_name();
   if (screen.reached_for_s) {
     draw.AddCircle(center, radius - ui.theme.px(6), widgets::kGood, 96, ui.theme.px(12));
-    widgets::draw_sign(draw, {area.x + font * 0.6F, area.y + area.height - font * 0.6F}, font * 0.45F,
+    widgets::draw_sign(draw, {area.x + area.width - font * 0.6F, area.y + font * 0.6F}, font * 0.45F,
                        widgets::Severity::Good);
   }
   ui.log.note_state("reached", screen.reached_for_s ? "yes" : "no");
-  draw_directions(draw, area, center, layout, point);
+  draw_directions(draw, words);
   draw_guide(ui, draw, area, radius, point,
              worse(guidance_severity::severity_of(screen.display.grades.offset),
                    guidance_severity::severity_of(screen.display.grades.angle)));

@@ -83,7 +83,7 @@ std::string words_of(FinishAction action, const std::vector<FinishedBone>& bones
       bones::to_text(bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia : bones::BoneKind::Femur));
   switch (action) {
     case FinishAction::TakeMarkerOut:
-      return "take the " + own + "'s marker out, then say so";
+      return "take the " + own + "'s marker out, then press";
     case FinishAction::OtherBone:
       return "go on to the " + other;
     case FinishAction::EndSource:

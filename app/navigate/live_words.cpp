@@ -22,7 +22,7 @@ std::string words_of(NextAction action) {
     case NextAction::Draw:
       return "let the probe draw";
     case NextAction::GoOnDrawing:
-      return "touch the bone with the probe";
+      return "draw on the bone with the probe";
     case NextAction::RegisterStrokes:
       return "register what was touched";
     case NextAction::WaitForRegistration:
@@ -36,19 +36,19 @@ std::string words_of(NextAction action) {
     case NextAction::TakePlanOver:
       return "the plan was edited: take it over";
     case NextAction::VerifyByTouch:
-      return "verify: touch a place that you know";
+      return "touch a place you know";
     case NextAction::SetControlPoint:
       return "set the control point: touch a mark on the bone";
     case NextAction::CheckControlPoint:
       return "touch the control point again";
     case NextAction::CheckGuide:
-      return "nominal guide: hold its tip on the control point";
+      return "check the guide: hold its tip on the control point";
     case NextAction::BringGuide:
       return "take the guide";
     case NextAction::FollowBullseye:
       return "follow the bullseye";
     case NextAction::RecordDrilled:
-      return "when the tunnel is drilled: say so";
+      return "press when the tunnel is drilled";
     case NextAction::Finish:
       return "take the world marker out; done";
   }

@@ -8,7 +8,7 @@
 
 namespace arthronaut::navigate {
 
-// What to do next: "touch the bone with the probe".
+// What to do next: "draw on the bone with the probe".
 [[nodiscard]] std::string words_of(operation::NextAction action);
 // The same of a touch that verifies, with how many are still missing.
 [[nodiscard]] std::string words_of_verifying(const operation::OperationState& state);

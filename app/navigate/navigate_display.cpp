@@ -193,7 +193,7 @@ bool explain(NavigateDisplay& display, const theatre::LiveState& live) {
       display.headline = "Not registered";
       display.detail = !registration.bone_trouble.empty() ? registration.bone_trouble
                        : registration.is_fitting          ? "Registering now"
-                                                          : "Touch the bone with the probe, then register";
+                                                          : "Draw on the bone with the probe, then register";
       break;
     case GuidanceState::RegistrationUnreliable:
       tell(display, trouble_of(registration));

@@ -1,5 +1,6 @@
 // What the theatre screen asks, and what it tells the tests.
 #include "app/navigate/navigate_view.h"
+#include "app/navigate/plan_words.h"
 #include "app/navigate/tracking_words.h"
 #include "navigation/camera/medium.h"
 
@@ -61,8 +62,8 @@ std::string NavigateView::words_of_edited_plan() const {
 std::string NavigateView::words_of_verdict() const {
   const plan_review::TunnelVerdict& verdict = judged_.verdict();
   return verdict.is_fine() ? ""
-                           : (verdict.is_wrong() ? "the plan is wrong: " : "the plan is to be looked at: ") +
-                                 verdict.in_short();
+                           : (verdict.is_wrong() ? "the plan is wrong: " : "check the plan: ") +
+                                 in_plain_words(verdict).in_short();
 }
 
 bool NavigateView::draw_questions(const widgets::Ui& ui, const TheatreLayout& layout) {

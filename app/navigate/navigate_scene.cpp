@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "app/navigate/scene_words.h"
+#include "app/widgets/afar_text.h"
+
 namespace arthronaut::navigate {
 
 namespace {
@@ -12,16 +15,17 @@ bool asks_for_strokes(NavigateLayout layout, const operation::RegistrationState*
          bone->online->registration.has_pose && bone->online->state < registration::OnlineState::Confirmed;
 }
 
-// Which bone it is, of two tunnels which one guides, and what of it is seen.
-std::string caption_of(const NavigateScreen& screen, bool asks) {
-  std::string bone = tunnels::name_of(screen.plan ? screen.plan->key() : screen.bone);
-  bone[0] = screen.bone == bones::BoneKind::Femur ? 'F' : 'T';
-  if (screen.display.guidance_is_valid) return bone + ": drill guide and plan";
-  if (asks) return bone + ". White: drawn. Orange: draw here";
-  if (screen.layout == NavigateLayout::Guide) return bone + ": plan; the guide is not known now";
+// Which bone it is, and of two tunnels which one guides.
+std::string bone_of(const NavigateScreen& screen) {
+  return widgets::sentence(tunnels::name_of(screen.plan ? screen.plan->key() : screen.bone));
+}
+
+// What its colours tell; empty: nothing.
+std::string colours_of(const NavigateScreen& screen, bool asks) {
+  if (asks) return "Orange: draw here";
+  if (screen.layout == NavigateLayout::Guide) return "";
   const bool has_strokes = screen.live != nullptr && !screen.live->operation->registration->drawn->empty();
-  return bone + (has_strokes ? ": plan, and what was drawn. Green: surely on the bone"
-                             : ": plan; what is drawn will show here");
+  return has_strokes ? "Green: on the bone" : "";
 }
 
 ShownScene shown_of(const NavigateScreen& screen) {
@@ -79,21 +83,21 @@ void NavigateScene::show(const widgets::Ui& ui, const NavigateScreen& screen) {
 void NavigateScene::draw(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
   if (screen.drawn_bone == nullptr) return;
   show(ui, screen);
-  // In a pane too narrow for all of it, which bone it is; and nothing of the bone lies under it.
-  std::string caption =
-      caption_of(screen, asks_for_strokes(renewal_.shown().layout, renewal_.shown().registration.get()));
-  ImFont* const font = ui.theme.strong;
-  if (font->CalcTextSizeA(font->FontSize, 1e9F, 0, caption.c_str()).x > area.width - ui.theme.px(28))
-    caption = caption.substr(0, caption.find_first_of(":."));
-  widgets::Rect view = area;
-  const widgets::Rect above = view.cut_top(font->FontSize + ui.theme.px(18));
+  const ImFont* const font = ui.theme.afar;
+  const bool asks = asks_for_strokes(renewal_.shown().layout, renewal_.shown().registration.get());
+  widgets::Rect pane = area;
+  (void)pane.cut_left(ui.theme.px(14));  // as far in as the words above and below it
+  const SceneWords parts = scene_words(pane, bone_of(screen), colours_of(screen, asks), font->FontSize,
+                                       ui.theme.px(12), [&](const std::string& words) {
+                                         return font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str()).x;
+                                       });
   // Beside pictures that come, a key would wait for the large one.
   pane_.smooth_at_rest(!ui.by_processor || screen.live == nullptr || !is_under_way(*screen.live));
-  pane_.draw(ui, "navigate.view", view);
+  pane_.draw(ui, "navigate.view", parts.view);
   const ShownScene& shown = renewal_.shown();
   // A guide that is not known is amiss only while it is to be followed.
   const bool is_missed = shown.layout == NavigateLayout::Guide && !screen.display.guidance_is_valid;
-  widgets::caption(ui, above, is_missed ? widgets::kCaution : widgets::kText, caption);
+  widgets::draw_afar(ui, parts.place, is_missed ? widgets::kCaution : widgets::kText, parts.words);
 }
 
 }  // namespace arthronaut::navigate

@@ -306,7 +306,7 @@ std::string words_of(Missing missing) {
     case Missing::ControlPoint:
       return "the control point";
     case Missing::GuideCheck:
-      return "the nominal guide is not checked";
+      return "the guide is not checked";
     case Missing::Tunnel:
       return "the tunnel is not drilled";
     case Missing::Evidence:

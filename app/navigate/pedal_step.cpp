@@ -87,7 +87,7 @@ std::string words_of_acting(const PedalStep& step, const theatre::LiveState& liv
   if (step.action == NextAction::RegisterAnew) return words_of_registering_anew(state);
   const std::string beside = is_running(live) ? words_beside_no_picture(live.trouble, step.action) : "";
   if (step.action == NextAction::RecordDrilled && context.guided->bundle != norms::Bundle::Whole)
-    return beside + "when the tunnel " + tunnels::name_of(*context.guided) + " is drilled: say so";
+    return beside + "press when the tunnel " + tunnels::name_of(*context.guided) + " is drilled";
   return beside + words_of(step.action) + hand;
 }
 

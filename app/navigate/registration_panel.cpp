@@ -36,7 +36,8 @@ void draw_state(const widgets::Ui& ui, const RegistrationWords& words) {
   ImGui::Unindent(3 * radius);
   draw_bar(ui, words.progress, state.severity);
   widgets::text_in(ui.theme.strong, widgets::kText, state.text);
-  if (!words.missing.empty()) widgets::text_in(ui.theme.body, widgets::kQuietText, words.missing);
+  if (!words.missing.empty())
+    widgets::text_in(ui.theme.body, widgets::kQuietText, "Missing: " + words.missing);
   if (!words.assumed.empty()) widgets::text_in(ui.theme.body, widgets::kQuietText, words.assumed);
   for (const SeverityText& row : words.numbers) widgets::status_row(ui, row.severity, row.name, row.text);
 }
@@ -174,15 +175,25 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
     touch.name += ':';
     put_row(touch);
   }
-  std::string advice = words.missing.empty() ? state.text : words.missing;
-  bool is_said = is_bad || !can_be_done || put(widgets::Severity::Quiet, widgets::kText, advice);
+  // Where to draw next comes before what is missing, which says the same in figures.
+  const bool is_coached = !state.text.empty();
+  const bool is_said_as_bad = is_bad || !can_be_done;
+  std::string advice = is_coached ? state.text : words.missing;
+  bool is_said = is_said_as_bad || put(widgets::Severity::Quiet, widgets::kText, advice);
   // Rather the first things that are missing, read from afar, than all of them in small letters: what is
   // left out is told when these are there.
-  for (std::string first = advice; !is_said && !words.missing.empty();) {
-    const std::size_t last_item = first.rfind("; ");
-    if (last_item == std::string::npos) break;
-    first.resize(last_item);
-    is_said = put(widgets::Severity::Quiet, widgets::kText, first);
+  const auto put_missing = [&] {
+    std::string first = words.missing;
+    while (!put(widgets::Severity::Quiet, widgets::kText, first)) {
+      const std::size_t last_item = first.rfind("; ");
+      if (last_item == std::string::npos) return std::string();
+      first.resize(last_item);
+    }
+    return first;
+  };
+  if (!is_said && !is_coached) {
+    const std::string first = put_missing();
+    is_said = !first.empty();
     if (is_said) advice = first;
   }
   // What to do is never left out: rather in smaller letters.
@@ -191,7 +202,9 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
     rest.height = 0;
     is_said = true;
   }
-  ui.log.note_state("advice", is_said && !is_bad && can_be_done ? advice : "");
+  if (is_coached && is_said && !is_said_as_bad)
+    if (const std::string first = put_missing(); !first.empty()) advice += ' ' + first;
+  ui.log.note_state("advice", is_said && !is_said_as_bad ? advice : "");
   for (const SeverityText& row : words.numbers) put_row(row);
   if (!screen.has_source()) return;
   for (const SeverityText& row : contour_rows(*screen.live->operation)) put_row(row);

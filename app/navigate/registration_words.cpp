@@ -19,6 +19,7 @@ using widgets::Severity;
 constexpr double kShownLength_mm = 2;
 // A next best pose that fits less than so many times worse is worth a look.
 constexpr double kClearRatio = 2;
+constexpr const char* kNotFound = "Bone not found yet";
 
 // Whose figures may be shown; null: nobody's.
 const registration::RegistrationSummary* pose_of(const operation::RegistrationState& state) {
@@ -106,17 +107,19 @@ SeverityText state_of(const operation::RegistrationState& state) {
   // What stands need not be what was drawn here: it was given, or brought back.
   if (standing == Standing::Stands) return {Severity::Good, "Confirmed", words_of_touches(state.touches)};
   if (state.online == nullptr)
-    return {Severity::Quiet, "Collecting",
+    return {Severity::Quiet, kNotFound,
             state.drawn->empty() ? "Draw strokes on the bone with the probe."
                                  : "The bone is being made ready; go on drawing."};
-  const std::string& advice = state.online->coach.message;
+  // Whose bone it is, or how large its markers are, no further stroke mends: where to draw it is not said
+  // before what speaks against the bone.
+  const std::string advice = state.online->bone_is_in_doubt ? "" : state.online->coach.message;
   switch (state.online->state) {
-    case OnlineState::Collecting:
-      return {Severity::Quiet, "Collecting", advice};
+    case OnlineState::Collecting:  // how much more to draw says that it is to be drawn
+      return {Severity::Quiet, kNotFound, state.online->coach.missing.empty() ? advice : ""};
     case OnlineState::Candidate:
-      return {Severity::Caution, "Candidate, not confirmed yet", advice};
+      return {Severity::Caution, "Bone position not sure yet", advice};
     case OnlineState::Confirmed:
-      return {Severity::Caution, "Candidate, not in force", advice};
+      return {Severity::Caution, "Bone position not in use", advice};
   }
   return {};
 }
@@ -131,8 +134,7 @@ std::string missing_of(const operation::RegistrationState& state) {
   if (state.in_force.standing == Standing::Stands) return "";
   if (state.online == nullptr || state.online->state >= OnlineState::Confirmed) return "";
   std::string text;
-  for (const std::string& item : state.online->coach.missing)
-    text += (text.empty() ? "Missing: " : "; ") + item;
+  for (const std::string& item : state.online->coach.missing) text += (text.empty() ? "" : "; ") + item;
   return text;
 }
 
@@ -279,7 +281,7 @@ RegistrationWords words_of(const theatre::LiveState& live) {
       live.phase != theatre::LiveState::Phase::Running && state.in_force.standing == Standing::None;
   if (is_of_source_before(live))
     words.state = {Severity::Quiet, "No picture yet",
-                   has_begun ? "What guides by its pictures is judged when they come." : ""};
+                   has_begun ? "What was registered is judged with the first pictures." : ""};
   else if (waits_for_time_out(*live.operation))
     words.state = {Severity::Caution, "Waits for the time-out",
                    "What was drawn counts once patient, knee and plan are confirmed."};

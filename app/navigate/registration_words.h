@@ -15,11 +15,11 @@ struct SeverityText {
   std::string name, text;
 };
 
-// "Collecting", "Candidate, not confirmed yet", "Confirmed", "Verified", or the alarm; with what to do.
+// "Bone not found yet", "Bone position not sure yet", "Confirmed", "Verified", or the alarm; with what to do.
 [[nodiscard]] SeverityText state_of(const operation::RegistrationState& state);
 // 0 to 1; 0 while there is an alarm.
 [[nodiscard]] double progress_of(const operation::RegistrationState& state);
-// "Missing: 34 mm more of stroke; ..."; empty when nothing is.
+// "draw 34 mm more; ..."; empty when nothing is missing.
 [[nodiscard]] std::string missing_of(const operation::RegistrationState& state);
 // "Assumed: the cartilage lies 2.0 mm off the mesh, ..."; of the same pose as the numbers. Empty when
 // nothing was.

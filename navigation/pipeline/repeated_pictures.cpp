@@ -1,6 +1,7 @@
 #include "navigation/pipeline/repeated_pictures.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace arthronaut::pipeline {
 
@@ -17,14 +18,18 @@ constexpr double kMostRepeat = 0.3, kLeastRepeat = 0.1, kShareOfNoise = 0.3;
 // Within four pictures it halves.
 constexpr double kRefinedOfNoise = 0.45, kRefinedOfMotion = 0.03, kStopped = 0.25, kDecayed = 0.45;
 constexpr double kMotion = 8;  // no key frame of the same picture changes a tile by so much
-// Two repeats more than the source is used to make: 67 ms at 30 pictures a second.
+// Two repeats more than the source is used to make: 67 ms at 30 pictures a second, which come up to 7 ms
+// nearer to each other where sender and network are busy.
 constexpr int kRepeatsTooMany = 2;
-constexpr std::int64_t kRepeatingFor_ns = 60'000'000, kTooOld_ns = 95'000'000;
+constexpr std::int64_t kRepeatingFor_ns = 55'000'000, kTooOld_ns = 95'000'000;
 // Within so long after a stop an encoder's refinement is told from a scope at rest, of which the worst tile
 // changes by all of the noise. It may go on from key frame to key frame in steps as little as what a codec
 // leaves of a scope at rest.
 constexpr std::int64_t kUndecided_ns = 300'000'000;
 constexpr double kLively = 0.75;
+// So many on end that change as much as noise does no encoder makes of a picture that hangs: within four what
+// it refines has halved.
+constexpr int kLivesOn = 4;
 constexpr int kNoHabit = 5;  // repeats on end; what a source makes that hangs is none
 
 }  // namespace
@@ -40,19 +45,22 @@ double RepeatedPictures::most_repeat(double noise) {
   return noise < 0 ? kMostRepeat : std::clamp(kShareOfNoise * noise, kLeastRepeat, kMostRepeat);
 }
 
-// The longest row of repeats before the newest one.
+// As long as three rows of repeats were before the newest one: what came once or twice, as what a source that
+// hung a moment ago repeated up to a key frame, is none.
 int RepeatedPictures::habit() const {
   const std::size_t known = std::min(count_, kMost);
-  int longest = 0, count = 0;
+  std::array<int, 3> longest{};  // falling
+  int count = 0;
   for (auto i = static_cast<std::size_t>(row_.count); i < known; ++i) {
     if (steps_[(count_ - 1 - i) % kMost].repeats) {
       ++count;
     } else {
-      if (count < kNoHabit) longest = std::max(longest, count);
+      for (int& row : longest)
+        if (count < kNoHabit && count > row) std::swap(count, row);
       count = 0;
     }
   }
-  return longest;
+  return longest.back();
 }
 
 bool RepeatedPictures::is_too_long(const Row& row, std::int64_t timestamp_ns) const {
@@ -83,18 +91,21 @@ void RepeatedPictures::follow_stop(double largest, double noise) {
     stop_ = {};
   }
   if (stop_.moved == 0 && largest < kStopped * largest_[0]) {
-    stop_ = {{0, last_ns_}, 0, 0, largest_[0]};
+    stop_ = {{0, last_ns_}, 0, 0, 0, largest_[0]};
     largest_.fill(0);
   } else if (stop_.moved == 0 && !goes_on) {
     stops_and_goes_ = false;
   }
   if (stop_.moved == 0) return;
+  stop_.lively_in_row = largest >= kLively * noise ? stop_.lively_in_row + 1 : 0;
   if (hardly_changes(largest, noise)) {
     ++stop_.repeats.count;
     return;
   }
   ++stop_.others;
   if (largest >= kLively * noise) ++stop_.lively;
+  // What went on by a leap, as a source that hung does, and moves by less since, has not stopped.
+  if (stop_.lively_in_row >= kLivesOn) stop_ = {};
 }
 
 bool RepeatedPictures::observe(double largest, double noise, std::int64_t timestamp_ns) {

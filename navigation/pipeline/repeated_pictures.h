@@ -26,7 +26,7 @@ class RepeatedPictures {
 
   // How much a picture may differ that repeats the one before.
   [[nodiscard]] static double most_repeat(double noise);
-  // For 60 ms and more pictures repeat beyond the source's habit, or the picture stopped; until something
+  // For 55 ms and more pictures repeat beyond the source's habit, or the picture stopped; until something
   // moves, or until it is noisy again for 95 ms, and for 0.3 s where it hardly changes: a key frame of the
   // same picture and what follows are not.
   [[nodiscard]] bool is_suspected() const { return is_suspected_; }
@@ -59,8 +59,9 @@ class RepeatedPictures {
   struct Stop {
     Row repeats;
     int others = 0;
-    int lively = 0;    // of the others, those that change as much as noise does
-    double moved = 0;  // as much as a tile did before; 0: there was no stop
+    int lively = 0;         // of the others, those that change as much as noise does
+    int lively_in_row = 0;  // up to the newest one
+    double moved = 0;       // as much as a tile did before; 0: there was no stop
     // Key frames are others, one picture in a dozen.
     [[nodiscard]] bool stands() const { return moved > 0 && others <= 1 + repeats.count / 10; }
     [[nodiscard]] bool is_of_repeats() const { return stands() && repeats.count >= 2; }

@@ -132,7 +132,7 @@ std::string describe_place(const BonePatch& patch, const Eigen::Vector3d& touche
     if (!words.empty()) words += " and ";
     words += kWords[axis][distance > 0 ? 1 : 0];
   }
-  return words.empty() ? "here" : words;
+  return words.empty() ? "beside what is drawn" : words;
 }
 
 }  // namespace
@@ -141,8 +141,7 @@ Coach advise(const OnlineResult& result, const CoachFacts& facts) {
   Coach coach;
   const RegistrationSummary& registration = result.registration;
   if (!registration.has_pose && result.length_mm < kMinLength_mm) {
-    coach.missing.push_back(
-        files::format("%.0f mm more of stroke", std::ceil(kMinLength_mm - result.length_mm)));
+    coach.missing.push_back(files::format("draw %.0f mm more", std::ceil(kMinLength_mm - result.length_mm)));
   }
   const double length_done = std::min(1.0, result.length_mm / kMinLength_mm);
   coach.missing.insert(coach.missing.end(), registration.reasons.begin(), registration.reasons.end());
@@ -153,8 +152,8 @@ Coach advise(const OnlineResult& result, const CoachFacts& facts) {
   const double wanted = facts.agreeing_solutions_wanted,
                agreeing = std::min<double>(wanted, facts.agreeing_solutions);
   if (agreeing < wanted) {
-    coach.missing.push_back(files::format("%.0f mm more of stroke on which the result stays put",
-                                          (wanted - agreeing) * facts.refine_every_mm));
+    coach.missing.push_back(
+        files::format("draw %.0f mm more, to be sure", (wanted - agreeing) * facts.refine_every_mm));
   }
   const double error_done = std::min(1.0, kMaxError_mm / std::max(registration.predicted_tre_mm, 1e-3));
   coach.progress =
@@ -168,7 +167,7 @@ Coach advise(const OnlineResult& result, const CoachFacts& facts) {
     coach.progress = 1;
   } else if (coach.next_patch_in_bone_mm) {
     const Eigen::Vector3d touched_mm = facts.pool.best().bone_from_marker * facts.points.centroid_mm;
-    coach.message = "Draw the next stroke " + describe_place(*next, touched_mm) + ": it helps most.";
+    coach.message = "Draw next " + describe_place(*next, touched_mm) + ".";
   }
   return coach;
 }

@@ -144,7 +144,7 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, const Touche
   constexpr double kMinInliers = 0.5;
   std::vector<std::string> reasons;
   if (touched.length_mm < kMinLength_mm) {
-    reasons.push_back(files::format("too little was touched: draw %.0f mm more of stroke",
+    reasons.push_back(files::format("too little was touched: draw %.0f mm more",
                                     std::ceil(kMinLength_mm - touched.length_mm)));
   }
   if (differ_in_size(summary.stroke_scale)) reasons.push_back(reason_against_size(summary.stroke_scale));

@@ -94,7 +94,7 @@ TEST_F(CaseCalibration, AgesTakeThePlaceOfTheDatesOfWhatWasMeasured) {
   const std::string words = calibration_in_words(kReal, folder_, "2026-11-22T10:00:00Z", Dates::AsAge);
   EXPECT_TRUE(
       words.starts_with("camera measured, 4 days old, NOT RELIABLE: no board since 2026-11-18; "
-                        "probe measured today; nominal: "))
+                        "probe measured today; not measured: "))
       << words;
   EXPECT_EQ(
       in_words({provenance::Origin::Measured, "2026-11-21T10:00:00Z"}, "2026-11-22T10:00:00Z", Dates::AsAge),
@@ -102,6 +102,13 @@ TEST_F(CaseCalibration, AgesTakeThePlaceOfTheDatesOfWhatWasMeasured) {
   EXPECT_EQ(
       in_words({provenance::Origin::Measured, "2026-11-23T10:00:00Z"}, "2026-11-22T10:00:00Z", Dates::AsAge),
       "measured, date lies ahead: is the clock right?");
+  // Of which the same is to be said need no names there.
+  tools::ToolSet all = tools::standard_tools();
+  for (tools::Tool& tool : all.tools)
+    tool.provenance = {provenance::Origin::Measured, "2026-11-22T08:00:00Z"};
+  tools::write_tools_file(cases::tools_file(folder_), all);
+  const std::string alike = calibration_in_words(kReal, folder_, "2026-11-22T10:00:00Z", Dates::AsAge);
+  EXPECT_TRUE(alike.ends_with("; tools measured today")) << alike;
 }
 
 // A real scope's files are of no use to the simulation, which does not replace them either.

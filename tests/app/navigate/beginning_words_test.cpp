@@ -66,7 +66,8 @@ TEST(TimeOutCard, SaysAllThatSpeaksAgainstThePlan) {
   const plan_review::TunnelVerdict verdict{{"Wall: thin", "Length: short"},
                                            {"Grid: proposed", "Bone: rough"}};
   EXPECT_EQ(line_of(time_out_card(state, "", verdict), "Plan").text,
-            "8.5 mm wide, 31.2 mm long; WRONG: Wall: thin; Length: short; look: Grid: proposed; Bone: rough");
+            "8.5 mm wide, 31.2 mm long; WRONG: thin wall; short tunnel; check: landmarks not confirmed; "
+            "Bone: rough");
 }
 
 // A probe or a guide that nobody measured is marked.
@@ -94,10 +95,10 @@ TEST(TimeOutCard, SaysWhatSpeaksAgainstThePlan) {
   const CardLine wrong = line_of(
       time_out_card(state, "", {.wrong = {"Wall: -3.5 mm"}, .look = {"Bone: check the side"}}), "Plan");
   EXPECT_EQ(wrong.severity, Severity::Bad);
-  EXPECT_EQ(wrong.text, "8.5 mm wide, 31.2 mm long; WRONG: Wall: -3.5 mm; look: Bone: check the side");
+  EXPECT_EQ(wrong.text, "8.5 mm wide, 31.2 mm long; WRONG: thin wall; check: Bone: check the side");
   const CardLine look = line_of(time_out_card(state, "", {.look = {"Bone: check the side"}}), "Plan");
   EXPECT_EQ(look.severity, Severity::Caution);
-  EXPECT_EQ(look.text, "8.5 mm wide, 31.2 mm long; look: Bone: check the side");
+  EXPECT_EQ(look.text, "8.5 mm wide, 31.2 mm long; check: Bone: check the side");
   EXPECT_EQ(line_of(time_out_card(state, "", {}), "Plan").severity, Severity::Quiet);
 }
 
@@ -105,7 +106,7 @@ TEST(TimeOutCard, SaysWhatSpeaksAgainstThePlan) {
 TEST(EditedPlan, Hazard5SaysWhatWouldBeTakenOver) {
   EXPECT_EQ(words_of_edited(plan(), {}), "now 8.5 mm wide, 31.2 mm long");
   EXPECT_EQ(words_of_edited(plan(), {.wrong = {"Wall: 0.3 mm: may break out"}}),
-            "now 8.5 mm wide, 31.2 mm long; WRONG: Wall: 0.3 mm: may break out");
+            "now 8.5 mm wide, 31.2 mm long; WRONG: may break out of the bone");
   EXPECT_EQ(words_of_edited(std::nullopt, {}), "now none is planned");
 }
 
@@ -141,7 +142,7 @@ TEST(ResumeCard, SaysWhatSpeaksAgainstThePlan) {
   EXPECT_EQ(line({.look = {"Bone: check the side"}}).severity, Severity::Caution);
   const CardLine wrong = line({.wrong = {"Wall: -3.5 mm"}, .look = {"Bone: check the side"}});
   EXPECT_EQ(wrong.severity, Severity::Bad);
-  EXPECT_TRUE(wrong.text.ends_with("; WRONG: Wall: -3.5 mm (and 1 to look at)")) << wrong.text;
+  EXPECT_TRUE(wrong.text.ends_with("; WRONG: thin wall (and 1 to look at)")) << wrong.text;
 }
 
 // Of a tunnel that is drilled by word alone nobody else tells after a crash.

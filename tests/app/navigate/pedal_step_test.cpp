@@ -95,11 +95,11 @@ TEST(PedalStep, StaysTheSameWhilePicturesFlicker) {
 TEST(PedalStep, SaysThatNoPictureShowsWhetherTheMarkerIsOut) {
   AtThePedal theatre(NextAction::Finish);
   theatre.context.bones = {{bones::BoneKind::Femur, {{bones::BoneKind::Femur, true, {}, false}}, false}};
-  EXPECT_EQ(theatre.words(), "take the femur's marker out, then say so");
+  EXPECT_EQ(theatre.words(), "take the femur's marker out, then press");
   theatre.shown.live.trouble = theatre::SourceTrouble::NoPicture;
-  EXPECT_EQ(theatre.words(), "no picture comes; take the femur's marker out, then say so: your word alone");
+  EXPECT_EQ(theatre.words(), "no picture comes; take the femur's marker out, then press: your word alone");
   theatre.shown.live.phase = theatre::LiveState::Phase::Ended;
-  EXPECT_EQ(theatre.words(), "take the femur's marker out, then say so");
+  EXPECT_EQ(theatre.words(), "take the femur's marker out, then press");
 }
 
 // A plan that takes the place of the one that was read is read anew, however alike the two are in words; so

@@ -9,7 +9,8 @@ namespace {
 
 // What the panel tells tests of itself, in a window of 1280 x 720.
 std::string drawn(const Shown& shown, const widgets::Rect& area,
-                  const std::string& missing = "touch the bone with the probe") {
+                  const std::string& missing = "touch the bone with the probe",
+                  const std::string& where_next = "") {
   ImGui::CreateContext();
   const float scale = widgets::scale_for(1280, 720);
   const widgets::Theme theme =
@@ -24,7 +25,7 @@ std::string drawn(const Shown& shown, const widgets::Rect& area,
   const theatre::LiveState live = shown.whole();
   const NavigateDisplay display = display_of(&live, kNow_s);
   RegistrationWords words;
-  words.state = {widgets::Severity::Good, "Confirmed", ""};
+  words.state = {widgets::Severity::Good, "Confirmed", where_next};
   words.missing = missing;
   testing::internal::CaptureStdout();
   draw_registration(ui, area, {.live = &live, .display = display, .words = words});
@@ -61,7 +62,7 @@ TEST(RegistrationPanel, Hazard3WhyNoPictureComesIsNeverLeftOut) {
 
 // Of several things that are missing the first ones stand in large letters where there is no room for all.
 TEST(RegistrationPanel, WhatIsMissingIsReadFromAfarAsFarAsItFits) {
-  const std::string first = "Missing: 90 mm more of stroke", rest = "; draw across the line that was drawn";
+  const std::string first = "draw 90 mm more", rest = "; draw across the line that was drawn";
   const Shown shown;
   bool was_first_alone = false;
   for (float height = 90; height < 400; height += 10) {
@@ -72,6 +73,19 @@ TEST(RegistrationPanel, WhatIsMissingIsReadFromAfarAsFarAsItFits) {
   }
   EXPECT_TRUE(was_first_alone);
   EXPECT_NE(drawn(shown, {0, 0, 330, 400}, first + rest).find(rest), std::string::npos);
+}
+
+// Where to draw next is what helps: it stands there however little room there is, and before what is missing.
+TEST(RegistrationPanel, WhereToDrawNextComesBeforeWhatIsMissing) {
+  const std::string next = "Draw next nearer to the foot.", missing = "draw 90 mm more";
+  const Shown shown;
+  for (float height = 90; height < 400; height += 10) {
+    SCOPED_TRACE(height);
+    EXPECT_NE(drawn(shown, {0, 0, 330, height}, missing, next).find("STATE advice " + next),
+              std::string::npos);
+  }
+  EXPECT_NE(drawn(shown, {0, 0, 330, 400}, missing, next).find("STATE advice " + next + " " + missing),
+            std::string::npos);
 }
 
 }  // namespace

@@ -236,6 +236,30 @@ TEST(RegistrationWords, TheListCallsNothingGoodThatIsInDoubt) {
   }
 }
 
+// While the probe draws: where next, and what is missing of it in figures; where the bone itself is in doubt
+// no further stroke is asked for before that is told.
+TEST(RegistrationWords, SayWhereToDrawNextUnlessTheBoneIsInDoubt) {
+  Known known;
+  known.history.clear();
+  known.stand(Standing::None);
+  auto online = std::make_shared<registration::OnlineResult>(*known.registration.online);
+  online->coach.message = "Draw next nearer to the foot.";
+  online->coach.missing = {"too little was touched: draw 36 mm more", "draw 20 mm more, to be sure"};
+  known.registration.online = online;
+  EXPECT_EQ(known.words().state.name, "Bone position not sure yet");
+  EXPECT_EQ(known.words().state.text, "Draw next nearer to the foot.");
+  EXPECT_EQ(known.words().missing, "too little was touched: draw 36 mm more; draw 20 mm more, to be sure");
+  online->bone_is_in_doubt = true;
+  EXPECT_EQ(known.words().state.text, "");
+  EXPECT_NE(known.words().missing, "");
+  // Before there is a pose how much more to draw says what to do.
+  online->bone_is_in_doubt = false;
+  online->state = registration::OnlineState::Collecting;
+  EXPECT_EQ(known.words().state.text, "");
+  online->coach.missing.clear();
+  EXPECT_EQ(known.words().state.text, "Draw next nearer to the foot.");
+}
+
 // A candidate that is confirmed while something else is in force, which is not reliable, guides nothing.
 TEST(RegistrationWords, WhatIsNotInForceIsNotCalledConfirmed) {
   Known known;
@@ -342,7 +366,7 @@ TEST(RegistrationWords, AreNotVerifiedBeforeTheWholeStepIs) {
 TEST(RegistrationWords, NothingIsCollectedWithoutPictures) {
   Known known;
   known.registration = operation::RegistrationState();
-  EXPECT_EQ(known.words().state.name, "Collecting");
+  EXPECT_EQ(known.words().state.name, "Bone not found yet");
   for (const Phase phase : {Phase::NoSource, Phase::Ended}) {
     known.live.phase = phase;
     EXPECT_EQ(known.words().state.name, "Not registered");

@@ -63,7 +63,7 @@ bool overlap(const Rect& a, const Rect& b) {
 std::vector<std::string> all_words() {
   std::vector<std::string> words{
       "choose the tunnel femur AM (1); V: PL (2)",
-      "when the tunnel femur PL is drilled: say so",
+      "press when the tunnel femur PL is drilled",
       "then the tunnel femur PL (2), or take the world marker out",
       "resume the operation that was left",
       "the pictures look like saline: end them, and take saline next",
@@ -74,7 +74,7 @@ std::vector<std::string> all_words() {
       words_of(operation::NextAction::VerifyByTouch) + ", 3 to go. Wait: the probe moves",
       words_without_pictures(theatre::SourceTrouble::NoPicture, operation::NextAction::VerifyByTouch,
                              Eigen::Vector2i(1280, 720)),
-      "no picture comes; take the femur's marker out, then say so: your word alone",
+      "no picture comes; take the femur's marker out, then press: your word alone",
       "calibrate camera and tools in Set up",
       "wait: the case's last operation is looked for"};
   for (const auto way_out : {operation::WayOut::StrokesAnew, operation::WayOut::MarkerPlacedAnew})

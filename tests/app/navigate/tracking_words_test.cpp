@@ -36,7 +36,7 @@ TEST(WordsWithoutPictures, StandBesideWhatIsTakenOnSomebodysWord) {
   using theatre::SourceTrouble;
   EXPECT_EQ(words_beside_no_picture(SourceTrouble::NoPicture, NextAction::RecordDrilled) +
                 words_of(NextAction::RecordDrilled),
-            "no picture comes; when the tunnel is drilled: say so");
+            "no picture comes; press when the tunnel is drilled");
   EXPECT_EQ(words_beside_no_picture(SourceTrouble::Frozen, NextAction::ConfirmTimeOut)
                 .find("the picture is frozen; "),
             0U);
@@ -331,11 +331,11 @@ TEST(VerifyingWords, CountDownToTheLastPlace) {
     return words_of_verifying(state);
   };
   state.registration = std::make_shared<const operation::RegistrationState>(known);
-  EXPECT_EQ(words_of_verifying(state), "verify: touch a place that you know, 3 to go");
-  EXPECT_EQ(words_after({0, 0, 0.2}), "verify: touch a place that you know, 2 to go");
-  EXPECT_EQ(words_after({0.5, 0, 0.2}), "verify: touch a place that you know, 2 to go") << "the same place";
-  EXPECT_EQ(words_after({6, 0, 0.2}), "verify: touch a place that you know, 1 to go");
-  EXPECT_EQ(words_after({-6, 0, 1.2}), "verify: touch a place that you know") << "enough, and one is off";
+  EXPECT_EQ(words_of_verifying(state), "touch a place you know, 3 to go");
+  EXPECT_EQ(words_after({0, 0, 0.2}), "touch a place you know, 2 to go");
+  EXPECT_EQ(words_after({0.5, 0, 0.2}), "touch a place you know, 2 to go") << "the same place";
+  EXPECT_EQ(words_after({6, 0, 0.2}), "touch a place you know, 1 to go");
+  EXPECT_EQ(words_after({-6, 0, 1.2}), "touch a place you know") << "enough, and one is off";
 }
 
 // Why it is asked for is said with it: a surgeon who does not know touches anything.

@@ -234,7 +234,7 @@ TEST_F(Theatre, Hazard12AfterARestartBetweenTheBonesThePedalGoesOnWithTheOtherOn
   {
     RunningWorkstation app(display, folder_.path());
     show_navigate(app);
-    ASSERT_TRUE(app.wait_for_state("next", "take the femur's marker out, then say so", 60));
+    ASSERT_TRUE(app.wait_for_state("next", "take the femur's marker out, then press", 60));
     EXPECT_EQ(app.state("drilled"), "1");
     std::this_thread::sleep_for(std::chrono::seconds(2));  // as long as it takes to read it
     app.press("space");
