@@ -1,6 +1,7 @@
 #include "app/command_line/after_operation.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "app/library/workstation_library.h"
 
@@ -36,6 +37,13 @@ void say_planned_cases(const Context& context, std::span<const library::PlannedC
                 (series_uid.empty() ? "" : " --series " + series_uid) + " -o " +
                 quoted(folder + "/achieved.json"));
   }
+}
+
+nlohmann::ordered_json planned_cases_json(std::span<const library::PlannedCase> cases) {
+  auto all = nlohmann::ordered_json::array();
+  for (const library::PlannedCase& planned : cases)
+    all.push_back({{"name", planned.name}, {"folder", planned.folder.string()}});
+  return all;
 }
 
 }  // namespace arthronaut::command_line

@@ -1,6 +1,7 @@
 // Images of a patient of whom this workstation has a case with a plan: they may be those after the operation.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 
@@ -17,5 +18,8 @@ namespace arthronaut::command_line {
 // none. series_uid: may be empty; source: what `compare` is given.
 void say_planned_cases(const Context& context, std::span<const library::PlannedCase> cases,
                        const std::string& series_uid, const std::string& source);
+
+// The same as JSON: name and folder of each.
+[[nodiscard]] nlohmann::ordered_json planned_cases_json(std::span<const library::PlannedCase> cases);
 
 }  // namespace arthronaut::command_line

@@ -122,6 +122,7 @@ void export_dicom(Context& context, const DicomArguments& arguments) {
   const auto summary = dicom_out::export_dicom(contents, arguments.output);
   for (const std::string& note : summary.notes) context.say(note);
   for (const fs::path& file : summary.files) context.say("Wrote " + file.string());
+  if (contents.identity) context.say("They name the patient, as the images do; --deidentified names nobody");
   // As `plan --export` has it: what speaks against the plan is told and no doubt about what was written,
   // unless it is of the other knee.
   for (const std::string& wrong : verdict->wrong) context.say("Wrong, and written all the same: " + wrong);

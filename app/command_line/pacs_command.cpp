@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -206,6 +207,17 @@ struct GetArguments : Connection {
   bool as_json = false;
 };
 
+// Of the series that was fetched. What is wrong with its images the import says.
+std::vector<library::PlannedCase> planned_cases_of_series(const pacs::RetrieveRequest& request) {
+  importing::SeriesProcess looking({.source = request.folder});
+  looking.finish();
+  if (!looking.list()) return {};
+  const std::vector<images::ImageSeries>& found = looking.list()->series;
+  const auto series = std::ranges::find(found, request.series_uid, &images::ImageSeries::uid);
+  if (series == found.end()) return {};
+  return planned_cases_of({&*series, 1}).front();
+}
+
 void get(const Context& context, const GetArguments& arguments) {
   using Outcome = pacs::RetrieveSummary::Outcome;
   refuse_together([&] { pacs::check(arguments.request); });
@@ -228,26 +240,19 @@ void get(const Context& context, const GetArguments& arguments) {
   stop.end_if_caught();
   if (summary.outcome == Outcome::UnknownSeries) throw InvalidInput(summary.message);
   if (!summary.is_usable()) throw DeviceError(summary.message);
+  std::vector<library::PlannedCase> planned;
+  if (arguments.as_json || !context.quiet) planned = planned_cases_of_series(arguments.request);
   if (arguments.as_json) {
-    files::write_json("-", json_of(where, arguments.request.series_uid, arguments.request.folder, summary));
+    auto document = json_of(where, arguments.request.series_uid, arguments.request.folder, summary);
+    document["planned_cases"] = planned_cases_json(planned);
+    files::write_json("-", document);
     return;
   }
-  const auto say_whose = [&] {
-    importing::SeriesProcess looking({.source = arguments.request.folder});
-    constexpr double kLongestWait_s = 0.1;
-    while (looking.wait_for(kLongestWait_s) == importing::SeriesProcess::State::Running) {
-    }
-    if (!looking.list()) return;  // what is wrong with the images the import says
-    const std::vector<images::ImageSeries>& found = looking.list()->series;
-    const auto planned = planned_cases_of(found);
-    for (std::size_t i = 0; i < found.size(); ++i)
-      say_planned_cases(context, planned[i], found[i].uid, arguments.request.folder.string());
-  };
   const int fetched = summary.image_count - summary.kept_count;
   context.say(summary.message + (summary.way.empty()
                                      ? "; nothing had to be fetched"
                                      : files::format("; %d fetched by %s", fetched, summary.way.c_str())));
-  if (!context.quiet) say_whose();
+  say_planned_cases(context, planned, arguments.request.series_uid, arguments.request.folder.string());
 }
 
 void add_get(CLI::App& pacs_app, Context& context) {

@@ -24,7 +24,8 @@ struct SeriesArguments {
   double memory_limit_gib = importing::SeriesRequest{}.memory_limit_gib;
 };
 
-nlohmann::ordered_json json_of(const images::ImageSeries& series) {
+nlohmann::ordered_json json_of(const images::ImageSeries& series,
+                               const std::vector<library::PlannedCase>& planned) {
   auto files = nlohmann::ordered_json::array();
   for (const auto& file : series.files) files.push_back(file.string());
   auto wrong = nlohmann::ordered_json::array();
@@ -41,13 +42,16 @@ nlohmann::ordered_json json_of(const images::ImageSeries& series) {
            series.spacing_mm.minCoeff() > 0 ? files::to_json(series.spacing_mm) : nlohmann::ordered_json()},
           {"readable", series.is_readable()},
           {"wrong", std::move(wrong)},
+          {"planned_cases", planned_cases_json(planned)},
           {"files", std::move(files)}};
 }
 
 void print_json(const images::SeriesList& list) {
   nlohmann::ordered_json document = {{"format", "arthronaut.series"}, {"version", 1}};
   document["series"] = nlohmann::ordered_json::array();
-  for (const auto& series : list.series) document["series"].push_back(json_of(series));
+  const auto planned = planned_cases_of(list.series);
+  for (std::size_t i = 0; i < list.series.size(); ++i)
+    document["series"].push_back(json_of(list.series[i], planned[i]));
   document["skipped"] = nlohmann::ordered_json::array();
   for (const auto& skipped : list.skipped)
     document["skipped"].push_back({{"file", skipped.file.string()}, {"reason", skipped.reason}});
@@ -88,14 +92,12 @@ void print(const Context& context, const images::SeriesList& list, const std::st
 
 // In a process of its own, as the import: what the files hold ends in a message, not in this program's end.
 images::SeriesList found_series(const SeriesArguments& arguments) {
-  using State = importing::SeriesProcess::State;
-  constexpr double kLongestWait_s = 0.1;
   Progress progress("Looking", 100);
   importing::SeriesProcess process(
       {.source = arguments.source, .memory_limit_gib = arguments.memory_limit_gib});
-  while (process.wait_for(kLongestWait_s) == State::Running)
-    progress.advance_to(static_cast<long>(100 * process.looked_fraction()));
-  if (process.state() != State::Done) throw InvalidInput(process.message());
+  const auto state =
+      process.finish([&progress](double looked) { progress.advance_to(static_cast<long>(100 * looked)); });
+  if (state != importing::SeriesProcess::State::Done) throw InvalidInput(process.message());
   return process.list().value();
 }
 

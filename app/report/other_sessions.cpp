@@ -10,6 +10,7 @@
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/drilled_by_word.h"
 #include "navigation/recording/session_overview.h"
+#include "navigation/recording/session_timeline.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/files/within_folder.h"
 #include "planning/geometry/error.h"
@@ -34,6 +35,13 @@ recording::SessionHeader header_of_whole(const std::filesystem::path& folder) {
   recording::SessionOverview then = recording::read_overview(folder);
   if (!then.end_was_read && !then.problems.empty()) throw InvalidInput(then.problems.front());
   return std::move(then.header);
+}
+
+// Nothing of them may be told here, and the session be damaged all the same.
+void note_damaged_frames(const std::filesystem::path& folder, Content& content) {
+  const recording::SessionTimeline frames(folder);
+  for (const std::string& problem : frames.problems())
+    content.damaged.emplace_back(folder.filename().string(), files::within_folder(content.folder, problem));
 }
 
 // The newest of each tunnel that is planned and not among the session's own.
@@ -72,6 +80,7 @@ void add_by_word(const std::vector<std::filesystem::path>& sessions, Content& co
       if (!is_own && !belongs_to(content, then.header)) return;
       if (!is_own && !then.events_were_read)
         throw InvalidInput(then.problems.empty() ? "what was done cannot be read" : then.problems.front());
+      if (!is_own) note_damaged_frames(*it, content);
       for (const recording::DrilledByWord& said : recording::drilled_by_word(then.events, then.header.bone)) {
         if (!known.insert(said.tunnel).second) continue;
         content.by_word.push_back(
@@ -174,7 +183,7 @@ void draw_other_sessions(FlowingPages& pages, const Content& content) {
 }
 
 std::string in_words(const Content::ByWord& said) {
-  const std::string when = said.at_s              ? ", at " + clock_text(*said.at_s)
+  const std::string when = said.at_s              ? ", at " + recording::clock_text(*said.at_s)
                            : said.session.empty() ? ", in an earlier session"
                                                   : ", in the session " + said.session;
   return "DRILLED BY WORD ALONE: the " + said.tunnel + " tunnel was said to be drilled" + when +

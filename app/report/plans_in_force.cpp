@@ -36,7 +36,8 @@ std::string in_words(const operation::PlannedTunnel& plan) {
 std::string plans_in_words(const std::vector<PlanInForce>& plans) {
   std::string words;
   for (const PlanInForce& next : plans)
-    words += (words.empty() ? "" : "; from " + clock_text(next.since_s) + " ") + in_words(next.plan);
+    words +=
+        (words.empty() ? "" : "; from " + recording::clock_text(next.since_s) + " ") + in_words(next.plan);
   return words;
 }
 
@@ -46,8 +47,8 @@ std::vector<std::string> plan_warnings(const recording::RecordedSession& session
   for (const PlanInForce& next : plans_in_force(session)) {
     const tunnels::TunnelKey key = next.plan.tunnel.key();
     if (const auto before = last.find(key); before != last.end() && before->second != next.plan)
-      warnings.push_back("THE PLAN WAS CHANGED IN THE SESSION, at " + clock_text(next.since_s) + ": from " +
-                         in_words(before->second) + ", to " + in_words(next.plan) + ".");
+      warnings.push_back("THE PLAN WAS CHANGED IN THE SESSION, at " + recording::clock_text(next.since_s) +
+                         ": from " + in_words(before->second) + ", to " + in_words(next.plan) + ".");
     last.insert_or_assign(key, next.plan);
   }
   const auto bone = content.knee.bones.find(session.header().bone);

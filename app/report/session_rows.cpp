@@ -242,7 +242,7 @@ SessionFigures figures_of(const recording::RecordedSession& session) {
 }
 
 std::string frames_in_words(const SessionFigures& figures) {
-  const std::string words = std::to_string(figures.frames) + " in " + clock_text(figures.length_s);
+  const std::string words = std::to_string(figures.frames) + " in " + recording::clock_text(figures.length_s);
   return figures.without_picture_s > 0
              ? words + files::format("; NO PICTURE for %.1f s", figures.without_picture_s)
              : words;
@@ -253,21 +253,16 @@ double time_s(const recording::RecordedSession& session, std::int64_t timestamp_
   return std::max(0.0, static_cast<double>(timestamp_ns - session.frames().front().timestamp_ns) * 1e-9);
 }
 
-std::string clock_text(double seconds) {
-  const long tenths = std::lround(10 * seconds);
-  return files::format("%ld:%02ld.%ld", tenths / 600, tenths / 10 % 60, tenths % 10);
-}
-
 std::string seen_and_said(const recording::RecordedSession& session,
                           const operation::AchievedTunnel& achieved) {
-  std::string words = ", the last at " + clock_text(time_s(session, achieved.timestamp_ns));
+  std::string words = ", the last at " + recording::clock_text(time_s(session, achieved.timestamp_ns));
   const std::string file = operation::achieved_file_name(achieved.planned.key());
   for (auto it = session.events().rbegin(); it != session.events().rend(); ++it) {
     if (it->kind != recording::kDrilledEvent || it->text != file) continue;
     const bool had_ended = std::any_of(it, session.events().rend(), [](const auto& before) {
       return before.kind == recording::kSourceEndedEvent;
     });
-    return words + "; said to be drilled at " + clock_text(time_s(session, it->timestamp_ns)) +
+    return words + "; said to be drilled at " + recording::clock_text(time_s(session, it->timestamp_ns)) +
            (had_ended ? ", after the pictures had ended" : "");
   }
   return words;
@@ -313,7 +308,8 @@ std::vector<Step> steps_of(const recording::RecordedSession& session) {
     std::string words = run.words;
     if (run.more > 0)
       words += ", and " + std::to_string(run.more) +
-               (run.more == 1 ? " time more until " : " times more until ") + clock_text(run.last_s);
+               (run.more == 1 ? " time more until " : " times more until ") +
+               recording::clock_text(run.last_s);
     else if (run.for_s > 0)
       words += files::format(", for %.1f s", run.for_s);
     steps.push_back({run.first_s, std::move(words)});

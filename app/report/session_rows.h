@@ -67,8 +67,6 @@ struct SessionFigures {
 
 // Seconds from the first frame; 0 for what was before it.
 [[nodiscard]] double time_s(const recording::RecordedSession& session, std::int64_t timestamp_ns);
-// "1:02.3"
-[[nodiscard]] std::string clock_text(double seconds);
 // When the last pose of a tunnel was seen that was drilled in this session, and when it was said to be: what
 // was seen is not of all the time between them. ", the last at 0:54.2; said to be drilled at 1:23.0, after
 // the pictures had ended".

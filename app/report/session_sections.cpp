@@ -27,7 +27,7 @@ void draw_registration(FlowingPages& pages, const registration::RegistrationSumm
 void draw_time_line(FlowingPages& pages, const Content& content, std::size_t most_rows) {
   const recording::RecordedSession& session = *content.session;
   std::vector<std::vector<std::string>> rows;
-  for (const Step& step : steps_of(session)) rows.push_back({clock_text(step.time_s), step.words});
+  for (const Step& step : steps_of(session)) rows.push_back({recording::clock_text(step.time_s), step.words});
   if (!rows.empty()) {
     pages.heading("Steps");
     rows.insert(rows.begin(), {"Time", "Step"});
@@ -37,7 +37,7 @@ void draw_time_line(FlowingPages& pages, const Content& content, std::size_t mos
   pages.heading("Marks of who looked at the session");
   rows = {{"Time", "Note"}};
   for (const recording::SessionMark& mark : content.marks)
-    rows.push_back({clock_text(time_s(session, mark.timestamp_ns)),
+    rows.push_back({recording::clock_text(time_s(session, mark.timestamp_ns)),
                     (mark.note.empty() ? std::string("(no note)") : mark.note) + "  (frame " +
                         std::to_string(mark.frame) + ")"});
   if (!content.marks.empty()) pages.list({24, 146}, rows, most_rows);

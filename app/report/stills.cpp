@@ -107,7 +107,9 @@ std::vector<Moment> key_moments(const recording::RecordedSession& session,
     if (!closest || miss(i) < miss(*closest)) closest = i;
     if (frames[i].index <= drilled_after) drilled = i;
   }
-  const auto clock = [&](std::size_t i) { return clock_text(time_s(session, frames[i].timestamp_ns)); };
+  const auto clock = [&](std::size_t i) {
+    return recording::clock_text(time_s(session, frames[i].timestamp_ns));
+  };
   std::vector<Moment> moments;
   if (registered) moments.push_back({*registered, clock(*registered) + ": registered"});
   if (closest)

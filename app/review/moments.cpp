@@ -76,11 +76,6 @@ std::int64_t first_time_ns(const std::vector<SessionEvent>& events) {
 
 }  // namespace
 
-std::string clock_text(double seconds) {
-  const long tenths = std::lround(seconds * 10);
-  return files::format("%ld:%02ld.%ld", tenths / 600, tenths / 10 % 60, tenths % 10);
-}
-
 std::vector<Moment> moments_of(const std::vector<SessionEvent>& events,
                                const recording::SessionTimeline& timeline,
                                const recording::ReadRegistration& read) {
@@ -109,7 +104,8 @@ std::string last_moment_in_words(const std::vector<Moment>& moments,
   const Moment& last = *std::prev(after);
   const bool is_after_pictures =
       last.frame + 1 == timeline.frames().size() && last.time_s > timeline.time_s(last.frame);
-  return (is_after_pictures ? clock_text(last.time_s) + ", after the pictures: " : "") + last.words;
+  return (is_after_pictures ? recording::clock_text(last.time_s) + ", after the pictures: " : "") +
+         last.words;
 }
 
 std::vector<std::size_t> frames_to_jump_to(const std::vector<Moment>& moments,

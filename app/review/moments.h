@@ -28,9 +28,6 @@ struct Moment {
   double time_s = 0;
 };
 
-// "1:02.3"
-[[nodiscard]] std::string clock_text(double seconds);
-
 // In the order of the record. What the record holds for running it again alone (outcomes, second looks) is
 // left out, and so is a plan that was in force already. Without frames every `frame` is 0.
 [[nodiscard]] std::vector<Moment> moments_of(const std::vector<recording::SessionEvent>& events,

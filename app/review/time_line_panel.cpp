@@ -316,9 +316,10 @@ std::optional<std::size_t> draw_time_line(const widgets::Ui& ui, const widgets::
   }
   const float right = scale.left + scale.width + ui.theme.px(14);
   widgets::draw_number(draw, ui.theme.strong, {right, inner.y}, widgets::kText,
-                       clock_text(screen.timeline().time_s(screen.playback.frame)));
-  widgets::draw_number(draw, ui.theme.body, {right, inner.y + ui.theme.px(30)}, widgets::kQuietText,
-                       "of " + clock_text(screen.timeline().time_s(screen.timeline().frames().size() - 1)));
+                       recording::clock_text(screen.timeline().time_s(screen.playback.frame)));
+  widgets::draw_number(
+      draw, ui.theme.body, {right, inner.y + ui.theme.px(30)}, widgets::kQuietText,
+      "of " + recording::clock_text(screen.timeline().time_s(screen.timeline().frames().size() - 1)));
   draw.AddText(ui.theme.body, ui.theme.body->FontSize, {right, inner.y + ui.theme.px(58)},
                widgets::kQuietText, speed_text(screen.playback).c_str());
   return wanted;
@@ -346,7 +347,7 @@ static bool draw_line(const widgets::Ui& ui, double time_s, ImU32 color, const s
                       bool is_now) {
   ImGui::PushID(id);
   ImGui::PushStyleColor(ImGuiCol_Text, color);
-  const std::string text = clock_text(time_s) + "  " + words;
+  const std::string text = recording::clock_text(time_s) + "  " + words;
   const std::string shown =
       widgets::fitting(ui.theme.body, text, std::max(ImGui::GetContentRegionAvail().x, 1.F));
   const bool is_clicked = ImGui::Selectable(shown.c_str(), is_now);

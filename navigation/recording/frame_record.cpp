@@ -274,7 +274,7 @@ std::vector<RecordedFrame> read_frames(SessionDatabase& database, std::int64_t f
   return frames;
 }
 
-void append_frames(SessionDatabase& database, std::vector<RecordedFrame>& frames) {
+bool for_each_frame(SessionDatabase& database, const std::function<bool(RecordedFrame&)>& use) {
   std::vector<std::int64_t> indices;
   std::exception_ptr damage;
   try {
@@ -287,15 +287,20 @@ void append_frames(SessionDatabase& database, std::vector<RecordedFrame>& frames
   std::size_t many = 1024;
   for (std::size_t at = 0; at < indices.size();) {
     const std::size_t end = std::min(at + many, indices.size());
+    std::vector<RecordedFrame> block;
     try {
-      std::ranges::move(read_frames(database, indices[at], indices[end - 1]), std::back_inserter(frames));
-      at = end;
+      block = read_frames(database, indices[at], indices[end - 1]);
     } catch (const std::exception&) {
       if (many == 1) throw;
       many /= 2;
+      continue;
     }
+    at = end;
+    for (RecordedFrame& frame : block)
+      if (!use(frame)) return false;
   }
   if (damage) std::rethrow_exception(damage);
+  return true;
 }
 
 }  // namespace arthronaut::recording

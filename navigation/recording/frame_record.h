@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -30,7 +31,8 @@ class FrameInserter {
     SessionDatabase& database, std::int64_t first = std::numeric_limits<std::int64_t>::min(),
     std::int64_t last = std::numeric_limits<std::int64_t>::max());
 
-// All of them behind those that are in `frames`; when it throws, those before the damage are there.
-void append_frames(SessionDatabase& database, std::vector<RecordedFrame>& frames);
+// Each of them in its order, with some hundreds in memory, until `use` says false; then it is false. Where
+// one cannot be read it throws, after those before the damage.
+bool for_each_frame(SessionDatabase& database, const std::function<bool(RecordedFrame&)>& use);
 
 }  // namespace arthronaut::recording

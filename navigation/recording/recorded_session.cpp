@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "navigation/camera/camera_file.h"
@@ -15,7 +16,8 @@ struct RecordedSession::State {
   std::filesystem::path folder;
   SessionHeader header;
   pipeline::PipelineOptions options;
-  bool was_finished = false, events_are_whole = false;
+  bool was_finished = false, events_are_whole = false, holds_frames = true;
+  std::optional<std::int64_t> first_frame_ns;
   std::vector<RecordedFrame> frames;
   std::vector<SessionEvent> events;
   std::vector<KeptPicture> pictures;  // empty when the video is the source's own
@@ -49,7 +51,15 @@ void RecordedSession::State::read(const ReadPart& part) {
 template <typename ReadPart>
 void RecordedSession::State::read_record(const ReadPart& part) {
   SessionDatabase database = SessionDatabase::open(database_file(folder));
-  part([&] { append_frames(database, frames); });
+  part([&] {
+    Statement first = database.prepare("SELECT timestamp_ns FROM frames ORDER BY frame LIMIT 1");
+    if (first.step()) first_frame_ns = first.integer(0);
+    if (!holds_frames) return;
+    (void)recording::for_each_frame(database, [this](RecordedFrame& frame) {
+      frames.push_back(std::move(frame));
+      return true;
+    });
+  });
   part([&] {
     Statement row = database.prepare("SELECT timestamp_ns, kind, text, after_frame FROM events ORDER BY id");
     while (row.step()) events.push_back({row.integer(0), row.text(1), row.text(2), row.integer(3)});
@@ -90,6 +100,14 @@ RecordedSession RecordedSession::as_far_as_whole(const std::filesystem::path& fo
   return RecordedSession(std::move(state));
 }
 
+RecordedSession RecordedSession::without_frames(const std::filesystem::path& folder) {
+  auto state = std::make_unique<State>();
+  state->folder = folder;
+  state->holds_frames = false;
+  state->read([](const auto& read) { read(); });
+  return RecordedSession(std::move(state));
+}
+
 RecordedSession::~RecordedSession() = default;
 RecordedSession::RecordedSession(RecordedSession&&) noexcept = default;
 RecordedSession& RecordedSession::operator=(RecordedSession&&) noexcept = default;
@@ -98,7 +116,16 @@ const std::vector<std::string>& RecordedSession::problems() const { return state
 bool RecordedSession::events_are_whole() const { return state_->events_are_whole; }
 const SessionHeader& RecordedSession::header() const { return state_->header; }
 bool RecordedSession::was_finished() const { return state_->was_finished; }
-const std::vector<RecordedFrame>& RecordedSession::frames() const { return state_->frames; }
+const std::vector<RecordedFrame>& RecordedSession::frames() const {
+  assert(state_->holds_frames);
+  return state_->frames;
+}
+std::optional<std::int64_t> RecordedSession::first_frame_ns() const { return state_->first_frame_ns; }
+bool RecordedSession::for_each_frame(const std::function<bool(const RecordedFrame&)>& use) const {
+  if (state_->holds_frames) return std::ranges::all_of(state_->frames, use);
+  SessionDatabase database = SessionDatabase::open(database_file(state_->folder));
+  return recording::for_each_frame(database, use);
+}
 const std::vector<SessionEvent>& RecordedSession::events() const { return state_->events; }
 const std::vector<KeptPicture>& RecordedSession::pictures() const { return state_->pictures; }
 const strokes::Curves& RecordedSession::curves() const { return state_->curves; }

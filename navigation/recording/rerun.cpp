@@ -134,14 +134,15 @@ operation::OperationStatePtr Rerun::process(const RecordedFrame& recorded) {
 
 bool Rerun::run(const RecordedSession& session, const std::function<bool()>& stops) {
   start(session);
-  for (const RecordedFrame& frame : session.frames()) {
+  const bool is_whole = session.for_each_frame([&](const RecordedFrame& frame) {
     if (stops && stops()) return false;
     play_before(frame.index);
     operation_.process_recorded(result_of(frame, pipeline_));
     pass_on();
-  }
-  play_rest();
-  return true;
+    return true;
+  });
+  if (is_whole) play_rest();
+  return is_whole;
 }
 
 // What was given before any source ran, where the record says so.
@@ -251,7 +252,7 @@ std::vector<RecordedSession> sessions_before(const RecordedSession& session,
       missing(id);
       break;
     }
-    before.emplace_back(folder);
+    before.push_back(RecordedSession::without_frames(folder));
     id = goes_on_from(before.back());
   }
   std::reverse(before.begin(), before.end());

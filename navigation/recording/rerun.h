@@ -66,7 +66,8 @@ class Rerun {
 };
 
 // The sessions before it in the same operation, oldest first. What goes on from one that was cut off holds
-// all of it in its own journal: there is none before that. `missing` is told the id of one that is not there.
+// all of it in its own journal: there is none before that. Without their frames (RecordedSession). `missing`
+// is told the id of one that is not there.
 [[nodiscard]] std::vector<RecordedSession> sessions_before(
     const RecordedSession& session, const std::function<void(const std::string& id)>& missing);
 // The set-up of the operation that began with this session; without the bone's surface.

@@ -57,7 +57,7 @@ void follow_said(const RecordedSession& session, std::vector<SaidDrilled>& said)
     if (event.kind == kSaidTooEarlyEvent) forget(event.text);
   }
   // The pictures have a clock of their own, which began with the record. A copy of it has newer files.
-  const std::int64_t begin_ns = session.frames().empty() ? 0 : session.frames().front().timestamp_ns;
+  const std::int64_t begin_ns = session.first_frame_ns().value_or(0);
   const std::chrono::system_clock::time_point begin =
       files::time_of_utc(session.header().started_utc).value_or(std::chrono::sys_seconds{});
   for (const DrilledByWord& one : drilled_by_word(session.events(), bone)) {
@@ -210,9 +210,9 @@ ResumeSearch find_resumable(const std::filesystem::path& case_folder, bones::Bon
       if (read_session_header(folder, options).bone != bone) continue;
       const bool goes_on =
           patience.is_still_being_recorded(folder);  // before it is read: it may end meanwhile
-      const RecordedSession session(folder);
+      const RecordedSession session = RecordedSession::without_frames(folder);
       if (is_exercise(session.header())) continue;
-      if (session.frames().empty() && session.header().continues.empty()) continue;
+      if (!session.first_frame_ns() && session.header().continues.empty()) continue;
       std::string why = why_over(session, mesh_sha256, planned);
       if (why.empty()) search.left = resumable_from(session);
       if (search.left) search.left->is_being_recorded = goes_on && !session.was_finished();

@@ -256,6 +256,9 @@ class RecordedSession {
   // says what is missing. Of events and frames it has those before the damage. Throws IoError or InvalidInput
   // where nothing can be told: no folder, no session.json, a record of a newer version.
   [[nodiscard]] static RecordedSession as_far_as_whole(const std::filesystem::path& folder);
+  // All but its frames, for whoever goes through them: two hours of them take the best part of a gigabyte.
+  // They are read when for_each_frame() comes to them, and frames() must not be asked for.
+  [[nodiscard]] static RecordedSession without_frames(const std::filesystem::path& folder);
   ~RecordedSession();
   RecordedSession(RecordedSession&&) noexcept;
   RecordedSession& operator=(RecordedSession&&) noexcept;
@@ -265,7 +268,11 @@ class RecordedSession {
   [[nodiscard]] const SessionHeader& header() const;
   [[nodiscard]] bool was_finished() const;  // false: a crash cut it off, or its end cannot be read
   [[nodiscard]] const std::vector<RecordedFrame>& frames() const;
-  [[nodiscard]] const std::vector<SessionEvent>& events() const;  // in the order they were added
+  // Each of them in its order, until `use` says false; then it is false. Without frames it throws IoError or
+  // InvalidInput where one cannot be read, after those before it.
+  bool for_each_frame(const std::function<bool(const RecordedFrame&)>& use) const;
+  [[nodiscard]] std::optional<std::int64_t> first_frame_ns() const;  // nullopt: there is no frame
+  [[nodiscard]] const std::vector<SessionEvent>& events() const;     // in the order they were added
   // The plan of a kPlanEvent and the registration of a registration event.
   struct PlanChange {
     std::optional<tunnels::Tunnel> plan;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "planning/files/format.h"
 
 namespace arthronaut::recording {
 
@@ -106,6 +109,11 @@ std::vector<ToldEvent> told_events(const std::vector<SessionEvent>& events, cons
     was_registered = was_registered || change == PoseFollower::Change::Pose;
   }
   return told;
+}
+
+std::string clock_text(double seconds) {
+  const long tenths = std::lround(10 * seconds);
+  return files::format("%ld:%02ld.%ld", tenths / 600, tenths / 10 % 60, tenths % 10);
 }
 
 std::vector<PoseInForce> poses_in_force(const std::vector<SessionEvent>& events,

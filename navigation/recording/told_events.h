@@ -36,6 +36,9 @@ using ReadRegistration =
 [[nodiscard]] std::vector<ToldEvent> told_events(const std::vector<SessionEvent>& events,
                                                  const ReadRegistration& read);
 
+// A time of a session as it is told: "1:02.3".
+[[nodiscard]] std::string clock_text(double seconds);
+
 // A pose of the bone and how long it was in force, whatever the verdicts on it were.
 struct PoseInForce {
   std::vector<std::string> files;           // of its registration events, the first verdict first

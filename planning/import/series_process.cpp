@@ -34,6 +34,13 @@ SeriesProcess::State SeriesProcess::wait_for(double seconds) {
   return child_.wait_for(seconds, [this](const Message& message) { return take(message); });
 }
 
+SeriesProcess::State SeriesProcess::finish(const std::function<void(double looked_fraction)>& on_looked) {
+  constexpr double kTellsEvery_s = 0.1;
+  while (wait_for(kTellsEvery_s) == State::Running)
+    if (on_looked) on_looked(looked_);
+  return state();
+}
+
 bool SeriesProcess::take(const Message& message) {
   const bool awaits_list = !list_.has_value();
   if (message.kind == MessageKind::Progress && awaits_list) {

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,6 +53,8 @@ class SeriesProcess {
   // when something came.
   State poll() { return wait_for(0); }
   State wait_for(double seconds);
+  // Waits until it has ended; on_looked is told meanwhile how much of the source was looked through.
+  State finish(const std::function<void(double looked_fraction)>& on_looked = {});
   void cancel() { child_.cancel(); }  // ends the child at once
 
   [[nodiscard]] State state() const { return child_.state(); }

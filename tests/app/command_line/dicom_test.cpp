@@ -111,6 +111,7 @@ TEST_F(DicomCommand, PutsTheCaseBesideItsImages) {
     EXPECT_EQ(text(*object.getDataset(), DCM_FrameOfReferenceUID), frame);
   }
   EXPECT_THAT(report_text("out"), HasSubstr("Muster, Anna"));
+  EXPECT_THAT(result.output, HasSubstr("They name the patient"));
 }
 
 TEST_F(DicomCommand, Hazard19DeidentifiedNamesNobody) {
@@ -118,6 +119,7 @@ TEST_F(DicomCommand, Hazard19DeidentifiedNamesNobody) {
   const auto result = run("out", {"--deidentified"});
   ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
   EXPECT_THAT(report_text("out"), AllOf(HasSubstr("ACL reconstruction"), Not(HasSubstr("Muster"))));
+  EXPECT_THAT(result.output, Not(HasSubstr("They name the patient")));
   for (const auto& [name, bytes] : contents_of(folder_ / "out"))
     for (const char* word : {"Muster", "19900131", "A-0815", "1.2.826.0.1.3680043.8.498"})
       EXPECT_EQ(bytes.find(word), std::string::npos) << name << ": " << word;

@@ -6,7 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "planning/cases/case.h"
+#include "planning/cases/identity.h"
 #include "planning/files/atomic_file.h"
+#include "planning/phantom/phantom_case.h"
 #include "tests/app/command_line/program.h"
 #include "tests/planning/pacs/sent_series.h"
 #include "tests/resources/described.h"
@@ -75,6 +78,16 @@ TEST_F(PacsCommand, FindsFetchesAndSends) {
   EXPECT_EQ(test::undescribed(fetched, "pacs_get"), "");
   EXPECT_EQ(fetched["images"], kImageCount);
   EXPECT_EQ(fetched["way"], "C-GET");
+  EXPECT_TRUE(fetched["planned_cases"].empty());
+  const fs::path case_folder = made_ / "data/arthronaut/cases/hers.arthro";
+  cases::save_case(case_folder,
+                   phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "Her knee"));
+  cases::save_identity(case_folder, {"Muster^Anna", "4711", "19900131"});
+  const auto again = nlohmann::json::parse(
+      run({"get", "--series", series_, "-o", got_ / "scan", "--json"}, {.data_home = made_ / "data"}).output);
+  EXPECT_EQ(test::undescribed(again, "pacs_get"), "");
+  const nlohmann::json hers = {{{"name", "Her knee"}, {"folder", case_folder.string()}}};
+  EXPECT_EQ(again.at("planned_cases"), hers);
   EXPECT_THAT(got_.names(), ElementsAre("scan"));
   EXPECT_EQ(test::pixels_of(got_ / "scan"), test::pixels_of(made_ / "ct"));
 

@@ -88,6 +88,11 @@ TEST_F(SeriesCommand, SaysOfWhichCaseTheImagesMayBeAfterTheOperation) {
                                    HasSubstr("arthronaut compare " + (cases / "hers.arthro").string() +
                                              " --postop " + (folder_ / "after").string() + " --series "),
                                    ::testing::Not(HasSubstr("his.arthro"))));
+  const auto as_json = run_program({"series", folder_ / "after", "--json"}, {.data_home = folder_ / "data"});
+  const auto document = nlohmann::json::parse(as_json.output);
+  EXPECT_EQ(test::undescribed(document, "series"), "");
+  const nlohmann::json hers = {{{"name", "Her knee"}, {"folder", (cases / "hers.arthro").string()}}};
+  EXPECT_EQ(document.at("series").at(0).at("planned_cases"), hers) << document;
 }
 
 // As of an import: the reason on standard error, exit code 3, nothing on standard output.

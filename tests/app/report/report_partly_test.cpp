@@ -5,13 +5,15 @@
 #include <nlohmann/json.hpp>
 
 #include "navigation/operation/achieved_tunnel.h"
+#include "navigation/recording/session_overview.h"
 #include "tests/app/report/reported_case.h"
+#include "tests/navigation/recording/recorded_frames.h"
 
 namespace arthronaut::report {
 namespace {
 
 // With a registration that found a pose, on a bone of that surface.
-void record(const std::filesystem::path& session_folder, const std::string& mesh_sha256) {
+void record(const std::filesystem::path& session_folder, const std::string& mesh_sha256, int frames = 0) {
   pipeline::PipelineOptions options;
   options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
   options.tools = tools::standard_tools();
@@ -22,6 +24,7 @@ void record(const std::filesystem::path& session_folder, const std::string& mesh
   registration.has_pose = true;
   recording::SessionRecorder recorder(session_folder, header, options);
   recorder.set_registration(registration);
+  for (int i = 0; i < frames; ++i) recorder.append(test::frame_result(i));
   recorder.finish();
 }
 
@@ -59,10 +62,10 @@ TEST_F(Report, ABrokenRegistrationTakesNothingElseAway) {
 }
 
 // A page of the record, and with it events and frames: what was measured lies in a file of its own.
-void damage(const std::filesystem::path& session_folder) {
+void damage(const std::filesystem::path& session_folder, int first_page = 2) {
   std::fstream file(session_folder / "session.sqlite", std::ios::in | std::ios::out | std::ios::binary);
   constexpr int kPage = 4096;
-  for (int page = 2;; ++page) {  // after the first, which holds the tables' names
+  for (int page = first_page;; ++page) {  // the first but one; the first holds the tables' names
     file.seekg(0, std::ios::end);
     if (page * kPage >= file.tellg()) return;
     file.seekp(page * kPage);
@@ -111,6 +114,24 @@ TEST_F(Report, ADamagedSessionBesideTheOneThatIsToldOfIsNamed) {
   const std::vector<std::string> doubts = write(json_file);
   ASSERT_EQ(doubts.size(), 1U);
   expect_contains(doubts.front(), earlier.filename().string() + " cannot be read and is not in it");
+}
+
+// Also where all that was done in it is whole, and its frames are not: nothing of them would be told.
+TEST_F(Report, DamagedFramesOfAnotherSessionAreNamed) {
+  const auto earlier = cases::create_session_folder(knee_folder());
+  record(earlier, "", 2000);
+  constexpr int kBehindAllTables = 60;  // what is done in a session without events lies in its first pages
+  damage(earlier, kBehindAllTables);
+  ASSERT_TRUE(recording::read_overview(earlier).problems.empty());
+  const auto newer = cases::create_session_folder(knee_folder());
+  record(newer, "");
+  const auto json_file = pdf().parent_path() / "report.json";
+  const std::vector<std::string> doubts = write(json_file);
+  const auto json = nlohmann::json::parse(files::read_text(json_file));
+  ASSERT_FALSE(json.at("damaged_sessions").empty());
+  EXPECT_EQ(json.at("damaged_sessions").at(0).at("id"), earlier.filename().string());
+  ASSERT_FALSE(doubts.empty());
+  expect_contains(doubts.front(), earlier.filename().string() + " is damaged");
 }
 
 // Where there is no other one it is told of without a tunnel, too.

@@ -120,7 +120,7 @@ TEST_F(Looking, TellsWhatComesAfterThePicturesByTheRecordsClock) {
   EXPECT_EQ(moments[1].time_s, timeline_->time_s(last));
   // Beside the cursor, which stands at the last picture, the clock is the list's.
   EXPECT_EQ(last_moment_in_words({moments[0]}, *timeline_, last),
-            clock_text(moments[0].time_s) + ", after the pictures: " + moments[0].words);
+            recording::clock_text(moments[0].time_s) + ", after the pictures: " + moments[0].words);
   EXPECT_EQ(last_moment_in_words({moments[1]}, *timeline_, last), moments[1].words);
   EXPECT_EQ(last_moment_in_words({moments[0]}, *timeline_, 0), "");
 }

@@ -82,6 +82,18 @@ TEST_F(BoundedRecording, StoppingCostsTheSameAfterHalfAnHour) {
   int lines = 0;
   for (std::string line; std::getline(guidance, line);) ++lines;
   EXPECT_EQ(lines, kFrames + 1);
+
+  // Whoever goes through the frames holds some hundreds of them: all of these would take 150 MB and more.
+  const double read_from_mb = resident_mb();
+  std::int64_t next = 0;
+  double read_peak_mb = read_from_mb;
+  const auto session = recording::RecordedSession::without_frames(folder_.path());
+  EXPECT_TRUE(session.for_each_frame([&](const recording::RecordedFrame& frame) {
+    if (next % 500 == 0) read_peak_mb = std::max(read_peak_mb, resident_mb());
+    return frame.index == next++;
+  }));
+  EXPECT_EQ(next, kFrames);
+  EXPECT_LT(read_peak_mb - read_from_mb, kQueue_mb);
 }
 
 // A disk that fills up: first the video stops and the record goes on, then the record stops before the disk

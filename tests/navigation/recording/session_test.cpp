@@ -98,6 +98,36 @@ TEST_F(Session, ReadsBackExactlyWhatWasRecorded) {
   EXPECT_TRUE(session.video().empty());
 }
 
+// The same frames one by one, for as long as they are wanted.
+TEST_F(Session, WithoutItsFramesItIsGoneThrough) {
+  for (const char* const name : {"empty", "whole"}) fs::create_directory(folder_ / name);
+  EXPECT_FALSE([this] {
+    recording::SessionRecorder recorder(folder_ / "empty", test::session_header(), options_);
+    recorder.finish();
+    return recording::RecordedSession::without_frames(folder_ / "empty").first_frame_ns();
+  }());
+  recording::SessionRecorder recorder(folder_ / "whole", test::session_header(), options_);
+  for (int i = 7; i < 2500; ++i) recorder.append(test::frame_result(i));
+  recorder.finish();
+  const recording::RecordedSession whole(folder_ / "whole");
+  const auto gone_through = recording::RecordedSession::without_frames(folder_ / "whole");
+  EXPECT_EQ(gone_through.first_frame_ns(), whole.frames().front().timestamp_ns);
+  EXPECT_EQ(gone_through.first_frame_ns(), whole.first_frame_ns());
+  for (const recording::RecordedSession* const session : {&whole, &gone_through}) {
+    auto next = whole.frames().begin();
+    EXPECT_TRUE(session->for_each_frame([&](const recording::RecordedFrame& frame) {
+      EXPECT_EQ(frame.index, next->index);
+      EXPECT_EQ(frame.guidance.angle_deg, next->guidance.angle_deg);
+      EXPECT_EQ(frame.poses.size(), next->poses.size());
+      return ++next != whole.frames().end() || frame.index == 2499;
+    }));
+    EXPECT_EQ(next, whole.frames().end());
+    int seen = 0;
+    EXPECT_FALSE(session->for_each_frame([&](const auto& /*frame*/) { return ++seen < 1500; }));
+    EXPECT_EQ(seen, 1500);
+  }
+}
+
 // Offsets are said along these axes: run again along others, the same poses give other numbers.
 TEST_F(Session, KeepsTheAxesThatOffsetsAreSaidIn) {
   const Eigen::Matrix3d turn =

@@ -35,11 +35,6 @@ class SeriesProcessTest : public testing::Test {
         test::child_script(folder_.path(), "cat " + (folder_ / "messages").string() + " >&0\n" + line);
     return asked;
   }
-  static State finished(SeriesProcess& process) {
-    while (process.wait_for(60) == State::Running) {
-    }
-    return process.state();
-  }
   void write_slices(const std::string& name, const std::string& uid, std::size_t count) const {
     std::filesystem::create_directories(folder_ / name);
     for (auto& [file, slice] : test::dicom_slices(test::oblique_volume())) {
@@ -72,7 +67,7 @@ TEST_F(SeriesProcessTest, GivesTheSameListAndPicturesAsInThisProcess) {
   test::write_bytes(folder_ / "disc/broken.nrrd", "NRRD0004\n");
   test::write_bytes(folder_ / "disc/readme.txt", "hello");
   SeriesProcess process(request(folder_ / "disc"));
-  ASSERT_EQ(finished(process), State::Done) << process.message();
+  ASSERT_EQ(process.finish(), State::Done) << process.message();
   EXPECT_EQ(process.process_id(), -1);
   const images::SeriesList here = images::find_series(folder_ / "disc");
   ASSERT_EQ(here.series.size(), 4U);
@@ -99,7 +94,7 @@ TEST_F(SeriesProcessTest, WithoutPicturesTheListIsAll) {
   SeriesRequest asked = request(folder_ / "disc");
   asked.with_pictures = false;
   SeriesProcess process(asked);
-  ASSERT_EQ(finished(process), State::Done) << process.message();
+  ASSERT_EQ(process.finish(), State::Done) << process.message();
   EXPECT_EQ(process.list()->series.size(), 1U);
   EXPECT_TRUE(process.pictures().empty());
 }
@@ -107,12 +102,12 @@ TEST_F(SeriesProcessTest, WithoutPicturesTheListIsAll) {
 TEST_F(SeriesProcessTest, ARefusalComesBackInTheSameWords) {
   test::write_bytes(folder_ / "notes.txt", "hello");
   SeriesProcess process(request(folder_ / "notes.txt"));
-  ASSERT_EQ(finished(process), State::Failed);
+  ASSERT_EQ(process.finish(), State::Failed);
   EXPECT_EQ(process.message(),
             test::message_of<InvalidInput>([&] { (void)images::find_series(folder_ / "notes.txt"); }));
   EXPECT_FALSE(process.list());
   SeriesProcess absent(request(folder_ / "absent"));
-  ASSERT_EQ(finished(absent), State::Failed);
+  ASSERT_EQ(absent.finish(), State::Failed);
   EXPECT_THAT(absent.message(), HasSubstr("absent: does not exist"));
 }
 
@@ -123,7 +118,7 @@ TEST_F(SeriesProcessTest, AVolumeThatNeedsTooMuchMemoryIsListedWithItsReason) {
   SeriesRequest asked = request(folder_ / "bomb.nrrd");
   asked.memory_limit_gib = 0.05;
   SeriesProcess process(asked);
-  ASSERT_EQ(finished(process), State::Done) << process.message();
+  ASSERT_EQ(process.finish(), State::Done) << process.message();
   EXPECT_THAT(process.list()->series.at(0).refusal,
               AllOf(HasSubstr("250 x 250 x 250"), HasSubstr("limit is 0.05 GiB")));
   EXPECT_FALSE(process.pictures().at(0).is_there());
@@ -136,24 +131,24 @@ TEST_F(SeriesProcessTest, WithoutMemoryItFailsByTheNameOfTheFolder) {
   SeriesRequest asked = request(folder_ / "disc");
   asked.memory_limit_gib = 0.001;
   SeriesProcess process(asked);
-  EXPECT_EQ(finished(process), State::Failed);
+  EXPECT_EQ(process.finish(), State::Failed);
   EXPECT_THAT(process.message(), HasSubstr((folder_ / "disc").string() + ": "));
 }
 
 TEST_F(SeriesProcessTest, AChildThatDiesIsAClearError) {
   SeriesProcess crashed(request_to("", "kill -SEGV $$"));
-  EXPECT_EQ(finished(crashed), State::Failed);
+  EXPECT_EQ(crashed.finish(), State::Failed);
   EXPECT_THAT(crashed.message(), AllOf(HasSubstr("disc: "), HasSubstr("signal 11")));
   EXPECT_FALSE(crashed.list());
   SeriesProcess ended(request_to("", "exit 7"));
-  EXPECT_EQ(finished(ended), State::Failed);
+  EXPECT_EQ(ended.finish(), State::Failed);
   EXPECT_THAT(ended.message(), HasSubstr("code 7"));
 }
 
 // Of three series the second one's picture is the death of it.
 TEST_F(SeriesProcessTest, WhatDiesAtAPictureLeavesTheListAndThePicturesBeforeIt) {
   SeriesProcess process(request_to(message_of(list_of(3)) + message_of(kPicture), "kill -SEGV $$"));
-  EXPECT_EQ(finished(process), State::Failed);
+  EXPECT_EQ(process.finish(), State::Failed);
   EXPECT_THAT(process.message(), AllOf(HasSubstr("disc: "), HasSubstr("signal 11")));
   ASSERT_TRUE(process.list());
   EXPECT_EQ(process.list()->series.size(), 3U);
@@ -166,7 +161,7 @@ TEST_F(SeriesProcessTest, AChildThatHangsIsEndedAndSaid) {
   asked.longest_silence_s = 0.5;
   const auto start = std::chrono::steady_clock::now();
   SeriesProcess process(asked);
-  EXPECT_EQ(finished(process), State::Failed);
+  EXPECT_EQ(process.finish(), State::Failed);
   EXPECT_THAT(process.message(), AllOf(HasSubstr("disc: "), HasSubstr("nothing was heard")));
   EXPECT_EQ(process.process_id(), -1);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));  // it would sleep for 60
@@ -179,14 +174,14 @@ TEST_F(SeriesProcessTest, AChildThatTalksNonsenseIsAClearError) {
        {std::string(100'000, '\0'), message_of(kPicture), message_of(BoneImport{}), list + list,
         list + message_of(ImportProgress{ImportStage::LookingThrough, 0.5})}) {
     SeriesProcess process(request_to(messages, "exec sleep 60"));
-    EXPECT_EQ(finished(process), State::Failed);
+    EXPECT_EQ(process.finish(), State::Failed);
     EXPECT_THAT(process.message(), AllOf(HasSubstr("disc: "), HasSubstr("the importing process sent")));
     EXPECT_EQ(process.process_id(), -1);
   }
   // More pictures than series: those that are too many are nobody's.
   const std::string picture = message_of(kPicture);
   SeriesProcess talkative(request_to(list + picture + picture + picture, "exec sleep 60"));
-  EXPECT_EQ(finished(talkative), State::Done);
+  EXPECT_EQ(talkative.finish(), State::Done);
   EXPECT_EQ(talkative.pictures().size(), 2U);
 }
 
