@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "planning/images/volume_file.h"
+#include "planning/images/volume_writer.h"
 #include "tests/app/command_line/program.h"
 #include "tests/planning/segmentation/known_mr.h"
 #include "tests/temporary_folder.h"
