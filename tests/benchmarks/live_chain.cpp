@@ -5,7 +5,8 @@
 //                                               as one stream
 //   live_chain faults COUNT [SEED [CODEC]]      prints a row a kind: how soon gone, told and back; jpeg or
 //   h264
-// Prints what was sent, tracked and recorded, latency by stage, and how the memory grew.
+// Prints what was sent, tracked and recorded, latency by stage, and how the memory grew, minute by minute,
+// and with how many points of strokes.
 #include <unistd.h>
 
 #include <algorithm>
@@ -88,6 +89,7 @@ int stream(const StreamChoice& choice) {
   options.source.kind = sources::SourceKind::Live;
   options.source.pipeline.tools = tools::standard_tools();
   options.duration_s = choice.seconds;
+  options.is_confirmed = true;  // no stroke of a live source is drawn before the time-out
   std::shared_ptr<sources::FrameSource> source;
   for (int i = 0; source == nullptr; ++i) {
     try {
@@ -113,9 +115,9 @@ int stream(const StreamChoice& choice) {
   }
   std::int64_t first = -1, last = -1;
   long seen = 0;
-  double first_s = 0, last_s = 0, memory_mb = 0;
+  double first_s = 0, last_s = 0, memory_mb = 0, minute_s = 0;
   theatre::NavigationObserver observer;
-  const auto count = [&](const camera::FramePtr& picture) {
+  const auto count = [&](const camera::FramePtr& picture, const operation::OperationStatePtr& state) {
     // Until then buffers fill, of which the 20 s of encoded pictures to reach back to are the longest.
     if (memory_mb == 0 && picture->timestamp_ns > kBuffersFull_s * 1'000'000'000) memory_mb = resident_mb();
     if (first < 0) {
@@ -125,12 +127,17 @@ int stream(const StreamChoice& choice) {
     last = picture->index;
     last_s = static_cast<double>(picture->timestamp_ns) * 1e-9;
     ++seen;
+    if (last_s < minute_s) return;
+    minute_s = last_s + 60;
+    std::printf("after %.0f s: %.1f MB, %zu points of strokes\n", last_s, resident_mb(),
+                state->registration->point_count);
+    std::fflush(stdout);
   };
-  observer.on_frame = [&](const camera::FramePtr& picture, const operation::OperationStatePtr&) {
-    count(picture);
+  observer.on_frame = [&](const camera::FramePtr& picture, const operation::OperationStatePtr& state) {
+    count(picture, state);
   };
   observer.on_late = [&](const camera::FramePtr& picture, const std::string&,
-                         const operation::OperationStatePtr&) { count(picture); };
+                         const operation::OperationStatePtr& state) { count(picture, state); };
   const theatre::NavigationSummary summary = theatre::navigate_source(source, options, record, observer);
   const double memory_at_end_mb = resident_mb();  // reading the record back is not the chain's
   const double sent = 60 * (last_s - first_s) + 1;
