@@ -25,8 +25,8 @@ constexpr double kMinLengthToSearch_mm = 25;
 // Pairs to search with at each update: many while nothing is found, one as a watchdog later.
 constexpr int kPairsWhileCollecting = 6, kPairsAfterwards = 1;
 // What was found is a step away from where the last solution left it.
-constexpr int kIterationsWhileCollecting = 6, kIterationsAfterwards = 3, kIterationsOfStanding = 4,
-              kIterationsAlongStrokes = 3;
+constexpr int kIterationsWhileCollecting = 6, kIterationsAfterwards = 3, kIterationsOfStanding = 3,
+              kIterationsAlongStrokes = 2;
 constexpr std::size_t kJudgedPoses = 3;
 constexpr int kAgreeingSolutions = 5;
 
