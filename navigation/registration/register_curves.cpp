@@ -135,14 +135,16 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
     if (is_found(pool, smooth, round, options.use_marker_prior)) break;
   }
   WeightedPoints points = choose_points(curves, kPointCount);
+  const double white_noise_mm = white_noise_of(oriented);
+  const AlongStrokesOptions last_fit{
+      .white_noise_mm = white_noise_mm, .iterations_by_field = 4, .iterations_by_mesh = 2};
   if (!pool.empty()) {
     const std::uint64_t seed = options.seed * kMaxRounds;
     pool.add(neighbours_of(pool.best().bone_from_marker, smooth.centroid_mm, seed), smooth, seed);
     pool.refine_all(smooth, kIterationsEachRound);
     pool.refine_all(points, kFinalIterations);
-    pool.polish(points);
+    pool.fit_best_along_strokes(points, last_fit);
   }
-  const double white_noise_mm = white_noise_of(oriented);
   SearchOutcome outcome;
   outcome.measurements = points.weight_sum / kCorrelationLength_mm;
   if (!pool.empty()) outcome.cost = pool.best().cost;
@@ -151,7 +153,7 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
   if (setting.cartilage && !pool.empty()) {
     cartilage = CartilageFitter(bone, *setting.cartilage, prior).fit(pool, points, true);
     points = cartilage.points;
-    pool.polish(points);
+    pool.fit_best_along_strokes(points, last_fit);
     offsets_mm = cartilage.offsets_mm(*setting.cartilage, curves, pool.best().bone_from_marker);
     outcome.cost = cartilage.cost;  // not of fewer points where the region was left out
   }

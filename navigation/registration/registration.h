@@ -1,6 +1,6 @@
 // Global registration of touched curves to the bone's surface, with no initial guess: pairs of curve points
-// with tangents against pairs of surface points with normals, hypothesise and test, robust refinement, final
-// polish on the exact mesh; and a verdict about itself.
+// with tangents against pairs of surface points with normals, hypothesise and test, robust refinement, a last
+// fit along the strokes on the exact mesh; and a verdict about itself.
 #pragma once
 
 #include <Eigen/Core>

@@ -25,7 +25,8 @@ constexpr double kMinLengthToSearch_mm = 25;
 // Pairs to search with at each update: many while nothing is found, one as a watchdog later.
 constexpr int kPairsWhileCollecting = 6, kPairsAfterwards = 1;
 // What was found is a step away from where the last solution left it.
-constexpr int kIterationsWhileCollecting = 6, kIterationsAfterwards = 3, kIterationsOfStanding = 4;
+constexpr int kIterationsWhileCollecting = 6, kIterationsAfterwards = 3, kIterationsOfStanding = 3,
+              kIterationsAlongStrokes = 2;
 constexpr std::size_t kJudgedPoses = 3;
 constexpr int kAgreeingSolutions = 5;
 
@@ -162,9 +163,14 @@ void OnlineRegistration::State::solve() {
   cartilage = {};
   if (fitter && !standing.empty()) {
     fit_cover();
-    offsets_mm = cartilage.offsets_mm(*setting.cartilage, curves, standing.best().bone_from_marker);
   }
   const double white_noise_mm = white_noise_of(oriented);
+  if (!standing.empty()) {
+    standing.fit_best_along_strokes(
+        points, {.white_noise_mm = white_noise_mm, .iterations_by_field = kIterationsAlongStrokes});
+  }
+  if (fitter && !standing.empty())
+    offsets_mm = cartilage.offsets_mm(*setting.cartilage, curves, standing.best().bone_from_marker);
   const TouchedCurves touched{curves,
                               points,
                               cartilage.kept_share * strokes.length_in_use_mm(),

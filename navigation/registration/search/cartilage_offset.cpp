@@ -221,6 +221,7 @@ WeightedPoints bare_points(const PoseFit& fit) {
     bare.positions_mm.push_back(points.positions_mm[i]);
     bare.weights.push_back(points.weights[i]);
     bare.stretches.push_back(points.stretches[i]);
+    bare.path_mm.push_back(points.path_mm[i]);
     bare.shaft_directions.push_back(points.shaft_directions[i]);
     bare.weight_sum += points.weights[i];
     bare.centroid_mm += points.weights[i] * points.positions_mm[i];

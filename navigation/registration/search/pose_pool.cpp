@@ -10,22 +10,9 @@ namespace {
 
 using geometry::RigidTransform;
 
-constexpr std::size_t kFewPoints = 60, kCoarsePointCount = 120, kPolishPointCount = 400;
+constexpr std::size_t kFewPoints = 60, kCoarsePointCount = 120;
 constexpr std::size_t kPoolSize = 8;
-constexpr int kPolishIterations = 3, kIterationsToJudge = 2;
-
-// The mesh itself, where the field knows the sign; the two agree about it but within the grid's rounding.
-DistanceFunction distance_to(const SurfaceIndex::Data& bone) {
-  return [&bone](const Eigen::Vector3d& p) {
-    DistanceField::Sample sample = bone.field.sample(p);
-    if (std::abs(sample.distance_mm) >= bone.field.band_mm()) return sample;
-    const geometry::SurfacePoint nearest = bone.surface.closest_point(p);
-    const Eigen::Vector3d away = p - nearest.point_mm;
-    const double side = away.dot(sample.gradient) < 0 ? -1.0 : 1.0;
-    sample.distance_mm = side * away.norm();
-    return sample;
-  };
-}
+constexpr int kIterationsToJudge = 2;
 
 }  // namespace
 
@@ -102,13 +89,8 @@ void PosePool::drop_hopeless(const WeightedPoints& points) {
     poses_.pop_back();
 }
 
-void PosePool::polish(const WeightedPoints& points) {
-  const bool are_few = points.positions_mm.size() <= kPolishPointCount;
-  const RefinedPose& best = poses_.front();
-  const RefinedPose polished =
-      refine(distance_to(bone_), are_few ? points : draw_points(points, kPolishPointCount, 1),
-             best.bone_from_marker, best.model, prior_, kPolishIterations);
-  poses_.front().bone_from_marker = polished.bone_from_marker;
+void PosePool::fit_best_along_strokes(const WeightedPoints& points, const AlongStrokesOptions& options) {
+  poses_.front().bone_from_marker = fit_along_strokes(bone_, points, best(), prior_, options);
 }
 
 void PosePool::replace(std::vector<RefinedPose> poses, const Eigen::Vector3d& centroid_mm) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "navigation/registration/bone/surface_index.h"
+#include "navigation/registration/search/along_strokes.h"
 #include "navigation/registration/search/global_search.h"
 #include "navigation/registration/search/refinement.h"
 #include "navigation/registration/search/weighted_points.h"
@@ -29,8 +30,9 @@ class PosePool {
   // Refines all poses of the pool on the points, ranks them, and drops twins and all but the best few. Of
   // those that have fallen behind beyond hope only the foremost is kept, as the runner-up.
   void refine_all(const WeightedPoints& points, int iterations);
-  // Fits the best against the mesh itself, which takes out the grid's rounding.
-  void polish(const WeightedPoints& points);
+  // The last of all: see along_strokes.h. Cost and residuals stay those of the fit by points, by which poses
+  // compare and their errors are predicted.
+  void fit_best_along_strokes(const WeightedPoints& points, const AlongStrokesOptions& options);
   // Other poses in place of those in the pool; ranked, twins dropped.
   void replace(std::vector<RefinedPose> poses, const Eigen::Vector3d& centroid_mm);
   void clear() { poses_.clear(); }

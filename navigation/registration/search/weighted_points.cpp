@@ -78,6 +78,8 @@ WeightedPoints choose_points(const strokes::Curves& curves, std::size_t max_coun
     if (is_new) begun_mm = 0;
     points.stretches.push_back(is_first ? 0 : points.stretches.back() + (is_new ? 1 : 0));
     begun_mm += points.weights[i];
+    const bool is_new_stroke = is_first || curve_of[i] != curve_of[i - 1];
+    points.path_mm.push_back(is_new_stroke ? 0 : points.path_mm.back() + points.weights[i]);
   }
   return points;
 }

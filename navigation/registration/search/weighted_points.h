@@ -20,6 +20,9 @@ struct WeightedPoints {
   // Consecutive points of about 12 mm of path share a stretch: errors correlate within it, little beyond.
   // Numbered from 0 by point; empty in a random draw.
   std::vector<int> stretches;
+  // By point, touched since its stroke began: grows along a stroke, and a new stroke begins at 0. Empty in a
+  // random draw.
+  std::vector<double> path_mm;
   std::vector<double> offsets_mm;  // by point: how far off the mesh the touched surface lies; empty: nowhere
 
   // By point, world-marker frame; empty after draw_points. See strokes::CurvePoint.

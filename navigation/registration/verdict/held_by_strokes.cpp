@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "navigation/registration/search/pose_step.h"
+
 namespace arthronaut::registration {
 
 using geometry::Matrix6d;
@@ -14,12 +16,6 @@ namespace {
 constexpr double kMeasuredShare = 0.7;
 constexpr double kBoneSize_mm = 30, kBoneTurn_rad = 3;
 constexpr double kLayer_mm = 1;  // that the whole surface may lie off the mesh by, one sigma
-
-Vector6d row_of(const Eigen::Vector3d& gradient, const Eigen::Vector3d& arm_mm) {
-  Vector6d row;
-  row << gradient, arm_mm.cross(gradient);
-  return row;
-}
 
 // A pose, and with 8 parameters the growth of the strokes about the pivot and a layer on the bone.
 template <int kParameters>

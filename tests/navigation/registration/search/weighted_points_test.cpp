@@ -49,6 +49,23 @@ TEST(WeightedPoints, SmoothedPointsHoldLessNoiseThanSamples) {
   EXPECT_EQ(smooth.stretches.size(), smooth.positions_mm.size());
 }
 
+// The path begins anew with each stroke, grows along it, and is as long as what was touched.
+TEST(WeightedPoints, PathGrowsAlongEachStroke) {
+  strokes::Curves curves = noisy_arc(0, 100, 0.5, 0);
+  const strokes::Curves second = noisy_arc(1, 50, 0.5, 0);
+  curves.insert(curves.end(), second.begin(), second.end());
+  for (strokes::CurvePoint& point : curves) point.position_mm.z() += 10 * point.curve;
+  const WeightedPoints points = choose_points(curves, 800);
+  ASSERT_EQ(points.path_mm.size(), curves.size());
+  EXPECT_EQ(points.path_mm.front(), 0);
+  EXPECT_EQ(points.path_mm[100], 0);
+  for (std::size_t i = 1; i < 100; ++i) EXPECT_GT(points.path_mm[i], points.path_mm[i - 1]);
+  // Cells of 1 mm that an arc cuts across its corners count as whole ones.
+  EXPECT_GT(points.path_mm[99], 50);
+  EXPECT_LT(points.path_mm[99], 1.6 * 50);
+  EXPECT_NEAR(points.path_mm.back() / points.path_mm[99], 0.5, 0.1);
+}
+
 // A stroke too coarse to be smoothed keeps its samples, beside one that is smoothed.
 TEST(WeightedPoints, CoarseStrokesKeepTheirSamples) {
   strokes::Curves curves = noisy_arc(0, 180, 0.4, 0.1);
