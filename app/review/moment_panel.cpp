@@ -135,7 +135,8 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewS
     const ImVec2 cursor = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(104);
     widgets::Rect row{cursor.x, cursor.y, width, height};
-    const widgets::Rect left = row.cut_left(width / 2);
+    constexpr float kForOffset = 0.58F;  // its name is the longer one, also beside a scroll bar
+    const widgets::Rect left = row.cut_left(kForOffset * width);
     widgets::number_block(ui, left, "Offset of the axis", widgets::fixed(at.guidance.offset_mm, 1), "mm",
                           guidance_severity::severity_of_offset(at.guidance));
     widgets::number_block(ui, row, "Angle", widgets::fixed(at.guidance.angle_deg, 1) + "\u00B0", "",

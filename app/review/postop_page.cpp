@@ -381,7 +381,8 @@ void PostopPage::draw_slice(const widgets::Ui& ui, const widgets::Rect& area, in
   draw_side_letters(ui, at, plane);
   if (!lacking.empty()) {
     widgets::Rect below = area;
-    widgets::text_centered(ui, below.cut_bottom(area.height / 3), ui.theme.title, widgets::kCaution, lacking);
+    widgets::text_centered(ui, below.cut_bottom(area.height / 3), ui.theme.strong, widgets::kCaution,
+                           lacking);
   }
   widgets::caption(ui, area, widgets::kText,
                    quarter_turns == 0 ? "Along the planned axis" : "The same, turned by 90\u00B0");

@@ -4,8 +4,20 @@
 #include "app/review/session_list.h"
 #include "app/widgets/source_banner.h"
 #include "navigation/camera/calibration_words.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::review {
+
+namespace {
+
+// Of a whole one in a line: what happened in it stands below and needs the room.
+std::string words_of(const recording::SessionCheck& check) {
+  if (!check.is_unbroken() || !check.was_finished) return recording::check_words(check);
+  return files::format("as recorded: %.1f MB, %lld hashes", static_cast<double>(check.covered_bytes) / 1e6,
+                       static_cast<long long>(check.record_count));
+}
+
+}  // namespace
 
 void draw_check(const widgets::Ui& ui, const CheckRun& run, const SessionList& sessions) {
   using Outcome = recording::SessionCheck::Outcome;
@@ -27,8 +39,7 @@ void draw_check(const widgets::Ui& ui, const CheckRun& run, const SessionList& s
                       is_broken             ? widgets::Severity::Bad
                       : check.is_unbroken() ? widgets::Severity::Good
                                             : widgets::Severity::Quiet,
-                      is_broken ? "Not as recorded" : "Record",
-                      sessions.within(recording::check_words(check)));
+                      is_broken ? "Not as recorded" : "Record", sessions.within(words_of(check)));
 }
 
 void draw_camera(const widgets::Ui& ui, const SessionReview& review) {

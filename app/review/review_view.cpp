@@ -243,6 +243,9 @@ void ReviewView::draw_numbers(const widgets::Ui& ui, widgets::Rect area) {
 }
 
 void ReviewView::draw_side(const widgets::Ui& ui, const widgets::Rect& area) {
+  if (open_)
+    if (const auto checked = open_->check->progress().result)
+      sessions_.take_check(open_->review.folder, *checked);
   widgets::begin_panel(ui, "review.sessions", area, "Sessions of this case");
   if (const auto pressed = sessions_.draw(ui, chosen_)) look_at(*pressed);
   ImGui::Separator();

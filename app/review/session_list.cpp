@@ -34,8 +34,11 @@ SessionLine session_line(const library::SessionFacts& facts, std::optional<bones
   if (facts.side && case_side && facts.side != case_side)
     doubts.push_back("recorded as of a " + library::word_of(facts.side) + " knee, the case is a " +
                      library::word_of(case_side) + " one");
-  line.words = facts.what();
-  line.words += (line.words.empty() ? "" : "; ") + facts.outcome();
+  // What cannot be read comes first: the row shows the beginning of its words.
+  const std::string damage = "cannot be read whole: " + facts.problem;
+  if (std::erase(doubts, damage) > 0) line.words = damage + "; ";
+  line.words += facts.what();
+  line.words += (facts.what().empty() ? "" : "; ") + facts.outcome();
   for (const std::string& doubt : doubts) line.words += "; " + doubt;
   line.is_being_recorded = facts.is_being_recorded && !facts.was_finished;
   line.severity = !facts.problem.empty()                   ? widgets::Severity::Bad
@@ -45,11 +48,20 @@ SessionLine session_line(const library::SessionFacts& facts, std::optional<bones
   return line;
 }
 
+SessionLine with_check(SessionLine line, const recording::SessionCheck& check) {
+  if (check.outcome != recording::SessionCheck::Outcome::Broken) return line;
+  line.severity = widgets::Severity::Bad;
+  line.words =
+      "NOT AS RECORDED: " + recording::check_words(check) + (line.words.empty() ? "" : "; ") + line.words;
+  return line;
+}
+
 void SessionList::open(const std::filesystem::path& case_folder, bones::Side case_side) {
   case_folder_ = case_folder;
   case_side_ = case_side;
   folders_.clear();
   lines_.clear();
+  broken_.clear();
   reads_again_ = reading_.is_busy();
 }
 
@@ -78,6 +90,25 @@ void SessionList::read() {
       wake_);
 }
 
+void SessionList::take_check(const std::filesystem::path& session_folder,
+                             const recording::SessionCheck& check) {
+  if (check.outcome == recording::SessionCheck::Outcome::Broken)
+    broken_[session_folder] = check;
+  else
+    broken_.erase(session_folder);
+}
+
+SessionLine SessionList::line_of(std::size_t session) const {
+  const std::filesystem::path& folder = folders_[session];
+  const auto read = lines_.find(folder);
+  const SessionLine line = read != lines_.end() ? read->second : SessionLine{};
+  const auto broken = broken_.find(folder);
+  if (broken == broken_.end()) return line;
+  SessionLine checked = with_check(line, broken->second);
+  checked.words = files::within_folder(folder, std::move(checked.words));
+  return checked;
+}
+
 bool SessionList::has_one_ended() const {
   return std::ranges::any_of(lines_, [](const auto& of) {
     return of.second.is_being_recorded && !recording::is_being_recorded(of.first);
@@ -101,10 +132,6 @@ std::optional<std::size_t> SessionList::draw(const widgets::Ui& ui, std::optiona
   const bool is_chosen_anew = std::exchange(in_view_, chosen) != chosen;
   ImFont* const font = ui.theme.body;
   const float sign = ui.theme.px(26), gap = ui.theme.px(8);
-  const auto line_of = [&](std::size_t i) {
-    const auto found = lines_.find(folders_[i]);
-    return found != lines_.end() ? found->second : SessionLine{};
-  };
   const auto color_of = [](const SessionLine& line) {
     const bool is_calm =
         line.severity == widgets::Severity::Good || line.severity == widgets::Severity::Quiet;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/widgets/controls.h"
+#include "navigation/recording/session_check.h"
 #include "navigation/worker/awaited.h"
 #include "planning/library/case_record.h"
 
@@ -27,6 +28,8 @@ struct SessionLine {
 // A session that was recorded as of the other side than the case's says so; no side: not known.
 [[nodiscard]] SessionLine session_line(const library::SessionFacts& facts,
                                        std::optional<bones::Side> case_side = {});
+// Of one that was looked through by its hashes: what is no longer what was recorded comes first.
+[[nodiscard]] SessionLine with_check(SessionLine line, const recording::SessionCheck& check);
 
 class SessionList {
  public:
@@ -39,6 +42,8 @@ class SessionList {
   [[nodiscard]] const std::vector<std::filesystem::path>& folders() const { return folders_; }
   // A reason that names files of these sessions, with their names alone: the folder stands in the list.
   [[nodiscard]] std::string within(std::string reason) const;
+  // What looking through one of them by its hashes has found.
+  void take_check(const std::filesystem::path& session_folder, const recording::SessionCheck& check);
   [[nodiscard]] bool is_busy() const { return reading_.is_busy(); }
   // One that was being recorded when it was read is not any more: its line is of before.
   [[nodiscard]] bool has_one_ended() const;
@@ -48,6 +53,7 @@ class SessionList {
  private:
   using Lines = std::map<std::filesystem::path, SessionLine>;
   void take_read();
+  [[nodiscard]] SessionLine line_of(std::size_t session) const;
 
   std::function<void()> wake_;
   std::filesystem::path case_folder_;
@@ -56,6 +62,7 @@ class SessionList {
   worker::Awaited<Lines> reading_;
   bool reads_again_ = false;  // what is being read is of before
   Lines lines_;
+  std::map<std::filesystem::path, recording::SessionCheck> broken_;
   std::optional<std::size_t> in_view_;  // the chosen one that was last brought into view
 };
 

@@ -20,11 +20,40 @@ constexpr double kProfileTo_mm = 3, kPoint_mm = 0.2;
 // A station with more metal than this inside the bore or beside its wall is passed over as a whole: what is
 // left of its wall is seen one-sidedly, and through the metal's blur.
 constexpr double kMetalOfBin = 0.02, kBesideWall_mm = 1.5;
+// From the wall inwards, of the shade across the inside: nothing of the wall's blur is there.
+constexpr double kShadeFrom_mm = 1.2;
 constexpr double kLeastNoise_hu = 6;
 constexpr double kHuber = 2.5;
 constexpr double kNoRim_hu = -1e4;  // less dense than anything: what is beyond the wall begins at it
 
 }  // namespace
+
+void InsideShade::add(std::size_t bin, const Eigen::Vector2d& across_mm, double hu) {
+  Sums& sums = sums_[bin];
+  ++sums.count;
+  sums.hu += hu;
+  sums.place += across_mm;
+  sums.with_hu += hu * across_mm;
+  sums.with_place += across_mm * across_mm.transpose();
+}
+
+void InsideShade::settle() {
+  constexpr std::size_t kBeside = 1, kLeast = 100;  // steps to either side; voxels
+  for (std::size_t bin = 0; bin < sums_.size(); ++bin) {
+    double count = 0;
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Identity();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    // The steps' own means differ.
+    for (std::size_t i = bin - std::min(bin, kBeside); i < std::min(sums_.size(), bin + kBeside + 1); ++i) {
+      const Sums& sums = sums_[i];
+      if (sums.count == 0) continue;
+      count += sums.count;
+      normal += sums.with_place - sums.place * sums.place.transpose() / sums.count;
+      right += sums.with_hu - sums.hu / sums.count * sums.place;
+    }
+    if (count >= kLeast) rise_[bin] = normal.ldlt().solve(right);
+  }
+}
 
 WallPicture::WallPicture(const std::vector<WallVoxel>& voxels, const BoreShape& bore, Wall wall)
     : voxels_(voxels),
@@ -48,6 +77,9 @@ std::optional<PlacedByBore> WallPicture::place(const Eigen::Vector3d& p) const {
 void WallPicture::take(double blur) {
   place_all();
   levels_.assign(bins_, {});
+  const bool has_metal =
+      wall_ == Wall::Clear && std::ranges::any_of(metal_of_bin_, [](const Level& of) { return of.sum > 0; });
+  shade_.begin(has_metal ? bins_ : 0);
   metal_.assign(bore_.stretches(), {});
   fitted_.clear();
   for (const auto& [placed, voxel] : placed_) {
@@ -58,6 +90,8 @@ void WallPicture::take(double blur) {
     WallLevels& levels = levels_[placed.bin];
     const WallGrey grey = grey_at(placed, bore_.profile.blur_mm);
     if (off < -kBesideWallFrom_mm) levels.add_inside(voxel->hu, grey);
+    if (has_metal && off < -kShadeFrom_mm)
+      shade_.add(placed.bin, placed.off * Eigen::Vector2d(placed.across_u, placed.across_v), voxel->hu);
     if (off <= -kInward_mm) continue;
     const std::size_t sector = placed.sector(kSectors);
     if (beyond > kBesideWallFrom_mm) levels.add_outside(sector, voxel->hu, grey);
@@ -69,6 +103,7 @@ void WallPicture::take(double blur) {
                        blur == bore_.profile.blur_mm ? grey : grey_at(placed, blur),
                        {}});
   }
+  shade_.settle();
   for (WallLevels& levels : levels_) levels.part(bore_.profile.has_rim() ? bore_.profile.rim_hu : kNoRim_hu);
   std::erase_if(fitted_, [&](const FittedVoxel& fitted) {
     const WallLevels& levels = levels_[fitted.placed.bin];
@@ -104,8 +139,7 @@ void WallPicture::take_bone(double blur) {
         !levels_[placed.bin].has_inside())
       continue;
     const double inside = grey_at(placed, bore_.profile.blur_mm).inside;
-    outside_.add(cell_of(placed), voxel->depth_mm,
-                 (voxel->hu - inside * levels_[placed.bin].inside_hu()) / (1 - inside));
+    outside_.add(cell_of(placed), voxel->depth_mm, (voxel->hu - inside * inside_hu(placed)) / (1 - inside));
   }
   outside_.settle(noise_hu_);
   for (FittedVoxel& fitted : fitted_) fitted.model = model_of(fitted, blur);
@@ -143,11 +177,17 @@ double WallPicture::weight_of(double residual, double variance) const {
   return std::min(1.0, kHuber * sigma / std::max(1e-9, std::abs(residual))) / (sigma * sigma);
 }
 
+double WallPicture::inside_hu(const PlacedByBore& placed) const {
+  const double off = std::min(placed.off, bore_.radius_mm[placed.stretch]);
+  return levels_[placed.bin].inside_hu() +
+         shade_.at(placed.bin, off * Eigen::Vector2d(placed.across_u, placed.across_v));
+}
+
 FittedVoxel::Model WallPicture::model_of(const FittedVoxel& fitted, double blur) const {
   const auto& [placed, sector, cell, voxel, grey, was] = fitted;
   const WallLevels& levels = levels_[placed.bin];
   const WallOutside::Grey bone = outside_.at(cell, voxel->depth_mm);
-  const double a = levels.inside_hu(),
+  const double a = inside_hu(placed),
                rise = bone.steep * voxel->deeper.cast<double>().dot(bore_.frame.outwards(placed));
   // In bone that is denser than the rim there is none.
   const bool by_rim = bore_.profile.has_rim() && bore_.profile.rim_hu > bone.hu;

@@ -44,6 +44,30 @@ struct FittedVoxel {
   Model model;
 };
 
+// How the grey inside a bore rises from side to side, where metal in it throws shadows and streaks over what
+// is beside it. Taken for an even grey it draws the axis: in a made CT by 0.45 degrees, and by 0.12 with it.
+class InsideShade {
+ public:
+  // Of so many steps along the bore; none: the grey is taken for even.
+  void begin(std::size_t bins) { sums_.assign(bins, {}), rise_.assign(bins, Eigen::Vector2d::Zero()); }
+  void add(std::size_t bin, const Eigen::Vector2d& across_mm, double hu);
+  // Each step by those next to it, too.
+  void settle();
+  // How far the grey there is off the step's mean, HU.
+  [[nodiscard]] double at(std::size_t bin, const Eigen::Vector2d& across_mm) const {
+    return rise_.empty() ? 0 : rise_[bin].dot(across_mm);
+  }
+
+ private:
+  struct Sums {
+    double count = 0, hu = 0;
+    Eigen::Vector2d place = Eigen::Vector2d::Zero(), with_hu = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d with_place = Eigen::Matrix2d::Zero();
+  };
+  std::vector<Sums> sums_;
+  std::vector<Eigen::Vector2d> rise_;  // HU/mm
+};
+
 class WallPicture {
  public:
   // Voxels and bore must outlive it.
@@ -81,6 +105,8 @@ class WallPicture {
   [[nodiscard]] std::optional<PlacedByBore> place(const Eigen::Vector3d& p) const;
   [[nodiscard]] std::size_t cell_of(const PlacedByBore& placed) const;
   [[nodiscard]] WallGrey grey_at(const PlacedByBore& placed, double blur) const;
+  // The grey inside where that voxel lies; where it lies outside, at the wall.
+  [[nodiscard]] double inside_hu(const PlacedByBore& placed) const;
   [[nodiscard]] FittedVoxel::Model model_of(const FittedVoxel& fitted, double blur) const;
   void place_all();
   void take_bone(double blur);
@@ -95,6 +121,7 @@ class WallPicture {
   std::vector<PlacedVoxel> placed_;
   std::vector<FittedVoxel> fitted_;
   WallOutside outside_;
+  InsideShade shade_;
   double noise_hu_ = 25;
 };
 

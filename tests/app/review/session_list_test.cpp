@@ -49,6 +49,20 @@ TEST(SessionList, SaysOfWhichSideItWasRecorded) {
 }
 
 // What is being recorded is neither ticked nor doubted for having no end yet.
+// In the list, and not below it alone: what is no longer what was recorded, and which of it.
+TEST(SessionList, SaysWhatIsNotAsRecorded) {
+  recording::SessionCheck check;
+  check.outcome = recording::SessionCheck::Outcome::Broken;
+  check.findings = {{"video.mkv", 100, 200, "not what was recorded"}};
+  const SessionLine line = with_check(session_line(drilled()), check);
+  EXPECT_EQ(line.words, "NOT AS RECORDED: video.mkv: bytes 100 to 199 are not what was recorded; " +
+                            session_line(drilled()).words);
+  EXPECT_EQ(line.severity, widgets::Severity::Bad);
+  check.outcome = recording::SessionCheck::Outcome::Unbroken;
+  check.findings.clear();
+  EXPECT_EQ(with_check(session_line(drilled()), check).words, session_line(drilled()).words);
+}
+
 TEST(SessionList, SaysWhatIsBeingRecorded) {
   library::SessionFacts facts;
   facts.bone = bones::BoneKind::Femur;
@@ -78,10 +92,10 @@ TEST(SessionList, SaysWhatIsDoubtfulOfIt) {
   facts = drilled();
   facts.registration_is_reliable = false;
   facts.problem = "session.sqlite: is damaged";
+  // First, as a row has room for the beginning of its words alone.
   EXPECT_EQ(session_line(facts).words,
-            "live, femur, 5.2 min; drilled, 1.2 mm and 0.8\u00B0 from the plan; registration not reliable; "
-            "cannot be "
-            "read whole: session.sqlite: is damaged");
+            "cannot be read whole: session.sqlite: is damaged; live, femur, 5.2 min; drilled, 1.2 mm and "
+            "0.8\u00B0 from the plan; registration not reliable");
 }
 
 }  // namespace

@@ -57,6 +57,8 @@ TEST_F(ReviewWindow, SaysThatARecordWasChanged) {
   app.press("F3");
   ASSERT_TRUE(app.wait_for_state("review_picture", "shown"));
   EXPECT_TRUE(app.wait_for_state("record", "broken"));
+  const std::string line = "session_line." + session_.filename().string();
+  EXPECT_TRUE(app.state(line).starts_with("NOT AS RECORDED: poses.csv: ")) << app.state(line);
 }
 
 // The case's bone was replaced since: nothing of the session is drawn on the new one.
