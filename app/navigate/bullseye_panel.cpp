@@ -34,44 +34,31 @@ void draw_target(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, 
                  widgets::kQuietText, label.text.c_str());
 }
 
-// In letters for afar, or in small ones where these leave no target.
-struct Words {
-  ImFont* font = nullptr;
-  TargetWords at;
-};
-
-Words words_in(const widgets::Ui& ui, const widgets::Rect& area, const BullseyePoint* point) {
-  const auto name = [&](landmarks::AnatomicalDirection direction, bool is_positive) {
-    return landmarks::to_text(direction, is_positive);
-  };
-  const DirectionNames names = point == nullptr
-                                   ? DirectionNames{}
-                                   : DirectionNames{name(point->up_is, true), name(point->up_is, false),
-                                                    name(point->side_is, !point->side_is_right),
-                                                    name(point->side_is, point->side_is_right)};
-  Words words;
-  for (ImFont* const font : {ui.theme.afar, ui.theme.body}) {
-    words = {font, words_about_target(area, names, font->FontSize, [&](const std::string& text) {
-               return font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
-             })};
-    if (words.at.fits) break;
-  }
-  words.at.radius_px = std::max(words.at.radius_px, 10.F);
-  return words;
+// As large as the panel lets it be.
+float target_radius(const widgets::Ui& ui, const widgets::Rect& area) {
+  return std::max(std::min(area.width, area.height) / 2 - ui.theme.px(4), 10.F);
 }
 
-void draw_directions(ImDrawList& draw, const Words& words) {
-  for (const DirectionLabel* const label : {&words.at.up, &words.at.down, &words.at.left, &words.at.right}) {
-    draw.AddText(words.font, words.font->FontSize, label->place.min(), widgets::kQuietText,
-                 label->text.c_str());
-    const widgets::Rect& arrow = label->arrow;
-    if (arrow.width <= 0) continue;
-    const bool points_left = label == &words.at.left;
-    const float tip = points_left ? arrow.x : arrow.x + arrow.width,
-                back = points_left ? arrow.x + arrow.width : arrow.x;
-    draw.AddTriangleFilled({tip, arrow.center().y}, {back, arrow.y}, {back, arrow.y + arrow.height},
-                           widgets::kQuietText);
+// In letters for afar, or in small ones where these leave nothing of the target.
+void draw_directions(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rect& area, float radius,
+                     const BullseyePoint& point, ImU32 color) {
+  const ImVec2 center = area.center();
+  const DirectionNames names{landmarks::to_text(point.up_is, true), landmarks::to_text(point.up_is, false),
+                             landmarks::to_text(point.side_is, !point.side_is_right),
+                             landmarks::to_text(point.side_is, point.side_is_right)};
+  for (ImFont* const font : {ui.theme.afar, ui.theme.body}) {
+    const auto width_of = [&](const std::string& text) {
+      return font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
+    };
+    const TargetWords words = words_in_target(radius, area.width / 2, names, font->FontSize, width_of);
+    if (!words.fits) continue;
+    for (const DirectionLabel* const label : {&words.up, &words.down, &words.left, &words.right})
+      draw.AddText(font, font->FontSize, {center.x + label->place.x, center.y + label->place.y}, color,
+                   label->text.c_str());
+    ui.log.note_state("directions", font == ui.theme.afar ? "for afar" : "small");
+    return;
   }
+  ui.log.note_state("directions", "no room");
 }
 
 // The axis of the guide as a dot with a tail that leans as the guide does: 1 degree as long as 1 mm.
@@ -127,7 +114,7 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
     draw.AddText(ui.theme.title, ui.theme.title->FontSize, at, widgets::kAccent, screen.tunnel.c_str());
   };
   if (!screen.display.guidance_is_valid || !screen.plan) {
-    draw.AddCircle(center, words_in(ui, area, nullptr).at.radius_px, widgets::kPanelEdge, 96, ui.theme.px(2));
+    draw.AddCircle(center, target_radius(ui, area), widgets::kPanelEdge, 96, ui.theme.px(2));
     put_name();
     // That there is no picture is said where it would be.
     if (screen.display.has_picture)
@@ -138,9 +125,7 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   const guidance::GuidanceNumbers& numbers = screen.display.guidance;
   const BullseyePoint point = guidance::bullseye_point(numbers.guide_point_mm, numbers.guide_direction,
                                                        numbers.across_plan, *screen.plan);
-  const Words words = words_in(ui, area, &point);
-  const float radius = words.at.radius_px;
-  ui.log.note_state("directions", words.font == ui.theme.afar ? "for afar" : "small");
+  const float radius = target_radius(ui, area);
   // The guide stands on the plan: seen at a glance, by a ring and a tick, in the first second the whole disc.
   const bool is_just_reached = screen.reached_for_s && *screen.reached_for_s < 1;
   draw_target(ui, draw, center, radius,
@@ -152,7 +137,8 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
                        widgets::Severity::Good);
   }
   ui.log.note_state("reached", screen.reached_for_s ? "yes" : "no");
-  draw_directions(draw, words);
+  draw_directions(ui, draw, area, radius, point,
+                  screen.reached_for_s ? widgets::kText : widgets::kQuietText);  // on green, too
   draw_guide(ui, draw, area, radius, point,
              worse(guidance_severity::severity_of(screen.display.grades.offset),
                    guidance_severity::severity_of(screen.display.grades.angle)));

@@ -36,51 +36,37 @@ std::vector<RingLabel> ring_labels(float radius_px, float line_px, float gap_px,
   return labels;
 }
 
-TargetWords words_about_target(const widgets::Rect& area, const DirectionNames& names, float letters_px,
-                               const std::function<float(const std::string&)>& width_of) {
-  constexpr float kMuch = 0.85F;
-  const float gap = 0.16F * letters_px, row = 1.05F * letters_px, head = 0.5F * letters_px;
-  const std::string left = in_short(names.left), right = in_short(names.right);
-  const float left_px = width_of(left), right_px = width_of(right);
-  const float half_height = area.height / 2 - row;
-  const float beside = std::min(area.width / 2 - std::max(left_px, right_px) - gap, half_height),
-              alone = std::min(area.width / 2, half_height);
-  // At the foot the lower word has what the other two leave of the line.
-  const float end_px = head + gap, least = gap / 2;
-  const float room = area.width - left_px - right_px - 2 * (end_px + gap + least);
-  const bool has_foot = width_of(in_short(names.down)) <= room;
-  const bool is_at_foot = has_foot && beside < kMuch * alone;
-  const auto in_full = [&](std::string_view name, float most) {
-    return width_of(std::string(name)) <= most ? std::string(name) : in_short(name);
-  };
+TargetWords words_in_target(float radius_px, float half_width_px, const DirectionNames& names,
+                            float letters_px, const std::function<float(const std::string&)>& width_of) {
+  constexpr float kFree = 0.36F;  // of the radius: the rings of 1 and 2 mm
+  const float gap = 0.16F * letters_px, rim = radius_px - 0.3F * letters_px, row = 1.05F * letters_px;
+  // How far out on the rim lies what is so far from the middle the other way.
+  const auto on_rim = [&](float across) { return std::sqrt(std::max(rim * rim - across * across, 0.F)); };
   TargetWords words;
-  words.radius_px = is_at_foot ? alone : beside;
-  words.fits = words.radius_px >= kMuch * alone && words.radius_px > letters_px;
-  const ImVec2 center = area.center();
-  const float top = center.y - words.radius_px - row, foot = center.y + words.radius_px;
-  const auto label = [&](const std::string& text, float x, float y) {
-    return DirectionLabel{text, {x, y, width_of(text), letters_px}, {}};
+  words.fits = rim > row;
+  const auto put = [&](DirectionLabel& label, std::string_view name, const auto& place) {
+    label.text = in_short(name);
+    label.place = place(width_of(label.text));
+    const widgets::Rect& at = label.place;
+    const float dx = std::max({at.x, -at.x - at.width, 0.F}), dy = std::max({at.y, -at.y - at.height, 0.F});
+    words.fits = words.fits && std::hypot(dx, dy) >= kFree * radius_px;
   };
-  const auto in_middle = [&](const std::string& text, float y) {
-    return label(text, center.x - width_of(text) / 2, y);
+  // Above the line that they belong to; at the panel's edge where most of the word so stands outside.
+  const auto end_px = [&](float width) {
+    return half_width_px - radius_px > width / 3 ? half_width_px - gap : on_rim(row);
   };
-  words.up = in_middle(in_full(names.up, area.width), top);
-  words.down = in_middle(in_full(names.down, is_at_foot ? room : area.width), foot);
-  const float right_end = area.x + area.width - least;
-  if (!is_at_foot) {  // above the line that they belong to
-    words.left = label(left, area.x + least, center.y - row);
-    words.right = label(right, right_end - right_px, center.y - row);
-    return words;
-  }
-  words.left = label(left, area.x + least + end_px, foot);
-  words.right = label(right, right_end - end_px - right_px, foot);
-  const float arrow_top = foot + (letters_px - head) / 2;
-  words.left.arrow = {area.x + least, arrow_top, head, head};
-  words.right.arrow = {right_end - head, arrow_top, head, head};
-  // In the middle of what is left, where the words beside it are not as wide as each other.
-  const float from = words.left.place.x + left_px, to = words.right.place.x;
-  words.down.place.x =
-      std::clamp(words.down.place.x, from + gap, std::max(from + gap, to - gap - words.down.place.width));
+  put(words.up, names.up, [&](float width) {
+    return widgets::Rect{-width / 2, -on_rim(width / 2), width, letters_px};
+  });
+  put(words.down, names.down, [&](float width) {
+    return widgets::Rect{-width / 2, on_rim(width / 2) - letters_px, width, letters_px};
+  });
+  put(words.left, names.left, [&](float width) {
+    return widgets::Rect{-end_px(width), -row, width, letters_px};
+  });
+  put(words.right, names.right, [&](float width) {
+    return widgets::Rect{end_px(width) - width, -row, width, letters_px};
+  });
   return words;
 }
 

@@ -1,11 +1,12 @@
 // Where the rings of the bullseye bear their numbers: inside of each, right under the line to the right, so
-// that what is drawn along the rim covers none of them; where the words about it stand; and where the guide's
-// tail ends. Pure.
+// that what is drawn along the rim covers none of them; where the words of its directions stand in it; and
+// where the guide's tail ends. Pure.
 #pragma once
 
 #include <array>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/widgets/layout.h"
@@ -24,25 +25,22 @@ struct RingLabel {
 [[nodiscard]] std::vector<RingLabel> ring_labels(float radius_px, float line_px, float gap_px,
                                                  const std::function<float(const std::string&)>& width_of);
 
-// A direction's word. Where it stands at the foot, an arrow head tells which way; none: empty.
 struct DirectionLabel {
   std::string text;
-  widgets::Rect place, arrow;
+  widgets::Rect place;
 };
-// The bullseye about the middle of its area, as large as it can be with all four words in letters of that
-// size about it: those of the sides beside it, or at its foot where they would take more than a seventh of
-// it. Upper and lower word stand in full where there is room.
+// The four words of a bullseye about 0, 0, in letters of that size: inside the rim, beside which they would
+// take a third of its radius; to the sides they stand at the edge of the panel where that is wider.
 struct TargetWords {
-  float radius_px = 0;
   DirectionLabel up, down, left, right;
-  bool fits = false;  // else the letters are too large for the area
+  bool fits = false;  // else the letters are too large: they reach into the ring of 2 mm, or leave none
 };
 struct DirectionNames {
   std::string_view up, down, left, right;  // "anterior"
 };
-[[nodiscard]] TargetWords words_about_target(const widgets::Rect& area, const DirectionNames& names,
-                                             float letters_px,
-                                             const std::function<float(const std::string&)>& width_of);
+[[nodiscard]] TargetWords words_in_target(float radius_px, float half_width_px, const DirectionNames& names,
+                                          float letters_px,
+                                          const std::function<float(const std::string&)>& width_of);
 
 // Where the tail ends of a guide at `from` that leans by `lean`, all from the bullseye's middle. It may leave
 // the rim, since a tail cut there would look like less tilt, but not what is drawn on, which reaches as far

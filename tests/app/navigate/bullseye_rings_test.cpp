@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace arthronaut::navigate {
@@ -61,28 +62,26 @@ float width_for_afar(const std::string& text) { return 26.F * static_cast<float>
 const DirectionNames kOfFemur{"proximal", "distal", "anterior", "posterior"},
     kOfTibia{"anterior", "posterior", "medial", "lateral"};
 
-// In the square of a second screen, the narrow one beside the numbers, and a low one: none of the four words
-// stands in the target, in another one or outside.
-TEST(TargetWords, StandClearOfTheTargetAndOfEachOther) {
-  for (const ImVec2 size : {ImVec2{900, 900}, {428, 348}, {428, 420}, {600, 300}})
+// In the squares of a second screen and beside the numbers, and in the narrow panels of one screen: no word
+// stands in the rings of 1 and 2 mm, by which is aimed at last, in another word or outside the panel.
+TEST(TargetWords, LeaveTheMiddleOfTheTarget) {
+  for (const ImVec2 panel : {ImVec2{450, 440}, {214, 206}, {214, 162}, {300, 146}})
     for (const DirectionNames& names : {kOfFemur, kOfTibia}) {
-      SCOPED_TRACE(size.x);
-      const widgets::Rect area{100, 50, size.x, size.y};
-      const TargetWords words = words_about_target(area, names, kLetters_px, width_for_afar);
+      SCOPED_TRACE(panel.y);
+      const TargetWords words = words_in_target(panel.y, panel.x, names, kLetters_px, width_for_afar);
       ASSERT_TRUE(words.fits);
       const std::array all{&words.up, &words.down, &words.left, &words.right};
       for (std::size_t i = 0; i < all.size(); ++i) {
         const widgets::Rect& place = all[i]->place;
         SCOPED_TRACE(all[i]->text);
         EXPECT_FALSE(all[i]->text.empty());
-        EXPECT_GE(place.x, area.x);
-        EXPECT_GE(place.y, area.y - 3);
-        EXPECT_LE(place.x + place.width, area.x + area.width);
-        EXPECT_LE(place.y + place.height, area.y + area.height + 3);
-        const ImVec2 center = area.center();
-        const float dx = std::max({place.x - center.x, center.x - place.x - place.width, 0.F}),
-                    dy = std::max({place.y - center.y, center.y - place.y - place.height, 0.F});
-        EXPECT_GE(std::hypot(dx, dy), words.radius_px - 1);
+        EXPECT_GE(place.x, -panel.x);
+        EXPECT_LE(place.x + place.width, panel.x);
+        EXPECT_GE(place.y, -panel.y);
+        EXPECT_LE(place.y + place.height, panel.y);
+        const float dx = std::max({place.x, -place.x - place.width, 0.F}),
+                    dy = std::max({place.y, -place.y - place.height, 0.F});
+        EXPECT_GE(std::hypot(dx, dy), panel.y * 2 / kShown_mm);
         for (std::size_t k = i + 1; k < all.size(); ++k) {
           const widgets::Rect& other = all[k]->place;
           EXPECT_TRUE(place.x + place.width <= other.x || other.x + other.width <= place.x ||
@@ -90,22 +89,15 @@ TEST(TargetWords, StandClearOfTheTargetAndOfEachOther) {
               << all[k]->text;
         }
       }
+      EXPECT_LT(words.up.place.y, words.down.place.y);
       EXPECT_LT(words.left.place.x, words.right.place.x);
     }
 }
 
-// Where words beside it would take much of the target they stand at its foot, with arrows.
-TEST(TargetWords, StandAtTheFootOfANarrowOne) {
-  const auto narrow = words_about_target({0, 0, 428, 348}, kOfFemur, kLetters_px, width_for_afar);
-  EXPECT_GT(narrow.radius_px, 348 / 2 - 1.1F * kLetters_px);
-  EXPECT_GT(narrow.left.arrow.width, 0);
-  EXPECT_LT(narrow.left.arrow.x, narrow.left.place.x);
-  EXPECT_GE(narrow.right.arrow.x, narrow.right.place.x + narrow.right.place.width);
-  const auto wide = words_about_target({0, 0, 900, 600}, kOfFemur, kLetters_px, width_for_afar);
-  EXPECT_EQ(wide.left.arrow.width, 0);
-  EXPECT_EQ(wide.up.text, "proximal");
-  // Letters that leave nothing of it are not asked for.
-  EXPECT_FALSE(words_about_target({0, 0, 120, 120}, kOfFemur, kLetters_px, width_for_afar).fits);
+// Letters that leave nothing of the target are not asked for.
+TEST(TargetWords, AreTooLargeForASmallOne) {
+  EXPECT_FALSE(words_in_target(100, 110, kOfFemur, kLetters_px, width_for_afar).fits);
+  EXPECT_FALSE(words_in_target(20, 20, kOfFemur, kLetters_px, width_for_afar).fits);
 }
 
 }  // namespace
