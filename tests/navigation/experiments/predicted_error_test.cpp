@@ -17,16 +17,16 @@ void expect_honest(const ErrorRatios& ratios, const char* which) {
   EXPECT_LT(ratios.angle, 1.6) << which;
 }
 
-// A hundred operations, half with badly pivoted tools, half with a poor camera: what stands on the screen is
-// what is wrong; for all of them and for each kind of set-up, where a prediction without tools and camera
-// says far too little.
+// Two hundred operations, half with badly pivoted tools, half with a poor camera: what stands on the screen
+// is what is wrong; for all of them and for each kind of set-up, where a prediction without tools and camera
+// says far too little. The median of a kind's 50 is known to a seventh; of 25 it scatters by 0.48 to 0.62.
 TEST(PredictedError, Hazard6IsTheErrorThereIs) {
-  const PredictedErrorResult result = run_predicted_error({});
-  ASSERT_EQ(result.operations.size(), 100u);
+  const PredictedErrorResult result = run_predicted_error({.operation_count = 200});
+  ASSERT_EQ(result.operations.size(), 200u);
   expect_honest(result.all(), "all");
   using Kind = experiments::Setup;  // gtest has a Setup of its own
   for (const Kind setup : {Kind::Careful, Kind::PoorTools, Kind::PoorCamera, Kind::PoorBoth}) {
-    EXPECT_EQ(result.of(setup).count, 25);
+    EXPECT_EQ(result.of(setup).count, 50);
     expect_honest(result.of(setup), to_text(setup));
   }
   EXPECT_GT(result.all().tip, 0.5);
