@@ -47,7 +47,8 @@ void FolderBrowser::up() { look_into(listing_.folder.parent_path()); }
 
 void FolderBrowser::type_path() {
   const std::string here = listing_.folder.string();
-  typing_ = {true, true, here.ends_with('/') ? here : here + "/", ""};
+  typing_ = {
+      .is_open = true, .takes_focus = true, .text = here.ends_with('/') ? here : here + "/", .problem = ""};
 }
 
 std::optional<fs::path> FolderBrowser::go_to(const std::string& text) {
@@ -109,9 +110,10 @@ std::optional<fs::path> FolderBrowser::draw_typing(const widgets::Ui& ui, const 
                            (typing_.problem.empty() ? ImGuiInputTextFlags_AutoSelectAll : 0),
                        complete, &listing_.folder);
   ui.log.note(name_ + "_path", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  typing_.takes_letters = ImGui::IsItemActive();
   if (is_entered) {
     auto found = go_to(typing_.text);
-    typing_.takes_focus = typing_.is_open;  // what is not there is typed on
+    if (typing_.is_open) ImGui::SetKeyboardFocusHere(-1);  // what is not there is typed on
     return found;
   }
   if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) typing_ = {};
@@ -170,7 +172,7 @@ std::optional<fs::path> FolderBrowser::draw(const widgets::Ui& ui, widgets::Rect
   widgets::end_panel();
   ui.log.note_state("selected", selected());
   ui.log.note_state("typed_path", typing_.is_open ? typing_.text : "");
-  ui.log.note_state("typed_problem", typing_.problem);
+  ui.log.note_state("typed_problem", typing_.takes_letters ? typing_.problem : "");
   if (typed) return typed;
   return opens ? open_selected() : std::nullopt;
 }

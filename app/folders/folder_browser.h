@@ -51,7 +51,7 @@ class FolderBrowser {
                                                                  const widgets::Rect& line);
 
   struct Typing {
-    bool is_open = false, takes_focus = false;
+    bool is_open = false, takes_focus = false, takes_letters = false;
     std::string text, problem;
   };
   std::string name_;
