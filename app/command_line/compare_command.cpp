@@ -1,3 +1,4 @@
+#include <limits>
 #include <memory>
 
 #include "app/case/postop_comparison.h"
@@ -141,6 +142,7 @@ void add_compare_command(CLI::App& app, Context& context) {
   sub->add_option("--series", arguments->series, "Series number or UID, for DICOM with several");
   sub->add_option("--label", arguments->labels, "Label maps: the labels that are bone; default: all but 0")
       ->delimiter(',')
+      ->check(whole_between(0, std::numeric_limits<int>::max()))
       ->allow_extra_args(false);  // the case may follow
   sub->add_flag("--replace", arguments->replaces,
                 "In a case: also in the place of a tunnel that it holds reliable, and that is not so now. "

@@ -149,9 +149,12 @@ TEST(CommandLine, AValueThatCannotBeRightIsWrongUsage) {
   expect_refused({"check-fluid", "--camera", "c.json", "--tools", "t.json", "r.mkv"}, {"--markers", "5,99"},
                  "--markers");
   expect_refused({"markers", "-o", "m.pdf"}, {"--size-mm", "101"}, "--size-mm");
+  expect_refused({"markers"}, {"-o", "m.png"}, "m.png does not end in .pdf");
   expect_refused({"calibrate", "--square-mm", "1.5", "-o", "c.json"}, {"a.png", "b.png"}, "three pictures");
   for (const char* whole : {"2.5", "1e1", "9999999999", "nan"}) {
     const std::string is_no_number = "\"" + std::string(whole) + "\" must be a whole number, ";
+    expect_refused({"compare", "K.arthro", "--postop", "p.nrrd", "-o", "a.json"}, {"--label", whole},
+                   "--label: " + is_no_number);
     expect_refused({"pivot", "--poses", "p.csv", "-o", "t.json"}, {"--marker", whole},
                    "--marker: " + is_no_number);
     expect_refused(with_case, {"--igtl", whole}, "--igtl: " + is_no_number);
