@@ -1,10 +1,6 @@
-#include <filesystem>
-#include <system_error>
-
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
 #include "app/report/marker_sheet.h"
-#include "app/report/report.h"
 
 namespace arthronaut::command_line {
 
@@ -29,10 +25,7 @@ void add_markers_command(CLI::App& app, Context& context) {
       ->check(between(0.1, 100))
       ->capture_default_str();
   sub->callback([arguments, &context] {
-    std::error_code ignored;
-    if (report::ending_of(arguments->output) != ".pdf" &&
-        !std::filesystem::is_other(arguments->output, ignored))
-      throw CLI::ValidationError("--output", arguments->output + " does not end in .pdf, which a sheet is");
+    refuse_another_ending(arguments->output, {".pdf"});
     refuse_before_the_work({.read = {}, .written = {arguments->output}});
     report::write_marker_sheet(arguments->output, arguments->sheet);
     context.say("Wrote " + arguments->output + ": check the 50 mm rule after printing.");

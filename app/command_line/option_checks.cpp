@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "app/report/report.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/own_files.h"
 #include "planning/files/format.h"
@@ -131,6 +132,18 @@ void add_mesh_options(CLI::App& command, std::string& space, std::string& unit, 
       ->check(read_by([](const std::string& text) { (void)bones::space_from_text(text); }));
   command.add_option("--unit", unit, "Length unit of " + mesh + ": mm, cm, m or in")
       ->check(read_by([](const std::string& text) { (void)bones::length_unit_from_text(text); }));
+}
+
+void refuse_another_ending(const fs::path& output, const std::vector<std::string>& endings) {
+  std::error_code ignored;
+  if (fs::is_other(output, ignored) || std::ranges::find(endings, report::ending_of(output)) != endings.end())
+    return;
+  std::string words = endings.size() == 1 ? " does not end in " : " ends in none of ";
+  for (const std::string& ending : endings) {
+    const bool is_first = &ending == &endings.front(), is_last = &ending == &endings.back();
+    words += (is_first ? "" : is_last ? " and " : ", ") + ending;
+  }
+  throw CLI::ValidationError("--output", output.string() + words);
 }
 
 void refuse_together(const std::function<void()>& check) {

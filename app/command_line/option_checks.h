@@ -26,6 +26,9 @@ namespace arthronaut::command_line {
 [[nodiscard]] CLI::Validator read_by(std::function<void(const std::string&)> read);
 // --space and --unit of what `mesh` names ("the mesh"); empty where they are not given.
 void add_mesh_options(CLI::App& command, std::string& space, std::string& unit, const std::string& mesh);
+// Wrong usage where the file ends, in large letters or small ones, in none of these (".pdf"). Devices and
+// pipes are of any name.
+void refuse_another_ending(const std::filesystem::path& output, const std::vector<std::string>& endings);
 // What `check` throws of several options together is wrong usage too.
 void refuse_together(const std::function<void()>& check);
 

@@ -15,15 +15,6 @@ namespace arthronaut::command_line {
 
 namespace {
 
-// By its ending, which also says what is written; into a device or a pipe of any name goes a PDF.
-void refuse_another_ending(const std::filesystem::path& output) {
-  std::error_code ignored;
-  const std::string ending = report::ending_of(output);
-  if (ending == ".pdf" || ending == ".json" || ending == ".csv" || std::filesystem::is_other(output, ignored))
-    return;
-  throw CLI::ValidationError("--output", output.string() + " ends in none of .pdf, .json and .csv");
-}
-
 // SOURCE_DATE_EPOCH, as reproducible-builds.org has it, in UTC; empty where nobody sets it. Throws
 // InvalidInput.
 std::string made_utc_of_environment() {
@@ -67,7 +58,8 @@ void add_report_command(CLI::App& app, Context& context) {
                   "For the program that started this one: an open file for what goes on")
       ->group("");
   sub->callback([arguments, &context] {
-    refuse_another_ending(arguments->output);
+    // It says what is written; into a device or a pipe goes a PDF.
+    refuse_another_ending(arguments->output, {".pdf", ".json", ".csv"});
     refuse_before_the_work({.read = {}, .written = {arguments->output}});
     arguments->options.made_utc = made_utc_of_environment();
     arguments->options.paper = report::paper_from_text(arguments->paper);

@@ -2,22 +2,13 @@
 // while it is down.
 #include <GLFW/glfw3.h>
 
-#include <array>
 #include <cmath>
-#include <string>
-#include <tuple>
 #include <utility>
 
 #include "app/paint/paint_view.h"
+#include "app/plan/pane_keys.h"
 
 namespace arthronaut::paint {
-
-namespace {
-
-constexpr double kCross_px = 2;  // of the slice: zoomed in it moves less
-constexpr double kShift_px = 30;
-
-}  // namespace
 
 // The one that lies as the images were taken shows the most: it is where a hand begins.
 std::size_t PaintView::sharpest_pane() const {
@@ -32,14 +23,11 @@ std::size_t PaintView::sharpest_pane() const {
 }
 
 void PaintView::draw_keyed_pane(const widgets::Ui& ui, const std::array<widgets::Rect, 3>& areas) {
-  const ImGuiIO& io = ImGui::GetIO();
-  for (std::size_t i = 0; i < areas.size(); ++i)
-    if (areas[i].contains(io.MousePos) && (io.MouseClicked[0] || io.MouseClicked[1] || io.MouseClicked[2])) {
-      keys_.pane = i;
-      keys_.is_down = false;
-    }
-  const widgets::Rect& pane = areas[keys_.pane];
-  ImGui::GetWindowDrawList()->AddRect(pane.min(), pane.max(), widgets::kAccent, 0, 0, ui.theme.px(2));
+  if (const auto pressed = plan::pressed_pane(areas)) {
+    keys_.pane = *pressed;
+    keys_.is_down = false;
+  }
+  plan::frame_keyed_pane(ui, areas[keys_.pane]);
 }
 
 void PaintView::move_cross(const Eigen::Vector3d& way_mm) {
@@ -78,61 +66,28 @@ void PaintView::add_key_actions(widgets::Actions& actions) {
                  keys_.pane = (keys_.pane + 1) % panes_.size();
                  keys_.is_down = false;
                }});
-  struct Arrow {
-    std::string word;
-    int key;
-    Eigen::Vector2d way;  // of the screen, rows down
-  };
-  const std::array<Arrow, 4> arrows{Arrow{"left", GLFW_KEY_LEFT, {-1, 0}},
-                                    Arrow{"right", GLFW_KEY_RIGHT, {1, 0}}, Arrow{"up", GLFW_KEY_UP, {0, -1}},
-                                    Arrow{"down", GLFW_KEY_DOWN, {0, 1}}};
-  for (const Arrow& arrow : arrows) {
-    actions.add({"paint.cross_" + arrow.word,
-                 "Cross-hair " + arrow.word,
-                 "Moves the framed slice's cross-hair; with the brush down it paints",
-                 arrow.key,
-                 GLFW_MOD_ALT,
-                 true,
-                 is_shown,
-                 {},
-                 [this, way = arrow.way] { move_cross(panes_[keys_.pane].way_mm(kCross_px * way)); }});
-    actions.add({"paint.shift_" + arrow.word,
-                 "Shift " + arrow.word,
-                 "Shifts the framed slice",
-                 arrow.key,
-                 GLFW_MOD_CONTROL | GLFW_MOD_SHIFT,
-                 true,
-                 is_shown,
-                 {},
-                 [this, way = arrow.way] { panes_[keys_.pane].shift(kShift_px * way); }});
-  }
-  for (const auto& [id, label, key, steps] : {std::tuple{"paint.zoom_in", "Zoom in", GLFW_KEY_EQUAL, 1.0},
-                                              std::tuple{"paint.zoom_out", "Zoom out", GLFW_KEY_MINUS, -1.0}})
-    actions.add({id,
-                 label,
-                 "The framed slice, about its cross-hair",
-                 key,
-                 GLFW_MOD_CONTROL,
-                 true,
-                 is_shown,
-                 {},
-                 [this, by = steps] { panes_[keys_.pane].zoom(by, look_.cross_mm); }});
-  for (const auto& [id, label, key, images] :
-       {std::tuple{"paint.next_image", "Next image", GLFW_KEY_PAGE_UP, 1},
-        std::tuple{"paint.image_before", "Image before", GLFW_KEY_PAGE_DOWN, -1}})
-    actions.add({id,
-                 label,
-                 "In the framed slice, as the wheel; lifts the brush",
-                 key,
-                 GLFW_MOD_SHIFT,
-                 true,
-                 is_shown,
-                 {},
-                 [this, by = images] {
-                   keys_.is_down = false;
-                   const plan::SlicePane& pane = panes_[keys_.pane];
-                   move_cross(by * pane.step_mm(painting_->volume()) * pane.normal());
-                 }});
+  plan::add_pane_keys(actions,
+                      {.mode = "paint",
+                       .move_name = "cross",
+                       .move_label = "Cross-hair",
+                       .move_hint = "Moves the framed slice's cross-hair; with the brush down it paints",
+                       .shift_hint = "Shifts the framed slice",
+                       .zoom_hint = "The framed slice, about its cross-hair",
+                       .scroll_hint = "In the framed slice, as the wheel; lifts the brush",
+                       .is_possible = is_shown,
+                       .can_scroll = is_shown,
+                       .move =
+                           [this](const Eigen::Vector2d& way) {
+                             move_cross(panes_[keys_.pane].way_mm(plan::kKeyedCross_px * way));
+                           },
+                       .shift = [this](const Eigen::Vector2d& by_px) { panes_[keys_.pane].shift(by_px); },
+                       .zoom = [this](double steps) { panes_[keys_.pane].zoom(steps, look_.cross_mm); },
+                       .scroll =
+                           [this](int images) {
+                             keys_.is_down = false;
+                             const plan::SlicePane& pane = panes_[keys_.pane];
+                             move_cross(images * pane.step_mm(painting_->volume()) * pane.normal());
+                           }});
 }
 
 }  // namespace arthronaut::paint

@@ -56,14 +56,23 @@ void PlanView::take_defaults(std::vector<MadeTunnel> made, const std::string& wh
   show_page(PanelPage::Checks);
 }
 
+bool PlanView::can_be_moved(const MadeTunnel& made) const {
+  const auto now = model_->tunnel(made.key);
+  const tunnels::Tunnel& then = made.made.tunnel;
+  return made.made.other_entry && now && now->entry_mm == then.entry_mm && now->direction == then.direction &&
+         now->diameter_mm == then.diameter_mm;
+}
+
+bool PlanView::can_move_defaults() const {
+  return can_make_defaults() &&
+         std::ranges::any_of(state_.made, [this](const MadeTunnel& one) { return can_be_moved(one); });
+}
+
 std::vector<MadeTunnel> PlanView::moved_defaults() const {
   std::vector<MadeTunnel> moved;
-  for (const MadeTunnel& one : state_.made) {
-    const auto now = model_->tunnel(one.key);
-    if (one.made.other_entry && now && now->entry_mm == one.made.tunnel.entry_mm &&
-        now->direction == one.made.tunnel.direction && now->diameter_mm == one.made.tunnel.diameter_mm)
+  for (const MadeTunnel& one : state_.made)
+    if (can_be_moved(one))
       moved.push_back({.key = one.key, .made = default_plan::moved_within_spread(one.made)});
-  }
   return moved;
 }
 
@@ -95,7 +104,7 @@ void PlanView::add_default_actions(widgets::Actions& actions) {
        GLFW_KEY_N,
        GLFW_MOD_SHIFT,
        false,
-       [this] { return can_make_defaults() && !moved_defaults().empty(); },
+       [this] { return can_move_defaults(); },
        {},
        [this] {
          history_.settle_now();

@@ -2,9 +2,9 @@
 #include <GLFW/glfw3.h>
 
 #include <array>
-#include <tuple>
 #include <utility>
 
+#include "app/plan/pane_keys.h"
 #include "app/plan/plan_view.h"
 #include "app/plan/tunnel_moves.h"
 
@@ -12,10 +12,8 @@ namespace arthronaut::plan {
 
 namespace {
 
-// What a press does, as if the mouse were drawn over so many pixels of a view 1000 high: 6 degrees, 3 % of
-// it.
-constexpr double kHeight_px = 1000, kTurn_px = 28, kShift_px = 30;
-constexpr double kCross_px = 2;  // of the slice: zoomed in it moves less
+// What a press does, as if the mouse were drawn over so many pixels of a view 1000 high: 6 degrees.
+constexpr double kHeight_px = 1000, kTurn_px = 28;
 constexpr double kReach_mm = 5;  // from the cross-hair of a slice to the surface that a click is meant for
 constexpr std::array kPaneNames{"3D view", "upper slice", "lower left slice", "lower right slice"};
 
@@ -27,12 +25,8 @@ std::optional<std::size_t> PlanView::keyed_slice() const {
 }
 
 void PlanView::draw_keyed_pane(const widgets::Ui& ui, const std::array<widgets::Rect, 4>& panes) {
-  const ImGuiIO& io = ImGui::GetIO();
-  for (std::size_t i = 0; i < panes.size(); ++i)
-    if (panes[i].contains(io.MousePos) && (io.MouseClicked[0] || io.MouseClicked[1] || io.MouseClicked[2]))
-      state_.keyed_pane = i;
-  const widgets::Rect& pane = panes[state_.keyed_pane];
-  ImGui::GetWindowDrawList()->AddRect(pane.min(), pane.max(), widgets::kAccent, 0, 0, ui.theme.px(2));
+  if (const auto pressed = pressed_pane(panes)) state_.keyed_pane = *pressed;
+  frame_keyed_pane(ui, panes[state_.keyed_pane]);
 }
 
 void PlanView::draw_aiming_cross(const widgets::Ui& ui, const widgets::Rect& area) const {
@@ -81,66 +75,32 @@ void PlanView::add_pane_actions(widgets::Actions& actions) {
                {},
                [this] { state_.keyed_pane = (state_.keyed_pane + 1) % kPaneNames.size(); }});
   const auto has_pane = [this] { return keyed_slice() || (model_ != nullptr && !state_.shows_lateral); };
-  struct Arrow {
-    std::string word;
-    int key;
-    Eigen::Vector2d way;  // of the screen, rows down
-  };
-  const std::array<Arrow, 4> arrows{Arrow{"left", GLFW_KEY_LEFT, {-1, 0}},
-                                    Arrow{"right", GLFW_KEY_RIGHT, {1, 0}}, Arrow{"up", GLFW_KEY_UP, {0, -1}},
-                                    Arrow{"down", GLFW_KEY_DOWN, {0, 1}}};
-  for (const Arrow& arrow : arrows) {
-    actions.add({"plan.turn_" + arrow.word,
-                 "Turn " + arrow.word,
-                 "Turns the 3D view by 6 degrees; in a slice it moves the cross-hair",
-                 arrow.key,
-                 GLFW_MOD_ALT,
-                 true,
-                 has_pane,
-                 {},
-                 [this, way = arrow.way] {
-                   if (const auto slice = keyed_slice()) return slices_.move_cross(*slice, kCross_px * way);
-                   bones_.look(scene::orbited(bones_.camera(), kTurn_px * way, kHeight_px));
-                 }});
-    actions.add({"plan.shift_" + arrow.word,
-                 "Shift " + arrow.word,
-                 "Shifts the picture",
-                 arrow.key,
-                 GLFW_MOD_CONTROL | GLFW_MOD_SHIFT,
-                 true,
-                 has_pane,
-                 {},
-                 [this, way = arrow.way] {
-                   if (const auto slice = keyed_slice()) return slices_.shift(*slice, kShift_px * way);
-                   bones_.look(scene::panned(bones_.camera(), kShift_px * way, kHeight_px));
-                 }});
-  }
-  for (const auto& [id, label, key, steps] : {std::tuple{"plan.zoom_in", "Zoom in", GLFW_KEY_EQUAL, 1.0},
-                                              std::tuple{"plan.zoom_out", "Zoom out", GLFW_KEY_MINUS, -1.0}})
-    actions.add({id,
-                 label,
-                 "The picture, about its middle; a slice about its cross-hair",
-                 key,
-                 GLFW_MOD_CONTROL,
-                 true,
-                 has_pane,
-                 {},
-                 [this, by = steps] {
-                   if (const auto slice = keyed_slice()) return slices_.zoom(*slice, by);
-                   bones_.look(scene::zoomed(bones_.camera(), by));
-                 }});
-  for (const auto& [id, label, key, images] :
-       {std::tuple{"plan.next_image", "Next image", GLFW_KEY_PAGE_UP, 1},
-        std::tuple{"plan.image_before", "Image before", GLFW_KEY_PAGE_DOWN, -1}})
-    actions.add({id,
-                 label,
-                 "In the framed slice, as the wheel",
-                 key,
-                 GLFW_MOD_SHIFT,
-                 true,
-                 [this] { return keyed_slice().has_value(); },
-                 {},
-                 [this, by = images] { slices_.scroll(*keyed_slice(), by); }});
+  add_pane_keys(actions, {.mode = "plan",
+                          .move_name = "turn",
+                          .move_label = "Turn",
+                          .move_hint = "Turns the 3D view by 6 degrees; in a slice it moves the cross-hair",
+                          .shift_hint = "Shifts the picture",
+                          .zoom_hint = "The picture, about its middle; a slice about its cross-hair",
+                          .scroll_hint = "In the framed slice, as the wheel",
+                          .is_possible = has_pane,
+                          .can_scroll = [this] { return keyed_slice().has_value(); },
+                          .move =
+                              [this](const Eigen::Vector2d& way) {
+                                if (const auto slice = keyed_slice())
+                                  return slices_.move_cross(*slice, kKeyedCross_px * way);
+                                bones_.look(scene::orbited(bones_.camera(), kTurn_px * way, kHeight_px));
+                              },
+                          .shift =
+                              [this](const Eigen::Vector2d& by_px) {
+                                if (const auto slice = keyed_slice()) return slices_.shift(*slice, by_px);
+                                bones_.look(scene::panned(bones_.camera(), by_px, kHeight_px));
+                              },
+                          .zoom =
+                              [this](double steps) {
+                                if (const auto slice = keyed_slice()) return slices_.zoom(*slice, steps);
+                                bones_.look(scene::zoomed(bones_.camera(), steps));
+                              },
+                          .scroll = [this](int images) { slices_.scroll(*keyed_slice(), images); }});
   actions.add(
       {"plan.click_here",
        "Click here",

@@ -163,16 +163,17 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   for (const auto& [bone, doubts] : bone_doubts_)
     doubt_count += plan_review::doubts_but_side(bone_doubts_, bone).size();
   const StepState step{
-      state_.key,
-      state_.placing == Placing::Entry,
-      state_.page == PanelPage::Landmarks,
-      status.save == open_case::PlanStatus::Save::ReadOnly,
-      history_.is_in_conflict(),
-      defaults_.is_running(),
-      status.save == open_case::PlanStatus::Save::Failed,
-      std::ranges::any_of(moved_defaults(), [this](const MadeTunnel& one) { return one.key == state_.key; }),
-      plan_review::side_doubt(bone_doubts_),
-      doubt_count};
+      .key = state_.key,
+      .places_entry = state_.placing == Placing::Entry,
+      .shows_landmarks = state_.page == PanelPage::Landmarks,
+      .is_read_only = status.save == open_case::PlanStatus::Save::ReadOnly,
+      .is_in_conflict = history_.is_in_conflict(),
+      .makes_default = defaults_.is_running(),
+      .is_unsaved = status.save == open_case::PlanStatus::Save::Failed,
+      .can_enter_elsewhere = std::ranges::any_of(
+          state_.made, [this](const MadeTunnel& one) { return one.key == state_.key && can_be_moved(one); }),
+      .side_doubt = plan_review::side_doubt(bone_doubts_),
+      .bone_doubts = doubt_count};
   const NextStep next = next_step(*model_, step);
   const PanelClick clicked =
       draw_plan_panel(ui, panel,

@@ -137,8 +137,10 @@ class PlanView : public mode::Mode {
   void follow_defaults();
   // Those that there are become the plan, as one step; of all of them it is said how they are.
   void take_defaults(std::vector<MadeTunnel> made, const std::string& what);
-  // Those of the last default plan that are still as they were made, entered where they pass.
-  [[nodiscard]] std::vector<MadeTunnel> moved_defaults() const;
+  // Of the last default plan: still as it was made, and better elsewhere within the norm's spread.
+  [[nodiscard]] bool can_be_moved(const MadeTunnel& made) const;
+  [[nodiscard]] bool can_move_defaults() const;
+  [[nodiscard]] std::vector<MadeTunnel> moved_defaults() const;  // entered there
 
   // Where else the tunnel could begin, and from where it can be drilled: survey_view.cpp.
   void add_survey_actions(widgets::Actions& actions);

@@ -35,8 +35,7 @@ SessionLine session_line(const library::SessionFacts& facts, std::optional<bones
     doubts.push_back("recorded as of a " + library::word_of(facts.side) + " knee, the case is a " +
                      library::word_of(case_side) + " one");
   // What cannot be read comes first: the row shows the beginning of its words.
-  const std::string damage = "cannot be read whole: " + facts.problem;
-  if (std::erase(doubts, damage) > 0) line.words = damage + "; ";
+  if (const std::string damage = facts.damage(); std::erase(doubts, damage) > 0) line.words = damage + "; ";
   line.words += facts.what();
   line.words += (facts.what().empty() ? "" : "; ") + facts.outcome();
   for (const std::string& doubt : doubts) line.words += "; " + doubt;

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cassert>
+#include <stdexcept>
 #include <utility>
 
 #include "navigation/camera/camera_file.h"
@@ -117,7 +117,7 @@ bool RecordedSession::events_are_whole() const { return state_->events_are_whole
 const SessionHeader& RecordedSession::header() const { return state_->header; }
 bool RecordedSession::was_finished() const { return state_->was_finished; }
 const std::vector<RecordedFrame>& RecordedSession::frames() const {
-  assert(state_->holds_frames);
+  if (!state_->holds_frames) throw std::logic_error("frames() of a session that was opened without them");
   return state_->frames;
 }
 std::optional<std::int64_t> RecordedSession::first_frame_ns() const { return state_->first_frame_ns; }

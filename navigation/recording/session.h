@@ -257,7 +257,7 @@ class RecordedSession {
   // where nothing can be told: no folder, no session.json, a record of a newer version.
   [[nodiscard]] static RecordedSession as_far_as_whole(const std::filesystem::path& folder);
   // All but its frames, for whoever goes through them: two hours of them take the best part of a gigabyte.
-  // They are read when for_each_frame() comes to them, and frames() must not be asked for.
+  // They are read when for_each_frame() comes to them, and frames() throws std::logic_error.
   [[nodiscard]] static RecordedSession without_frames(const std::filesystem::path& folder);
   ~RecordedSession();
   RecordedSession(RecordedSession&&) noexcept;

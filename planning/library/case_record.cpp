@@ -212,6 +212,10 @@ std::string SessionFacts::what() const {
   return words;
 }
 
+std::string SessionFacts::damage() const {
+  return is_drilled() && !problem.empty() ? "cannot be read whole: " + problem : "";
+}
+
 std::vector<std::string> SessionFacts::doubts() const {
   std::vector<std::string> doubts;
   const bool was_registered = registration_is_reliable.has_value();
@@ -223,7 +227,7 @@ std::vector<std::string> SessionFacts::doubts() const {
     doubts.push_back(std::to_string(alarm_count) + (alarm_count == 1 ? " alarm" : " alarms"));
   if (is_drilled() && !was_finished && problem.empty())
     doubts.emplace_back(is_being_recorded ? "being recorded" : "cut off");
-  if (is_drilled() && !problem.empty()) doubts.push_back("cannot be read whole: " + problem);
+  if (const std::string words = damage(); !words.empty()) doubts.push_back(words);
   return doubts;
 }
 

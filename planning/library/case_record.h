@@ -53,6 +53,8 @@ struct SessionFacts {
   [[nodiscard]] std::string what() const;
   // What whoever reads the outcome should know beside it: "not verified", "2 alarms", "cut off", ...
   [[nodiscard]] std::vector<std::string> doubts() const;
+  // One of them: "cannot be read whole: ...". Empty: nothing is, or the outcome says it.
+  [[nodiscard]] std::string damage() const;
   // A doubt, or an outcome that is one: no registration to rely on, cut off, cannot be read.
   [[nodiscard]] bool is_in_doubt() const;
 };
